@@ -22,6 +22,7 @@
 #include "bootloader/copy_to_internal_flash_progress.h"
 #include "bootloader/link.h"
 #include "bootloader/client.h"
+#include "bootloader/procedures.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define BOOTLOADER_ICD_DIGEST "04b266fd2f29e0d9"

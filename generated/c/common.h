@@ -54,6 +54,7 @@
 #include "common/hole_map_8.h"
 #include "common/link.h"
 #include "common/client.h"
+#include "common/procedures.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define COMMON_ICD_DIGEST "2af13559b3f6b52e"

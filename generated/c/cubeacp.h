@@ -129,6 +129,7 @@
 #include "cubeacp/inertial_pointing_reference_vector.h"
 #include "cubeacp/link.h"
 #include "cubeacp/client.h"
+#include "cubeacp/procedures.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define CUBEACP_ICD_DIGEST "fc00cbfef97eef82"

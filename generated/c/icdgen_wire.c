@@ -32,7 +32,7 @@ ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node)
     return false;
 }
 
-ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
+ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, uint32_t id)
 {
     const icd_message_t *const table = direction == ICD_TELECOMMAND ? link->telecommands : link->telemetry;
     size_t low = 0, high = direction == ICD_TELECOMMAND ? link->telecommand_count : link->telemetry_count;
@@ -98,35 +98,6 @@ static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step
         at += count;
     }
     return value;
-}
-
-/* Write the raw value of the field with a role. Its bits in the frame must be 0. */
-static inline void icdgen_put(
-    const icd_link_t *link, const icd_step_t *step, uint8_t *frame, icd_role_t role, uint32_t value)
-{
-    const icd_place_t *const place = icdgen_place(step, role);
-    unsigned at = place != NULL ? place->at : 0u;
-    const unsigned end = place != NULL ? at + place->bits : 0u;
-    unsigned below = link->little ? 0u : end - at;
-    while (at < end) {
-        const unsigned first = at % 8u;
-        const unsigned count = 8u - first < end - at ? 8u - first : end - at;
-        const unsigned shift = link->msb0 ? 8u - first - count : first;
-        below -= link->little ? 0u : count;
-        frame[at / 8u] = ICDGEN_U8(frame[at / 8u] | (((value >> below) & ((1u << count) - 1u)) << shift));
-        below += link->little ? count : 0u;
-        at += count;
-    }
-}
-
-/* Return whether a number is in the list. NULL allows all numbers. */
-static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
-{
-    bool found = allowed == NULL;
-    for (size_t i = 0; !found && i < count; ++i) {
-        found = allowed[i] == number;
-    }
-    return found;
 }
 
 ICDGEN_API icd_status_t
@@ -445,11 +416,22 @@ static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mas
     return count;
 }
 
+/* Return what an unsolicited message contains; NULL if it is none. */
+static inline const icd_unsolicited_t *icdgen_unsolicited(const icd_link_t *link, const uint8_t *message, size_t length)
+{
+    for (size_t i = 0; i < link->unsolicited_count; ++i) {
+        const icd_unsolicited_t *const row = &link->unsolicited[i];
+        if (row->id == message[0] && length == 1u + ICDGEN_SIZE(row->length)) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
 {
     const uint8_t id = message[0];
     const icd_log_message_form_t *const log = link->log_message;
-    const icd_files_form_t *const files = link->files;
     if (log != NULL && id == log->id) {
         const size_t given = length > log->mask_at ? length - log->mask_at : 0u;
         const size_t slots = icdgen_log_slots(link, given != 0u ? message + log->mask_at : message, given);
@@ -461,11 +443,7 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     if (link->acknowledge != NULL && length == link->acknowledge->length) {
         return ICD_UART_ACKNOWLEDGE;
     }
-    if (files != NULL && ICDGEN_I16(id) == files->packet_ids[ICD_BUS_UART] &&
-        length == 1u + ICDGEN_U32(files->counter_bytes) + files->packet_bytes) {
-        return ICD_UART_PACKET;
-    }
-    return ICD_UART_OTHER;
+    return icdgen_unsolicited(link, message, length) != NULL ? ICD_UART_ARRIVED : ICD_UART_OTHER;
 }
 
 #define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
@@ -2246,68 +2224,6 @@ icd_dos_time_pack(const icd_link_t *link, const icd_dos_time_t *time, uint32_t *
     return ICD_OK;
 }
 
-static inline uint8_t icdgen_hole_bit(const icd_hole_map_form_t *form, uint32_t position)
-{
-    return ICDGEN_U8(1u << (form->msb0 ? 7u - (position % 8u) : position % 8u));
-}
-
-static inline void icdgen_hole_put(const icd_hole_map_form_t *form, uint8_t *map, uint32_t position, bool one)
-{
-    const uint8_t bit = icdgen_hole_bit(form, position);
-    map[position / 8u] = ICDGEN_U8(one ? map[position / 8u] | bit : map[position / 8u] & ~ICDGEN_U32(bit));
-}
-
-ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets)
-{
-    const icd_hole_map_form_t *const form = link->hole_map;
-    if (form == NULL || link->files == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (packets > form->bytes * 8u) {
-        return ICD_ERROR_RANGE;
-    }
-    for (uint32_t i = 0; i < form->bytes * 8u; ++i) {
-        icdgen_hole_put(form, map, i, i < packets ? !form->received : form->beyond_end);
-    }
-    return ICD_OK;
-}
-
-ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number)
-{
-    const icd_hole_map_form_t *const form = link->hole_map;
-    uint32_t position;
-    if (form == NULL || link->files == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    position = number - link->files->first_packet;
-    if (position >= packets || position >= form->bytes * 8u) {
-        return ICD_ERROR_RANGE;
-    }
-    icdgen_hole_put(form, map, position, form->received);
-    return ICD_OK;
-}
-
-ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number)
-{
-    const icd_hole_map_form_t *const form = link->hole_map;
-    uint32_t position;
-    if (form == NULL || link->files == NULL) {
-        return false;
-    }
-    position = number - link->files->first_packet;
-    return position < form->bytes * 8u &&
-        ((map[position / 8u] & icdgen_hole_bit(form, position)) != 0u) == form->received;
-}
-
-ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; link->files != NULL && i < packets; ++i) {
-        count += icd_hole_map_get(link, map, link->files->first_packet + i) ? 0u : 1u;
-    }
-    return count;
-}
-
 ICDGEN_API icd_status_t
 icd_index_entry_decode(const icd_link_t *link, const uint8_t *bytes, size_t length, icd_index_entry_t *entry)
 {
@@ -2603,7 +2519,7 @@ ICDGEN_API icd_status_t icd_client_start(
         return ICD_ERROR_LENGTH;
     }
     status = icd_i2c_write(
-        client->link, request->id, request->data, telecommand ? request->length : 0u,
+        client->link, message->id, request->data, telecommand ? request->length : 0u,
         telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
         &client->whole_length);
     client->direction = request->direction;
@@ -2866,12 +2782,9 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         icdgen_client_tell(ICD_EVENT_LOG, message[0], message, length, call->on_event, call->context);
         return;
     }
-    if (kind == ICD_UART_PACKET) {
-        icd_event_t event = icdgen_event(ICD_EVENT_PACKET, message[0]);
-        event.number = icdgen_number(link, message + 1, link->files->counter_bytes);
-        event.data = message + 1u + link->files->counter_bytes;
-        event.length = link->files->packet_bytes;
-        call->on_event(call->context, &event);
+    if (kind == ICD_UART_ARRIVED) {
+        const uint8_t id = icdgen_unsolicited(link, message, length)->telemetry;
+        icdgen_client_tell(ICD_EVENT_ARRIVED, id, message + 1, length - 1u, call->on_event, call->context);
         return;
     }
     if (kind == ICD_UART_REPLY) {
@@ -3871,165 +3784,688 @@ ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *no
 
 static inline void icdgen_end(icd_procedure_t *procedure, icd_result_t result)
 {
-    procedure->want = ICDGEN_WANT_NOTHING;
     procedure->result = result;
+    procedure->has_request = false;
+    procedure->waits = false;
 }
 
-static inline void icdgen_wait(icd_procedure_t *procedure, uint32_t until)
+static inline void icdgen_go_to(icd_procedure_t *procedure, uint16_t index)
 {
-    procedure->want = ICDGEN_WANT_TIME;
-    procedure->until = until;
+    procedure->at = index;
+    procedure->is_entered = false;
 }
 
-/* Request a frame. */
-static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t state)
+static inline void icdgen_go_on(icd_procedure_t *procedure)
+{
+    icdgen_go_to(procedure, ICDGEN_U16(procedure->at + 1u));
+}
+
+/* Return whether the step begins, and not only continues. */
+static inline bool icdgen_enter(icd_procedure_t *procedure)
+{
+    const bool begins = !procedure->is_entered;
+    procedure->is_entered = true;
+    return begins;
+}
+
+static inline const icd_step_form_t *icdgen_step(const icd_procedure_t *procedure)
+{
+    return &procedure->form->steps[procedure->at];
+}
+
+static inline uint32_t icdgen_value(const icd_procedure_t *procedure, const icd_value_t *value)
+{
+    return value->in_register ? procedure->registers[value->number] : value->number;
+}
+
+static inline bool icdgen_holds(const icd_procedure_t *procedure, const icd_test_t *test)
+{
+    return procedure->registers[test->of] == icdgen_value(procedure, &test->value);
+}
+
+/* ---- requests ---------------------------------------------------------------------------------------------------- */
+
+static inline void icdgen_ask(icd_procedure_t *procedure, icd_direction_t direction, uint32_t id, bool repeat)
 {
     (void)memset(&procedure->request, 0, sizeof procedure->request);
-    procedure->request.direction = ICD_TELEMETRY;
-    procedure->request.id = ICDGEN_U8(id);
-    procedure->request.repeat = true;
-    procedure->want = ICDGEN_WANT_REQUEST;
-    procedure->tolerant = false;
-    procedure->state = state;
-}
-
-/* Prepare a telecommand with its initial content. The caller then writes values into `data`. */
-static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *step, bool repeat, uint8_t state)
-{
-    if (step->fresh != NULL) {
-        (void)memcpy(procedure->data, step->fresh, step->length);
-    } else {
-        (void)memset(procedure->data, 0, step->length);
-    }
-    procedure->request.direction = ICD_TELECOMMAND;
-    procedure->request.id = ICDGEN_U8(step->telecommand);
-    procedure->request.data = procedure->data;
-    procedure->request.length = step->length;
+    procedure->request.direction = direction;
+    procedure->request.id = id;
     procedure->request.repeat = repeat;
-    procedure->want = ICDGEN_WANT_REQUEST;
-    procedure->tolerant = false;
-    procedure->state = state;
+    procedure->has_request = true;
+    procedure->is_requested = false;
+    procedure->has_reply = false;
+    procedure->damaged = 0;
 }
 
-/*
- * Poll a frame until its flag has the wanted value or its error flag is set. The procedure then continues in `state`
- * with this frame.
- */
-static inline void icdgen_poll(
-    icd_procedure_t *procedure,
-    const icd_step_t *step,
-    icd_role_t flag,
-    bool wanted,
-    uint32_t interval,
-    uint32_t timeout,
-    uint8_t state)
+/* Return the data of a telecommand, which are sent with the request. */
+static inline uint8_t *icdgen_ask_with(icd_procedure_t *procedure, uint32_t id, uint16_t length, bool repeat)
 {
-    icdgen_ask(procedure, step->telemetry, state);
-    procedure->polled = step;
-    procedure->flag = flag;
-    procedure->wanted = wanted;
-    procedure->interval = interval;
-    procedure->poll_end = procedure->now + timeout;
+    icdgen_ask(procedure, ICD_TELECOMMAND, id, repeat);
+    procedure->request.data = procedure->data;
+    procedure->request.length = length;
+    (void)memset(procedure->data, 0, length);
+    return procedure->data;
 }
 
-/* Return whether the frame belongs to the requested program. */
-static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
+/* Write a number into the data of a telecommand. */
+static inline void icdgen_put_at(const icd_number_place_t *place, uint8_t *data, uint32_t number)
 {
-    const icd_step_t *const step = procedure->polled;
-    return icdgen_place(step, ICD_ROLE_PROGRAM) == NULL ||
-        icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
+    uint32_t mask = (UINT32_C(0xFFFFFFFF) >> (32u - place->bits)) << place->shift;
+    uint32_t bits = number << place->shift;
+    for (size_t i = 0; i < place->size; ++i) {
+        uint8_t *const byte =
+            &data[place->at - sizeof(uint32_t) + (place->little ? i : ICDGEN_SIZE(place->size) - 1u - i)];
+        *byte = ICDGEN_U8((*byte & ~mask & 0xFFu) | (bits & mask & 0xFFu));
+        mask >>= 8;
+        bits >>= 8;
+    }
 }
 
-/* Return whether polling continues after this outcome. */
-static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
+/* Write the selected packet, up to the end of the block and then the fill. */
+static inline void icdgen_put_packet(const icd_procedure_t *procedure, uint8_t *packet)
 {
-    const icd_step_t *const step = procedure->polled;
-    const icd_link_t *const link = procedure->link;
-    if (outcome == NULL) {
-        icdgen_ask(procedure, step->telemetry, procedure->state);
-        return true;
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    const uint32_t *const registers = procedure->registers;
+    const uint32_t start = registers[ICD_PACKET_OFFSET];
+    const uint32_t left = registers[ICD_BLOCK_OFFSET] + registers[ICD_BLOCK_LENGTH] - start;
+    (void)memset(packet, blocks->fill, blocks->packet_bytes);
+    (void)memcpy(
+        packet, procedure->memory.bytes + start,
+        ICDGEN_SIZE(left < blocks->packet_bytes ? left : blocks->packet_bytes));
+}
+
+static inline void icdgen_send_step(icd_procedure_t *procedure, const icd_send_form_t *send)
+{
+    uint8_t *const data = icdgen_ask_with(procedure, send->id, send->length, send->repeats);
+    if (send->data != NULL) {
+        (void)memcpy(data, send->data, send->length);
     }
-    if (outcome->length != step->length) {
-        icdgen_end(procedure, ICD_LENGTH);
-        return true;
+    for (size_t i = 0; i < send->put_count; ++i) {
+        icdgen_put_at(&send->puts[i].place, data, icdgen_value(procedure, &send->puts[i].value));
     }
-    if (((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted &&
-         icdgen_is_meant(procedure, outcome->data)) ||
-        icdgen_get(link, step, outcome->data, ICD_ROLE_ERROR) != 0u) {
-        procedure->polled = NULL;
-        return false;
+    if (send->packet_at >= 0) {
+        icdgen_put_packet(procedure, data + send->packet_at);
     }
-    if (icdgen_reached(procedure->now, procedure->poll_end)) {
+}
+
+static inline void icdgen_poll_step(icd_procedure_t *procedure, const icd_poll_form_t *poll)
+{
+    if (icdgen_enter(procedure)) {
+        procedure->end = procedure->now + poll->timeout;
+    }
+    icdgen_ask(procedure, ICD_TELEMETRY, poll->id, true);
+}
+
+/* Keep fields of the telemetry, and decide whether to request it again. */
+static inline void icdgen_polled(icd_procedure_t *procedure, const icd_poll_form_t *poll)
+{
+    bool is_ready = true, has_failed = false;
+    for (size_t i = 0; i < poll->take_count; ++i) {
+        const icd_take_t *const take = &poll->takes[i];
+        procedure->registers[take->into] =
+            icdgen_stream_number(&take->place, 0, procedure->frame, procedure->frame_length);
+    }
+    for (size_t i = 0; i < poll->until_count; ++i) {
+        is_ready = is_ready && icdgen_holds(procedure, &poll->tests[i]);
+    }
+    for (size_t i = 0; i < poll->fails_count; ++i) {
+        has_failed = has_failed || icdgen_holds(procedure, &poll->tests[poll->until_count + i]);
+    }
+    if (has_failed) {
+        icdgen_end(procedure, ICD_FAILED);
+    } else if (is_ready) {
+        icdgen_go_on(procedure);
+    } else if (icdgen_reached(procedure->now, procedure->end)) {
         icdgen_end(procedure, ICD_TIMED_OUT);
     } else {
-        icdgen_wait(procedure, procedure->now + procedure->interval);
+        procedure->waits = true;
+        procedure->until = procedure->now + poll->interval;
     }
-    return true;
 }
 
-static inline void icdgen_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
+/* ---- blocks and packets ------------------------------------------------------------------------------------------ */
+
+static inline uint32_t icdgen_parts(uint32_t length, uint32_t part)
 {
-    procedure->want = ICDGEN_WANT_NOTHING;
-    if (outcome != NULL && outcome->kind != ICD_EVENT_DONE && !procedure->tolerant) {
-        icdgen_end(procedure, outcome->kind == ICD_EVENT_REFUSED ? ICD_REFUSED : ICD_TIMED_OUT);
-    } else if (procedure->polled == NULL || !icdgen_polls_on(procedure, outcome)) {
-        procedure->resume(procedure, outcome);
+    return (length / part) + (length % part != 0u ? 1u : 0u);
+}
+
+static inline bool icdgen_is_there(const icd_procedure_t *procedure, uint32_t position)
+{
+    return ((ICDGEN_U32(procedure->memory.bitmap[position / 8u]) >> (position % 8u)) & 1u) != 0u;
+}
+
+/* Note whether a packet is there. */
+static inline void icdgen_mark(icd_procedure_t *procedure, uint32_t position, bool is_there)
+{
+    uint8_t *const byte = &procedure->memory.bitmap[position / 8u];
+    if (icdgen_is_there(procedure, position) != is_there) {
+        *byte = ICDGEN_U8(*byte ^ (1u << (position % 8u)));
+        procedure->missing = is_there ? procedure->missing - 1u : procedure->missing + 1u;
+    }
+    procedure->registers[ICD_BLOCK_IS_EMPTY] = ICDGEN_U32(procedure->missing == procedure->count ? 1u : 0u);
+}
+
+static inline uint32_t icdgen_total(const icd_procedure_t *procedure)
+{
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    if (blocks->sends) {
+        return ICDGEN_U32(procedure->memory.byte_count);
+    }
+    return blocks->total != 0u ? procedure->registers[blocks->total] : ICD_UNKNOWN;
+}
+
+/* Set the length of the block. No packet is there. */
+static inline void icdgen_set_length(icd_procedure_t *procedure, uint32_t length)
+{
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    procedure->registers[ICD_BLOCK_LENGTH] = length;
+    procedure->registers[ICD_BLOCK_IS_EMPTY] = 1;
+    procedure->count = icdgen_parts(length, blocks->packet_bytes);
+    procedure->missing = procedure->count;
+    (void)memset(procedure->memory.bitmap, 0, ICDGEN_SIZE(icdgen_parts(procedure->count, 8)));
+    if (!blocks->sends) {
+        (void)memset(procedure->memory.buffer, blocks->fill, ICDGEN_SIZE(procedure->count * blocks->packet_bytes));
+    }
+}
+
+/* Transfer the block, for the first time or again. */
+static inline void icdgen_begin_block(icd_procedure_t *procedure)
+{
+    procedure->has_round = false;
+    icdgen_set_length(procedure, procedure->requested);
+}
+
+/* Deliver the block. Return whether it was shorter than requested. */
+static inline bool icdgen_end_block(icd_procedure_t *procedure)
+{
+    const icd_procedure_memory_t *const memory = &procedure->memory;
+    const uint32_t offset = procedure->registers[ICD_BLOCK_OFFSET];
+    const uint32_t length = procedure->registers[ICD_BLOCK_LENGTH];
+    if (!procedure->form->blocks->sends && length != 0u && memory->on_block != NULL) {
+        memory->on_block(memory->context, offset, memory->buffer, ICDGEN_SIZE(length));
+    }
+    procedure->registers[ICD_BLOCK_OFFSET] = offset + length;
+    procedure->registers[ICD_BLOCK_LENGTH] = 0;
+    procedure->count = 0;
+    procedure->missing = 0;
+    procedure->has_block = false;
+    procedure->has_round = false;
+    return length < procedure->requested;
+}
+
+static inline void icdgen_next_block(icd_procedure_t *procedure, uint16_t to)
+{
+    const uint32_t total = icdgen_total(procedure);
+    const bool is_shorter = procedure->has_block && icdgen_end_block(procedure);
+    const uint32_t offset = procedure->registers[ICD_BLOCK_OFFSET];
+    const uint32_t left = total - offset;
+    if ((total == ICD_UNKNOWN && is_shorter) || (total != ICD_UNKNOWN && offset >= total)) {
+        icdgen_go_to(procedure, to);
+        return;
+    }
+    procedure->has_block = true;
+    procedure->requested = total != ICD_UNKNOWN && left < procedure->memory.block ? left : procedure->memory.block;
+    procedure->rounds = 0;
+    icdgen_begin_block(procedure);
+    icdgen_go_on(procedure);
+}
+
+static inline void icdgen_set_length_step(icd_procedure_t *procedure, uint32_t length)
+{
+    const uint32_t offset = procedure->registers[ICD_BLOCK_OFFSET], most = procedure->form->blocks->most;
+    if (length > procedure->requested || (icdgen_total(procedure) != ICD_UNKNOWN && length != procedure->requested)) {
+        icdgen_end(procedure, ICD_LENGTH);
+    } else if (offset > most || length > most - offset) {
+        icdgen_end(procedure, ICD_LIMIT);
     } else {
-        /* the frame is polled again */
+        icdgen_set_length(procedure, length);
+        icdgen_go_on(procedure);
+    }
+}
+
+/* Transfer the block again if the ICD says so, as often as it allows. */
+static inline void icdgen_again(icd_procedure_t *procedure, bool again, icd_result_t result)
+{
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    if (!again) {
+        icdgen_end(procedure, result);
+    } else if (procedure->rounds == blocks->rounds) {
+        icdgen_end(procedure, ICD_CHECKSUM);
+    } else {
+        procedure->rounds += procedure->has_round ? 0u : 1u;
+        icdgen_begin_block(procedure);
+        icdgen_go_to(procedure, blocks->begin);
+    }
+}
+
+static inline void icdgen_next_round(icd_procedure_t *procedure, uint16_t to)
+{
+    if (procedure->missing == 0u) {
+        icdgen_go_to(procedure, to);
+    } else if (procedure->rounds == procedure->form->blocks->rounds) {
+        icdgen_end(procedure, ICD_ROUNDS);
+    } else {
+        procedure->rounds++;
+        procedure->has_round = true;
+        procedure->cursor = 0;
+        icdgen_go_on(procedure);
+    }
+}
+
+static inline void icdgen_next_packet(icd_procedure_t *procedure, uint16_t to)
+{
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    uint32_t *const registers = procedure->registers;
+    uint32_t position = procedure->cursor;
+    while (position < procedure->count && icdgen_is_there(procedure, position)) {
+        position++;
+    }
+    if (position >= procedure->count) {
+        icdgen_go_to(procedure, to);
+        return;
+    }
+    procedure->cursor = position + 1u;
+    registers[ICD_PACKET_NUMBER] = blocks->first_packet + position;
+    registers[ICD_PACKET_OFFSET] = registers[ICD_BLOCK_OFFSET] + (position * blocks->packet_bytes);
+    icdgen_go_on(procedure);
+}
+
+static inline bool icdgen_is_receiving(const icd_procedure_t *procedure)
+{
+    return procedure->at < procedure->form->step_count && icdgen_step(procedure)->kind == ICDGEN_U8(ICD_STEP_RECEIVE);
+}
+
+/* Keep a packet if it is new. Before the first round, it may belong to the previous block. */
+static inline void icdgen_take_packet(
+    icd_procedure_t *procedure, const icd_receive_form_t *receive, const uint8_t *data, size_t length)
+{
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    const uint32_t position = icdgen_stream_number(&receive->number, 0, data, length) - blocks->first_packet;
+    if (!procedure->has_round || length < ICDGEN_SIZE(receive->data_at) + blocks->packet_bytes ||
+        position >= procedure->count || icdgen_is_there(procedure, position)) {
+        return;
+    }
+    (void)memcpy(
+        procedure->memory.buffer + ICDGEN_SIZE(position * blocks->packet_bytes), data + receive->data_at,
+        blocks->packet_bytes);
+    icdgen_mark(procedure, position, true);
+    procedure->last_packet = procedure->now;
+    if (procedure->waits && icdgen_is_receiving(procedure)) {
+        procedure->until = procedure->now + (procedure->missing != 0u ? receive->silence : 0u);
+    }
+}
+
+static inline void icdgen_receive_step(icd_procedure_t *procedure, const icd_receive_form_t *receive)
+{
+    if (icdgen_enter(procedure)) {
+        procedure->last_packet = procedure->now;
+        procedure->left = procedure->missing;
+    }
+    const uint32_t end = procedure->last_packet + receive->silence;
+    if (procedure->link->stream == NULL && icdgen_on_bus(receive->requested_on, procedure->bus)) {
+        if (procedure->left != 0u) {
+            icdgen_ask(procedure, ICD_TELEMETRY, receive->id, true);
+        } else {
+            icdgen_go_on(procedure);
+        }
+    } else if (procedure->missing == 0u || icdgen_reached(procedure->now, end)) {
+        icdgen_go_on(procedure);
+    } else {
+        procedure->waits = true;
+        procedure->until = end;
+    }
+}
+
+/* Go on after the last of several requests. */
+static inline void icdgen_count_request(icd_procedure_t *procedure)
+{
+    procedure->left--;
+    if (procedure->left == 0u) {
+        icdgen_go_on(procedure);
+    }
+}
+
+/* ---- map of the received packets --------------------------------------------------------------------------------- */
+
+static inline uint32_t icdgen_map_bits(const icd_procedure_t *procedure)
+{
+    return 8u * ICDGEN_U32(procedure->form->blocks->map->bytes);
+}
+
+/* Return the index of the message of the map. */
+static inline uint32_t icdgen_map_index(const icd_procedure_t *procedure)
+{
+    return icdgen_parts(procedure->count, icdgen_map_bits(procedure)) - procedure->left;
+}
+
+static inline uint8_t icdgen_map_bit(const icd_map_form_t *map, uint32_t bit)
+{
+    return ICDGEN_U8(1u << (map->msb0 ? 7u - (bit % 8u) : bit % 8u));
+}
+
+/* Send or request the next message of the map. */
+static inline void icdgen_map_step(icd_procedure_t *procedure, bool sends)
+{
+    const icd_map_form_t *const map = procedure->form->blocks->map;
+    const uint32_t bits = icdgen_map_bits(procedure);
+    if (icdgen_enter(procedure)) {
+        procedure->left = icdgen_parts(procedure->count, bits);
+    }
+    const uint32_t index = icdgen_map_index(procedure);
+    if (procedure->left == 0u) {
+        icdgen_go_on(procedure);
+    } else if (sends) {
+        uint8_t *const data = icdgen_ask_with(procedure, map->messages[index].telecommand, map->length, true);
+        for (uint32_t bit = 0; bit < bits; ++bit) {
+            const uint32_t position = (index * bits) + bit;
+            uint8_t *const byte = &data[map->at + (bit / 8u)];
+            const bool one =
+                position < procedure->count ? icdgen_is_there(procedure, position) == map->received : map->beyond_end;
+            *byte = ICDGEN_U8(*byte | (one ? icdgen_map_bit(map, bit) : 0u));
+        }
+    } else {
+        icdgen_ask(procedure, ICD_TELEMETRY, map->messages[index].telemetry, true);
+    }
+}
+
+/* Note which packets the node has. */
+static inline void icdgen_mapped(icd_procedure_t *procedure)
+{
+    const icd_map_form_t *const map = procedure->form->blocks->map;
+    const uint32_t bits = icdgen_map_bits(procedure), first = icdgen_map_index(procedure) * bits;
+    for (uint32_t bit = 0; bit < bits && first + bit < procedure->count; ++bit) {
+        const uint32_t at = ICDGEN_U32(map->at) + (bit / 8u);
+        const uint32_t byte = at < procedure->frame_length ? procedure->frame[at] : 0u;
+        icdgen_mark(procedure, first + bit, ((byte & ICDGEN_U32(icdgen_map_bit(map, bit))) != 0u) == map->received);
+    }
+}
+
+/* ---- tests and entries ------------------------------------------------------------------------------------------- */
+
+static inline bool icdgen_is_checksum(const icd_procedure_t *procedure, const icd_checksum_test_t *test)
+{
+    const icd_blocks_form_t *const blocks = procedure->form->blocks;
+    const icd_procedure_memory_t *const memory = &procedure->memory;
+    const uint32_t length = test->of_block ? procedure->registers[ICD_BLOCK_LENGTH] : ICDGEN_U32(memory->byte_count);
+    const uint32_t all = test->of_block && test->covers_fill ? procedure->count * blocks->packet_bytes : length;
+    const bool is_received = test->of_block && !blocks->sends;
+    const uint8_t *const sent = memory->bytes;
+    icd_crc_t crc;
+    icd_crc_init(&crc, test->crc != NULL ? test->crc : procedure->link->crc16);
+    if (is_received) {
+        icd_crc_feed(&crc, memory->buffer, ICDGEN_SIZE(all));
+    } else if (length != 0u) {
+        icd_crc_feed(&crc, sent + (test->of_block ? procedure->registers[ICD_BLOCK_OFFSET] : 0u), ICDGEN_SIZE(length));
+    } else {
+        /* there are no bytes */
+    }
+    for (uint32_t i = length; !is_received && i < all; ++i) {
+        icd_crc_feed(&crc, &blocks->fill, 1);
+    }
+    return icd_crc_result(&crc) == icdgen_value(procedure, &test->value);
+}
+
+/* The telemetry is the next entry. If it is equal to the last one, the node did not advance. */
+static inline void icdgen_collect(icd_procedure_t *procedure)
+{
+    const icd_procedure_memory_t *const memory = &procedure->memory;
+    if (procedure->entries != 0u && procedure->frame_length == procedure->entry_length &&
+        memcmp(procedure->frame, procedure->entry, procedure->frame_length) == 0) {
+        procedure->repetitions++;
+        if (procedure->repetitions > procedure->link->client.retries) {
+            icdgen_end(procedure, ICD_TIMED_OUT);
+            return;
+        }
+    } else if (procedure->entries == procedure->form->most_entries) {
+        icdgen_end(procedure, ICD_LIMIT);
+        return;
+    } else {
+        procedure->entries++;
+        procedure->repetitions = 0;
+        procedure->entry_length = procedure->frame_length;
+        (void)memcpy(procedure->entry, procedure->frame, procedure->frame_length);
+        if (memory->on_entry != NULL) {
+            memory->on_entry(memory->context, procedure->entry, procedure->entry_length);
+        }
+    }
+    icdgen_go_on(procedure);
+}
+
+static inline void icdgen_end_if_zeros(icd_procedure_t *procedure)
+{
+    uint8_t any = 0;
+    for (size_t i = 0; i < procedure->frame_length; ++i) {
+        any = ICDGEN_U8(any | procedure->frame[i]);
+    }
+    if (any == 0u) {
+        icdgen_end(procedure, ICD_DONE);
+    } else {
+        icdgen_go_on(procedure);
+    }
+}
+
+/* ---- the engine -------------------------------------------------------------------------------------------------- */
+
+static inline void icdgen_run_step(icd_procedure_t *procedure)
+{
+    const icd_procedure_form_t *const form = procedure->form;
+    const icd_step_form_t *const step = icdgen_step(procedure);
+    switch (step->kind) {
+    case ICD_STEP_SEND:
+        icdgen_send_step(procedure, &form->sends[step->index]);
+        break;
+    case ICD_STEP_POLL:
+        icdgen_poll_step(procedure, &form->polls[step->index]);
+        break;
+    case ICD_STEP_NEXT_BLOCK:
+        icdgen_next_block(procedure, step->to);
+        break;
+    case ICD_STEP_SET_LENGTH:
+        icdgen_set_length_step(procedure, icdgen_value(procedure, &form->tests[step->index].value));
+        break;
+    case ICD_STEP_NEXT_ROUND:
+        icdgen_next_round(procedure, step->to);
+        break;
+    case ICD_STEP_NEXT_PACKET:
+        icdgen_next_packet(procedure, step->to);
+        break;
+    case ICD_STEP_PACKET_DONE:
+        icdgen_mark(procedure, procedure->cursor - 1u, true);
+        icdgen_go_on(procedure);
+        break;
+    case ICD_STEP_SEND_MAP:
+        icdgen_map_step(procedure, true);
+        break;
+    case ICD_STEP_GET_MAP:
+        icdgen_map_step(procedure, false);
+        break;
+    case ICD_STEP_RECEIVE:
+        icdgen_receive_step(procedure, &form->receives[step->index]);
+        break;
+    case ICD_STEP_VERIFY_CRC:
+        if (icdgen_is_checksum(procedure, &form->checksums[step->index])) {
+            icdgen_go_on(procedure);
+        } else {
+            icdgen_again(procedure, step->again, ICD_CHECKSUM);
+        }
+        break;
+    case ICD_STEP_VERIFY:
+        if (icdgen_holds(procedure, &form->tests[step->index])) {
+            icdgen_go_on(procedure);
+        } else {
+            icdgen_again(procedure, step->again, ICD_FAILED);
+        }
+        break;
+    case ICD_STEP_COLLECT:
+        icdgen_collect(procedure);
+        break;
+    case ICD_STEP_END_IF_ZEROS:
+        icdgen_end_if_zeros(procedure);
+        break;
+    case ICD_STEP_SKIP_UNLESS:
+        if (icdgen_holds(procedure, &form->tests[step->index])) {
+            icdgen_go_on(procedure);
+        } else {
+            icdgen_go_to(procedure, step->to);
+        }
+        break;
+    case ICD_STEP_JUMP:
+    default:
+        icdgen_go_to(procedure, step->to);
+        break;
     }
 }
 
 ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd_request_t *request)
 {
     procedure->now = now;
-    if (!procedure->started) {
-        procedure->started = true;
-        icdgen_resume(procedure, NULL);
+    if (!procedure->is_started) {
+        procedure->is_started = true;
+        procedure->begin = now;
     }
-    while (procedure->want == ICDGEN_WANT_TIME && icdgen_reached(now, procedure->until)) {
-        icdgen_resume(procedure, NULL);
+    if (procedure->result == ICD_RUNNING && now - procedure->begin > procedure->form->time) {
+        icdgen_end(procedure, ICD_LIMIT);
     }
-    if (procedure->want != ICDGEN_WANT_REQUEST || procedure->asked) {
+    if (procedure->waits && icdgen_reached(now, procedure->until)) {
+        procedure->waits = false;
+    }
+    while (procedure->result == ICD_RUNNING && !procedure->has_request && !procedure->waits) {
+        if (procedure->at == procedure->form->step_count) {
+            icdgen_end(procedure, ICD_DONE);
+        } else {
+            icdgen_run_step(procedure);
+        }
+    }
+    if (!procedure->has_request || procedure->is_requested) {
         return false;
     }
-    procedure->asked = true;
+    if (procedure->requests == procedure->form->requests) {
+        icdgen_end(procedure, ICD_LIMIT);
+        return false;
+    }
+    procedure->requests++;
+    procedure->is_requested = true;
     *request = procedure->request;
     return true;
+}
+
+/* Keep telemetry. No message of a procedure is longer than the buffer. */
+static inline void icdgen_keep_frame(icd_procedure_t *procedure, const uint8_t *data, size_t length)
+{
+    procedure->frame_length = length < ICD_STEP_BYTES ? length : ICD_STEP_BYTES;
+    if (procedure->frame_length != 0u) {
+        (void)memcpy(procedure->frame, data, procedure->frame_length);
+    }
+}
+
+/* Process the outcome of the request. */
+static inline void icdgen_outcome(icd_procedure_t *procedure, icd_result_t outcome, const uint8_t *data, size_t length)
+{
+    const icd_procedure_form_t *const form = procedure->form;
+    const icd_step_form_t *const step = icdgen_step(procedure);
+    const uint8_t kind = step->kind;
+    if (!procedure->is_requested) {
+        return;
+    }
+    procedure->has_request = false;
+    procedure->is_requested = false;
+    if (kind == ICDGEN_U8(ICD_STEP_RECEIVE)) {
+        if (outcome == ICD_DONE) {
+            icdgen_take_packet(procedure, &form->receives[step->index], data, length);
+        }
+        icdgen_count_request(procedure);
+        return;
+    }
+    if (outcome != ICD_DONE &&
+        !(outcome == ICD_TIMED_OUT && kind == ICDGEN_U8(ICD_STEP_SEND) && form->sends[step->index].ignores_timeout)) {
+        icdgen_end(procedure, outcome);
+        return;
+    }
+    if (procedure->request.direction == ICD_TELEMETRY && !procedure->has_reply) {
+        icdgen_keep_frame(procedure, data, length);
+    }
+    if (kind == ICDGEN_U8(ICD_STEP_POLL)) {
+        icdgen_polled(procedure, &form->polls[step->index]);
+    } else if (kind == ICDGEN_U8(ICD_STEP_SEND)) {
+        icdgen_go_on(procedure);
+    } else {
+        if (kind == ICDGEN_U8(ICD_STEP_GET_MAP)) {
+            icdgen_mapped(procedure);
+        }
+        icdgen_count_request(procedure);
+    }
 }
 
 /*
  * A negative acknowledge with a code that the ICD does not have is treated as damaged: a request that may be repeated
  * is sent again, any other is treated as if no acknowledge was received.
  */
-static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t *event)
+static inline void icdgen_damaged(icd_procedure_t *procedure)
 {
-    icd_event_t timeout = *event;
-    timeout.kind = ICD_EVENT_TIMEOUT;
     if (procedure->request.repeat && procedure->damaged < procedure->link->client.retries) {
         procedure->damaged++;
+        procedure->is_requested = false;
     } else {
-        procedure->damaged = 0;
-        icdgen_resume(procedure, &timeout);
+        icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
+    }
+}
+
+static inline void icdgen_arrived(icd_procedure_t *procedure, uint32_t id, const uint8_t *data, size_t length)
+{
+    for (size_t i = 0; i < procedure->form->receive_count; ++i) {
+        if (procedure->form->receives[i].id == id) {
+            icdgen_take_packet(procedure, &procedure->form->receives[i], data, length);
+        }
     }
 }
 
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
 {
     procedure->now = now;
-    if (event->kind == ICD_EVENT_PACKET) {
-        if (procedure->packet != NULL) {
-            procedure->packet(procedure, event->number, event->data, event->length);
-        }
-    } else if (
-        procedure->asked &&
-        (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT)) {
-        procedure->asked = false;
-        if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
-            icdgen_damaged(procedure, event);
-        } else {
-            procedure->damaged = 0;
-            icdgen_resume(procedure, event);
-        }
+    if (procedure->result != ICD_RUNNING) {
+        return;
+    }
+    if (event->kind == ICD_EVENT_ARRIVED) {
+        icdgen_arrived(procedure, event->id, event->data, event->length);
+    } else if (!procedure->is_requested) {
+        /* of a request of the application */
+    } else if (event->kind == ICD_EVENT_DONE) {
+        icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
+    } else if (event->kind == ICD_EVENT_TIMEOUT) {
+        icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
+    } else if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
+        icdgen_damaged(procedure);
+    } else if (event->kind == ICD_EVENT_REFUSED) {
+        icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
+    } else {
+        /* not related to this procedure */
+    }
+}
+
+ICDGEN_API void icd_procedure_stream_event(icd_procedure_t *procedure, uint32_t now, const icd_stream_event_t *event)
+{
+    const bool is_mine = procedure->is_requested && event->direction == procedure->request.direction &&
+        event->id == procedure->request.id;
+    procedure->now = now;
+    if (procedure->result != ICD_RUNNING) {
+        return;
+    }
+    if (event->kind == ICD_STREAM_MESSAGE) {
+        icdgen_arrived(procedure, event->id, event->data, event->length);
+    } else if (!is_mine) {
+        /* of a request of the application */
+    } else if (event->kind == ICD_STREAM_REPLY) {
+        icdgen_keep_frame(procedure, event->data, event->length);
+        procedure->has_reply = true;
+    } else if (event->kind == ICD_STREAM_DONE || event->kind == ICD_STREAM_SENT) {
+        icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
+    } else if (event->kind == ICD_STREAM_TIMEOUT) {
+        icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
+    } else if (event->kind == ICD_STREAM_REFUSED) {
+        icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
+    } else if (event->kind == ICD_STREAM_BUSY) {
+        icdgen_outcome(procedure, ICD_BUSY, NULL, 0);
     } else {
         /* not related to this procedure */
     }
@@ -4038,7 +4474,13 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
 ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline)
 {
     *deadline = procedure->until;
-    return procedure->want == ICDGEN_WANT_TIME;
+    return procedure->waits;
+}
+
+ICDGEN_API uint32_t icd_procedure_progress(const icd_procedure_t *procedure, uint32_t *total)
+{
+    *total = procedure->form->blocks != NULL ? icdgen_total(procedure) : ICD_UNKNOWN;
+    return procedure->registers[ICD_BLOCK_OFFSET];
 }
 
 ICDGEN_API icd_status_t icd_procedure_step(
@@ -4052,782 +4494,74 @@ ICDGEN_API icd_status_t icd_procedure_step(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-static inline icd_status_t icdgen_procedure_init(
+ICDGEN_API icd_status_t icd_procedure_stream_step(icd_procedure_t *procedure, icd_stream_client_t *client, uint32_t now)
+{
+    icd_stream_request_t request;
+    icd_request_t next;
+    if (client->started == client->slot_count || !icd_procedure_next(procedure, now, &next)) {
+        return ICD_OK;
+    }
+    (void)memset(&request, 0, sizeof request);
+    request.direction = next.direction;
+    request.id = next.id;
+    request.repeat = next.repeat;
+    request.data = next.data;
+    request.length = next.length;
+    return icd_stream_client_start(client, now, &request);
+}
+
+/* ---- inputs ------------------------------------------------------------------------------------------------------ */
+
+static inline bool icdgen_is_input(const icd_input_form_t *input, uint32_t number)
+{
+    bool is_value = input->values == NULL && number <= input->most;
+    for (size_t i = 0; i < input->value_count; ++i) {
+        is_value = is_value || number == input->values[i];
+    }
+    return is_value || (input->is_optional && number == ICD_UNKNOWN);
+}
+
+/* Return whether the memory is large enough for the blocks. */
+static inline bool icdgen_has_memory(const icd_blocks_form_t *blocks, const icd_procedure_memory_t *memory)
+{
+    const uint32_t packets = icdgen_parts(memory->block, blocks->packet_bytes);
+    return memory->bitmap_size >= icdgen_parts(packets, 8) &&
+        (blocks->sends || memory->buffer_size >= ICDGEN_SIZE(packets) * blocks->packet_bytes);
+}
+
+ICDGEN_API icd_status_t icd_procedure_init(
     icd_procedure_t *procedure,
     const icd_link_t *link,
-    bool supported,
-    void (*resume)(icd_procedure_t *procedure, const icd_event_t *outcome))
+    const icd_procedure_form_t *form,
+    icd_bus_t bus,
+    const uint32_t *inputs,
+    const icd_procedure_memory_t *memory)
 {
     (void)memset(procedure, 0, sizeof *procedure);
+    if (form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
     procedure->link = link;
-    procedure->resume = resume;
-    procedure->result = ICD_RUNNING;
-    return supported ? ICD_OK : ICD_ERROR_UNSUPPORTED;
-}
-
-enum { ICDGEN_LIST_START, ICDGEN_LIST_RESET, ICDGEN_LIST_FRAME, ICDGEN_LIST_ADVANCED };
-
-static inline void icdgen_list_poll(icd_procedure_t *procedure)
-{
-    const icd_list_form_t *const form = procedure->link->list;
-    icdgen_poll(
-        procedure, &form->information, ICD_ROLE_BUSY, false, form->poll_interval, form->timeout, ICDGEN_LIST_FRAME);
-}
-
-static inline void icdgen_list_tell(const icd_list_t *list, const uint8_t *frame)
-{
-    const icd_link_t *const link = list->procedure.link;
-    const icd_step_t *const step = &link->list->information;
-    icd_file_t file;
-    file.type = icdgen_get(link, step, frame, ICD_ROLE_TYPE);
-    file.counter = icdgen_get(link, step, frame, ICD_ROLE_COUNTER);
-    file.size = icdgen_get(link, step, frame, ICD_ROLE_SIZE);
-    file.time = icdgen_get(link, step, frame, ICD_ROLE_TIME);
-    file.checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
-    list->on_file(list->context, &file);
-}
-
-static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, size_t length)
-{
-    icd_procedure_t *const procedure = &list->procedure;
-    uint8_t any = 0;
-    for (size_t i = 0; i < length; ++i) {
-        any = ICDGEN_U8(any | frame[i]);
-    }
-    if (any == 0u) {
-        icdgen_end(procedure, ICD_DONE);
-        return;
-    }
-    if (!list->has_last || memcmp(list->last, frame, length) != 0) {
-        if (list->count == procedure->link->list->max_entries) {
-            icdgen_end(procedure, ICD_LIMIT);
-            return;
+    procedure->form = form;
+    procedure->bus = bus;
+    procedure->memory = *memory;
+    for (size_t i = 0; i < form->input_count; ++i) {
+        if (!icdgen_is_input(&form->inputs[i], inputs[i])) {
+            return ICD_ERROR_RANGE;
         }
-        icdgen_list_tell(list, frame);
-        list->count++;
-        list->again = 0;
-    } else if (list->again > procedure->link->client.retries) {
-        icdgen_end(procedure, ICD_TIMED_OUT);
-        return;
-    } else {
-        /* the node may not have advanced yet */
+        procedure->registers[ICDGEN_SIZE(ICD_FIRST_INPUT) + i] = inputs[i];
     }
-    (void)memcpy(list->last, frame, length);
-    list->has_last = true;
-    list->again++;
-    /* Sent only once: the next frame shows whether it arrived, even if the acknowledge is lost. */
-    icdgen_command(procedure, &procedure->link->list->advance, false, ICDGEN_LIST_ADVANCED);
-    procedure->tolerant = true;
-}
-
-static inline void icdgen_list_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_list_t *const list = ICDGEN_CAST(icd_list_t *, ICDGEN_CAST(void *, procedure));
-    switch (procedure->state) {
-    case ICDGEN_LIST_START:
-        icdgen_command(procedure, &procedure->link->list->reset, true, ICDGEN_LIST_RESET);
-        break;
-    case ICDGEN_LIST_FRAME:
-        icdgen_list_frame(list, outcome->data, outcome->length);
-        break;
-    case ICDGEN_LIST_ADVANCED:
-        if (outcome->kind == ICD_EVENT_REFUSED) {
-            icdgen_end(procedure, ICD_REFUSED);
-            break;
-        }
-        icdgen_list_poll(procedure);
-        break;
-    case ICDGEN_LIST_RESET:
-    default:
-        icdgen_list_poll(procedure);
-        break;
-    }
-}
-
-ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context)
-{
-    (void)memset(list, 0, sizeof *list);
-    list->on_file = on_file;
-    list->context = context;
-    return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);
-}
-
-/* Return the number of packets of a block; a block has at most the bytes of the ICD. */
-static inline uint32_t icdgen_block_packets(const icd_link_t *link, uint32_t block)
-{
-    const icd_files_form_t *const files = link->files;
-    if (files == NULL) {
-        return 0u;
-    }
-    return ((block < files->block_bytes ? block : files->block_bytes) + files->packet_bytes - 1u) / files->packet_bytes;
-}
-
-ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block)
-{
-    return ICDGEN_SIZE(icdgen_block_packets(link, block) * (link->files != NULL ? link->files->packet_bytes : 0u));
-}
-
-ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block)
-{
-    return ICDGEN_SIZE((icdgen_block_packets(link, block) + 7u) / 8u);
-}
-
-enum {
-    ICDGEN_DOWNLOAD_START,
-    ICDGEN_DOWNLOAD_LOADED,
-    ICDGEN_DOWNLOAD_READY,
-    ICDGEN_DOWNLOAD_MAPPED,
-    ICDGEN_DOWNLOAD_BURST,
-    ICDGEN_DOWNLOAD_SILENCE,
-    ICDGEN_DOWNLOAD_FETCHED
-};
-
-static inline bool icdgen_bit(const uint8_t *bits, uint32_t position)
-{
-    return ((ICDGEN_U32(bits[position / 8u]) >> (position % 8u)) & 1u) != 0u;
-}
-
-static inline void icdgen_set_bit(uint8_t *bits, uint32_t position, bool one)
-{
-    const uint32_t bit = UINT32_C(1) << (position % 8u);
-    bits[position / 8u] = ICDGEN_U8(one ? bits[position / 8u] | bit : bits[position / 8u] & ~bit);
-}
-
-static inline icd_download_t *icdgen_download(icd_procedure_t *procedure)
-{
-    return ICDGEN_CAST(icd_download_t *, ICDGEN_CAST(void *, procedure));
-}
-
-static inline void icdgen_download_packet(
-    icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length)
-{
-    icd_download_t *const download = icdgen_download(procedure);
-    const icd_files_form_t *const files = procedure->link->files;
-    const uint32_t position = number - files->first_packet;
-    if (position >= download->count || length != files->packet_bytes || icdgen_bit(download->got, position)) {
-        return;
-    }
-    icdgen_set_bit(download->got, position, true);
-    (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
-    download->there++;
-    download->last = procedure->now;
-    if (download->there == download->count && procedure->want == ICDGEN_WANT_TIME) {
-        procedure->until = procedure->now;
-    }
-}
-
-/* Return the number of bytes to request next; 0 at the end of the file. */
-static inline uint32_t icdgen_download_wanted(const icd_download_t *download)
-{
-    const uint32_t left = download->size - download->offset;
-    return download->size == ICD_SIZE_UNKNOWN || left > download->block ? download->block : left;
-}
-
-static inline void icdgen_download_load(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->download->load;
-    if (icdgen_download_wanted(download) == 0u) {
-        icdgen_end(procedure, ICD_DONE);
-        return;
-    }
-    download->count = 0;
-    download->there = 0;
-    icdgen_command(procedure, step, true, ICDGEN_DOWNLOAD_LOADED);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_TYPE, download->type);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_COUNTER, download->counter);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_OFFSET, download->offset);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, icdgen_download_wanted(download));
-}
-
-static inline void icdgen_download_burst(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->download->burst;
-    download->left = download->count - download->there;
-    download->last = procedure->now;
-    /* Sent only once: the received packets show whether the node got it, even if the acknowledge is lost. */
-    icdgen_command(procedure, step, false, ICDGEN_DOWNLOAD_BURST);
-    procedure->tolerant = true;
-    icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, link->download->message_length);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_IGNORE_HOLE_MAP, download->there == 0u ? 1u : 0u);
-}
-
-/* Send the next piece of the hole map. After the last piece, request the packets. */
-static inline void icdgen_download_map(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_hole_map_form_t *const form = procedure->link->hole_map;
-    const uint32_t first = download->left * form->message_bytes * 8u;
-    const icd_hole_map_message_t *const message = &form->messages[download->left];
-    icd_step_t step;
-    if (first >= download->count || download->left >= form->message_count) {
-        icdgen_download_burst(download);
-        return;
-    }
-    (void)memset(&step, 0, sizeof step);
-    step.telecommand = message->telecommand;
-    step.length = message->length;
-    icdgen_command(procedure, &step, true, ICDGEN_DOWNLOAD_MAPPED);
-    for (uint32_t i = 0; i < form->message_bytes * 8u; ++i) {
-        const uint32_t position = first + i;
-        const bool one =
-            position >= download->count ? form->beyond_end : icdgen_bit(download->got, position) == form->received;
-        icdgen_hole_put(form, procedure->data + message->at, i, one);
-    }
-    download->left++;
-}
-
-/* Deliver the complete block and request the next one. */
-static inline void icdgen_download_block(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const size_t covered =
-        link->download->checksum_covers_fill ? icd_block_buffer(link, download->length) : ICDGEN_SIZE(download->length);
-    const uint32_t wanted = icdgen_download_wanted(download);
-    if (icd_crc(link->crc16, download->buffer, covered) != download->checksum) {
-        if (download->rounds == link->download->rounds) {
-            icdgen_end(procedure, ICD_CHECKSUM);
-            return;
-        }
-        download->rounds += download->length == 0u ? 1u : 0u;
-        icdgen_download_load(download);
-        return;
-    }
-    if (download->length != 0u) {
-        download->on_block(download->context, download->offset, download->buffer, ICDGEN_SIZE(download->length));
-        download->offset += download->length;
-    }
-    if (download->size == ICD_SIZE_UNKNOWN && download->length < wanted) {
-        icdgen_end(procedure, ICD_DONE);
-        return;
-    }
-    download->rounds = 0;
-    icdgen_download_load(download);
-}
-
-/* Start another round if packets are missing. */
-static inline void icdgen_download_round(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    if (download->there == download->count) {
-        icdgen_download_block(download);
-        return;
-    }
-    if (download->rounds == procedure->link->download->rounds) {
-        icdgen_end(procedure, ICD_ROUNDS);
-        return;
-    }
-    download->rounds++;
-    download->left = 0;
-    if (download->there != 0u) {
-        icdgen_download_map(download);
-    } else {
-        icdgen_download_burst(download);
-    }
-}
-
-static inline void icdgen_download_ready(icd_download_t *download, const uint8_t *frame)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->download->ready;
-    const uint32_t wanted = icdgen_download_wanted(download);
-    if (icdgen_get(link, step, frame, ICD_ROLE_ERROR) != 0u) {
-        icdgen_end(procedure, ICD_PARAMETER);
-        return;
-    }
-    download->length = icdgen_get(link, step, frame, ICD_ROLE_LENGTH);
-    download->checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
-    if (download->length > wanted || (download->size != ICD_SIZE_UNKNOWN && download->length != wanted)) {
-        icdgen_end(procedure, ICD_LENGTH);
-        return;
-    }
-    if (download->length > link->download->max_bytes - download->offset) {
-        icdgen_end(procedure, ICD_LIMIT);
-        return;
-    }
-    download->count = (download->length + link->files->packet_bytes - 1u) / link->files->packet_bytes;
-    (void)memset(download->got, 0, icd_block_bitmap(link, download->length));
-    icdgen_download_round(download);
-}
-
-/* I2C, CAN: request the next packet, or end the round. */
-static inline void icdgen_download_fetch(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    if (download->left == 0u) {
-        icdgen_download_round(download);
-        return;
-    }
-    download->left--;
-    icdgen_ask(procedure, procedure->link->files->packet_ids[download->bus], ICDGEN_DOWNLOAD_FETCHED);
-    procedure->tolerant = true;
-}
-
-/* UART: wait until all packets are received or no packet arrives for the silence time. */
-static inline void icdgen_download_silence(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const uint32_t end = download->last + procedure->link->download->silence;
-    if (download->there == download->count || icdgen_reached(procedure->now, end)) {
-        icdgen_download_round(download);
-        return;
-    }
-    procedure->state = ICDGEN_DOWNLOAD_SILENCE;
-    icdgen_wait(procedure, end);
-}
-
-static inline void icdgen_download_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_download_t *const download = icdgen_download(procedure);
-    const icd_link_t *const link = procedure->link;
-    const icd_download_form_t *const form = link->download;
-    const size_t head = link->files->counter_bytes;
-    switch (procedure->state) {
-    case ICDGEN_DOWNLOAD_LOADED:
-        icdgen_poll(
-            procedure, &form->ready, ICD_ROLE_READY, true, form->poll_interval, form->ready_timeout,
-            ICDGEN_DOWNLOAD_READY);
-        break;
-    case ICDGEN_DOWNLOAD_READY:
-        icdgen_download_ready(download, outcome->data);
-        break;
-    case ICDGEN_DOWNLOAD_MAPPED:
-        icdgen_download_map(download);
-        break;
-    case ICDGEN_DOWNLOAD_BURST:
-        if (outcome->kind == ICD_EVENT_REFUSED) {
-            icdgen_end(procedure, ICD_REFUSED);
-        } else if (download->bus != ICD_BUS_UART) {
-            icdgen_download_fetch(download);
-        } else {
-            download->last = procedure->now;
-            icdgen_download_silence(download);
-        }
-        break;
-    case ICDGEN_DOWNLOAD_SILENCE:
-        icdgen_download_silence(download);
-        break;
-    case ICDGEN_DOWNLOAD_FETCHED:
-        if (outcome->kind == ICD_EVENT_DONE && outcome->length >= head) {
-            icdgen_download_packet(
-                procedure, icdgen_number(link, outcome->data, head), outcome->data + head, outcome->length - head);
-        }
-        icdgen_download_fetch(download);
-        break;
-    case ICDGEN_DOWNLOAD_START:
-    default:
-        icdgen_download_load(download);
-        break;
-    }
-}
-
-ICDGEN_API icd_status_t icd_download_init(
-    icd_download_t *download,
-    const icd_link_t *link,
-    icd_bus_t bus,
-    uint8_t type,
-    uint8_t counter,
-    uint32_t size,
-    uint32_t block,
-    uint8_t *buffer,
-    size_t buffer_size,
-    uint8_t *bitmap,
-    size_t bitmap_size,
-    icd_block_fn *on_block,
-    void *context)
-{
-    const bool known = link->download != NULL && link->files != NULL && link->crc16 != NULL && link->hole_map != NULL &&
-        (bus == ICD_BUS_UART || link->files->packet_ids[bus] >= 0);
-    (void)memset(download, 0, sizeof *download);
-    if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (size != ICD_SIZE_UNKNOWN && size > link->download->max_bytes) {
-        return ICD_ERROR_RANGE;
-    }
-    block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
-    if (buffer_size < icdgen_block_packets(link, block) * link->files->packet_bytes ||
-        bitmap_size < icd_block_bitmap(link, block)) {
+    if (memory->byte_count > form->most_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    download->procedure.packet = icdgen_download_packet;
-    download->bus = bus;
-    download->type = type;
-    download->counter = counter;
-    download->size = size;
-    download->block = block;
-    download->buffer = buffer;
-    download->got = bitmap;
-    download->on_block = on_block;
-    download->context = context;
+    if (form->blocks != NULL) {
+        const uint32_t size = form->blocks->size;
+        procedure->memory.block = memory->block != 0u && memory->block < size ? memory->block : size;
+        if (!icdgen_has_memory(form->blocks, &procedure->memory)) {
+            return ICD_ERROR_LENGTH;
+        }
+    }
     return ICD_OK;
-}
-
-enum {
-    ICDGEN_UPLOAD_START,
-    ICDGEN_UPLOAD_INITIATED,
-    ICDGEN_UPLOAD_READY,
-    ICDGEN_UPLOAD_BEGUN,
-    ICDGEN_UPLOAD_PACKET,
-    ICDGEN_UPLOAD_MAP,
-    ICDGEN_UPLOAD_CHECKSUM,
-    ICDGEN_UPLOAD_FINALIZE,
-    ICDGEN_UPLOAD_FINALIZED
-};
-
-/* Return the number of bytes of the current block. */
-static inline uint32_t icdgen_upload_length(const icd_upload_t *upload)
-{
-    const uint32_t left = upload->size - upload->sent;
-    return left < upload->block ? left : upload->block;
-}
-
-/* Start the block, for the first time or again. */
-static inline void icdgen_upload_begin(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const uint32_t packet_bytes = procedure->link->files->packet_bytes;
-    upload->count = (icdgen_upload_length(upload) + packet_bytes - 1u) / packet_bytes;
-    (void)memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
-    icdgen_command(procedure, &procedure->link->upload->begin, true, ICDGEN_UPLOAD_BEGUN);
-}
-
-static inline void icdgen_upload_block(icd_upload_t *upload)
-{
-    upload->rounds = 0;
-    if (upload->sent == upload->size) {
-        icdgen_end(&upload->procedure, ICD_DONE);
-    } else {
-        icdgen_upload_begin(upload);
-    }
-}
-
-/* Write the packet at this position, padded to full length. */
-static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t position, uint8_t *packet)
-{
-    const icd_files_form_t *const files = upload->procedure.link->files;
-    const uint32_t at = position * files->packet_bytes;
-    const uint32_t left = icdgen_upload_length(upload) - at;
-    (void)memset(packet, files->fill, files->packet_bytes);
-    (void)memcpy(
-        packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
-}
-
-/* Send the next missing packet. Return false if none is left in this round. */
-static inline bool icdgen_upload_send(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->upload->packet;
-    const icd_place_t *const bytes = icdgen_place(step, ICD_ROLE_BYTES);
-    while (upload->next < upload->count && !icdgen_bit(upload->missing, upload->next)) {
-        upload->next++;
-    }
-    if (upload->next == upload->count) {
-        return false;
-    }
-    icdgen_command(procedure, step, false, ICDGEN_UPLOAD_PACKET);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_NUMBER, link->files->first_packet + upload->next);
-    icdgen_upload_packet(upload, upload->next, procedure->data + (bytes->at / 8u));
-    upload->next++;
-    return true;
-}
-
-/* Start another round, or request the checksum if no packet is missing. */
-static inline void icdgen_upload_round(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    bool any = false;
-    for (uint32_t i = 0; i < upload->count; ++i) {
-        any = any || icdgen_bit(upload->missing, i);
-    }
-    if (!any) {
-        icdgen_ask(procedure, procedure->link->upload->checksum.telemetry, ICDGEN_UPLOAD_CHECKSUM);
-        return;
-    }
-    if (upload->rounds == procedure->link->upload->rounds) {
-        icdgen_end(procedure, ICD_ROUNDS);
-        return;
-    }
-    upload->rounds++;
-    upload->next = 0;
-    (void)icdgen_upload_send(upload);
-}
-
-/* Request the next piece of the hole map. Evaluate it after the last piece. */
-static inline void icdgen_upload_map(icd_upload_t *upload)
-{
-    const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
-    if (upload->next >= form->message_count || upload->next * form->message_bytes * 8u >= upload->count) {
-        icdgen_upload_round(upload);
-    } else {
-        icdgen_ask(&upload->procedure, form->messages[upload->next].telemetry, ICDGEN_UPLOAD_MAP);
-    }
-}
-
-/* Send the next missing packet, or request the hole map. */
-static inline void icdgen_upload_next(icd_upload_t *upload)
-{
-    if (!icdgen_upload_send(upload)) {
-        upload->next = 0;
-        icdgen_upload_map(upload);
-    }
-}
-
-static inline void icdgen_upload_mapped(icd_upload_t *upload, const uint8_t *frame, size_t length)
-{
-    const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
-    const icd_hole_map_message_t *const message = &form->messages[upload->next];
-    const uint32_t first = upload->next * form->message_bytes * 8u;
-    if (length != message->length) {
-        icdgen_end(&upload->procedure, ICD_LENGTH);
-        return;
-    }
-    for (uint32_t i = 0; i < form->message_bytes * 8u && first + i < upload->count; ++i) {
-        const bool one = (frame[message->at + (i / 8u)] & icdgen_hole_bit(form, i)) != 0u;
-        icdgen_set_bit(upload->missing, first + i, one != form->received);
-    }
-    upload->next++;
-    icdgen_upload_map(upload);
-}
-
-static inline uint32_t icdgen_upload_checksum(const icd_upload_t *upload)
-{
-    const icd_link_t *const link = upload->procedure.link;
-    const uint32_t length = icdgen_upload_length(upload);
-    uint32_t left = upload->count * link->files->packet_bytes - length;
-    icd_crc_t crc;
-    icd_crc_init(&crc, link->crc16);
-    icd_crc_feed(&crc, upload->file + upload->sent, ICDGEN_SIZE(length));
-    for (left = link->upload->checksum_covers_fill ? left : 0u; left != 0u; --left) {
-        icd_crc_feed(&crc, &link->files->fill, 1);
-    }
-    return icd_crc_result(&crc);
-}
-
-/* Process a damaged block: start it again, or end the upload. */
-static inline void icdgen_upload_again(icd_upload_t *upload)
-{
-    if (upload->rounds == upload->procedure.link->upload->rounds) {
-        icdgen_end(&upload->procedure, ICD_CHECKSUM);
-    } else {
-        icdgen_upload_begin(upload);
-    }
-}
-
-static inline void icdgen_upload_checked(icd_upload_t *upload, const icd_event_t *outcome)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->upload->finalize;
-    if (outcome->length != link->upload->checksum.length) {
-        icdgen_end(procedure, ICD_LENGTH);
-        return;
-    }
-    if (icdgen_get(link, &link->upload->checksum, outcome->data, ICD_ROLE_CHECKSUM) != icdgen_upload_checksum(upload)) {
-        icdgen_upload_again(upload);
-        return;
-    }
-    icdgen_command(procedure, step, true, ICDGEN_UPLOAD_FINALIZE);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_DESTINATION, upload->destination);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_OFFSET, upload->sent);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, icdgen_upload_length(upload));
-}
-
-static inline void icdgen_upload_finalized(icd_upload_t *upload, const uint8_t *frame)
-{
-    const icd_link_t *const link = upload->procedure.link;
-    if (icdgen_get(link, &link->upload->finalized, frame, ICD_ROLE_ERROR) != 0u) {
-        icdgen_upload_again(upload);
-        return;
-    }
-    upload->sent += icdgen_upload_length(upload);
-    icdgen_upload_block(upload);
-}
-
-static inline void icdgen_upload_start(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->upload->initiate;
-    icdgen_command(procedure, step, true, ICDGEN_UPLOAD_INITIATED);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_DESTINATION, upload->destination);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_BLOCK_SIZE, link->upload->block_size);
-}
-
-static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_upload_t *const upload = ICDGEN_CAST(icd_upload_t *, ICDGEN_CAST(void *, procedure));
-    const icd_upload_form_t *const form = procedure->link->upload;
-    switch (procedure->state) {
-    case ICDGEN_UPLOAD_INITIATED:
-        icdgen_poll(
-            procedure, &form->initiated, ICD_ROLE_BUSY, false, form->poll_interval, form->erase_timeout,
-            ICDGEN_UPLOAD_READY);
-        break;
-    case ICDGEN_UPLOAD_READY:
-        icdgen_upload_block(upload);
-        break;
-    case ICDGEN_UPLOAD_BEGUN:
-        icdgen_upload_round(upload);
-        break;
-    case ICDGEN_UPLOAD_PACKET:
-        icdgen_upload_next(upload);
-        break;
-    case ICDGEN_UPLOAD_MAP:
-        icdgen_upload_mapped(upload, outcome->data, outcome->length);
-        break;
-    case ICDGEN_UPLOAD_CHECKSUM:
-        icdgen_upload_checked(upload, outcome);
-        break;
-    case ICDGEN_UPLOAD_FINALIZE:
-        icdgen_poll(
-            procedure, &form->finalized, ICD_ROLE_BUSY, false, form->poll_interval, form->finalize_timeout,
-            ICDGEN_UPLOAD_FINALIZED);
-        break;
-    case ICDGEN_UPLOAD_FINALIZED:
-        icdgen_upload_finalized(upload, outcome->data);
-        break;
-    case ICDGEN_UPLOAD_START:
-    default:
-        icdgen_upload_start(upload);
-        break;
-    }
-}
-
-ICDGEN_API icd_status_t icd_upload_init(
-    icd_upload_t *upload,
-    const icd_link_t *link,
-    uint8_t destination,
-    const uint8_t *file,
-    uint32_t size,
-    uint32_t block,
-    uint8_t *bitmap,
-    size_t bitmap_size)
-{
-    const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
-    (void)memset(upload, 0, sizeof *upload);
-    if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (!icdgen_allowed(link->upload->destinations, link->upload->destinations_count, destination)) {
-        return ICD_ERROR_RANGE;
-    }
-    if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
-        return ICD_ERROR_LENGTH;
-    }
-    block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
-    if (bitmap_size < icd_block_bitmap(link, block)) {
-        return ICD_ERROR_LENGTH;
-    }
-    upload->destination = destination;
-    upload->file = file;
-    upload->size = size;
-    upload->block = block;
-    upload->missing = bitmap;
-    return ICD_OK;
-}
-
-enum { ICDGEN_ERASE_START, ICDGEN_ERASE_BEGUN, ICDGEN_ERASE_ENDED };
-
-static inline void icdgen_erase_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_erase_t *const erase = ICDGEN_CAST(icd_erase_t *, ICDGEN_CAST(void *, procedure));
-    const icd_erase_form_t *const form = erase->form;
-    (void)outcome;
-    if (procedure->state == ICDGEN_ERASE_START) {
-        icdgen_command(procedure, &form->request, true, ICDGEN_ERASE_BEGUN);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_TYPE, erase->type);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_COUNTER, erase->counter);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_ALL, erase->all ? 1u : 0u);
-    } else if (procedure->state == ICDGEN_ERASE_BEGUN && erase->all) {
-        icdgen_poll(
-            procedure, &form->progress, ICD_ROLE_BUSY, false, form->poll_interval, form->timeout, ICDGEN_ERASE_ENDED);
-    } else {
-        icdgen_end(procedure, ICD_DONE);
-    }
-}
-
-ICDGEN_API icd_status_t
-icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all)
-{
-    (void)memset(erase, 0, sizeof *erase);
-    erase->form = link->erase;
-    erase->type = type;
-    erase->counter = counter;
-    erase->all = all;
-    return icdgen_procedure_init(&erase->procedure, link, link->erase != NULL, icdgen_erase_resume);
-}
-
-ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link)
-{
-    (void)memset(format, 0, sizeof *format);
-    format->form = link->format;
-    format->all = true;
-    return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);
-}
-
-enum { ICDGEN_PROGRAM_START, ICDGEN_PROGRAM_BEGUN, ICDGEN_PROGRAM_ENDED };
-
-/* Process the frame in which the node reports success or failure. */
-static inline void icdgen_program_ended(icd_program_operation_t *operation, const uint8_t *frame)
-{
-    const icd_link_t *const link = operation->procedure.link;
-    const icd_step_t *const step = &operation->form->progress;
-    if (icdgen_get(link, step, frame, ICD_ROLE_ERROR) != 0u) {
-        icdgen_end(&operation->procedure, ICD_FAILED);
-    } else {
-        operation->size = icdgen_get(link, step, frame, ICD_ROLE_SIZE);
-        operation->checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
-        icdgen_end(&operation->procedure, ICD_DONE);
-    }
-}
-
-static inline void icdgen_program_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_program_operation_t *const operation = ICDGEN_CAST(icd_program_operation_t *, ICDGEN_CAST(void *, procedure));
-    const icd_operation_form_t *const form = operation->form;
-    const bool tells_ready = icdgen_place(&form->progress, ICD_ROLE_READY) != NULL;
-    if (procedure->state == ICDGEN_PROGRAM_START) {
-        icdgen_command(procedure, &form->request, true, ICDGEN_PROGRAM_BEGUN);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_PROGRAM, procedure->program);
-    } else if (procedure->state == ICDGEN_PROGRAM_BEGUN) {
-        icdgen_poll(
-            procedure, &form->progress, tells_ready ? ICD_ROLE_READY : ICD_ROLE_BUSY, tells_ready, form->poll_interval,
-            form->timeout, ICDGEN_PROGRAM_ENDED);
-    } else {
-        icdgen_program_ended(operation, outcome->data);
-    }
-}
-
-static inline icd_status_t icdgen_program_init(
-    icd_program_operation_t *operation, const icd_link_t *link, const icd_operation_form_t *form, uint8_t program)
-{
-    const icd_status_t status = icdgen_procedure_init(&operation->procedure, link, form != NULL, icdgen_program_resume);
-    operation->form = form;
-    operation->size = 0;
-    operation->checksum = 0;
-    operation->procedure.program = program;
-    if (status == ICD_OK && !icdgen_allowed(form->programs, form->programs_count, program)) {
-        return ICD_ERROR_RANGE;
-    }
-    return status;
-}
-
-ICDGEN_API icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program)
-{
-    return icdgen_program_init(copy, link, link->program_copy, program);
-}
-
-ICDGEN_API icd_status_t
-icd_program_information_init(icd_program_information_t *information, const icd_link_t *link, uint8_t program)
-{
-    return icdgen_program_init(information, link, link->program_information, program);
 }
 
 #endif /* ICDGEN_WIRE_C */

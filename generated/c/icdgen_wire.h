@@ -4,7 +4,7 @@
 
 /**
  * @file
- * Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, file transfer and logs.
+ * Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, procedures and logs.
  *
  * The functions perform no input or output: the application passes received bytes in, and takes bytes to send and
  * events out. They do not open ports, sleep, read a clock or allocate memory. The application provides all buffers and
@@ -15,7 +15,7 @@
  * ICDGEN_SHARED     For programs of several source files: declare the functions only. Compile icdgen_wire.c and
  *                   NODE/link.c once and link them. Otherwise, each source file gets its own static copy.
  * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
- * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
+ * ICDGEN_NO_FILES   Leave out procedures, such as the transfer of files. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
  *                   Largest number of requests whose responses a client awaits or that may still arrive late, 8 unless
@@ -77,6 +77,13 @@ typedef struct {
     /** Offset of the error code. */
     uint16_t error_at;
 } icd_acknowledge_t;
+
+/** Telemetry that arrives unsolicited on the UART: id at the head of the message, and what it contains. */
+typedef struct {
+    uint8_t id;
+    uint8_t telemetry;
+    uint16_t length; /**< Of the telemetry. */
+} icd_unsolicited_t;
 
 /** What an error code means. */
 typedef enum {
@@ -276,30 +283,14 @@ typedef struct {
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
 
-/** Role of a field in a procedure. */
+/** Role of a field in a message that the wire layer requests. */
 typedef enum {
-    ICD_ROLE_TYPE,
-    ICD_ROLE_COUNTER,
-    ICD_ROLE_OFFSET,
-    ICD_ROLE_LENGTH,
-    ICD_ROLE_READY,
-    ICD_ROLE_ERROR,
-    ICD_ROLE_CHECKSUM,
-    ICD_ROLE_IGNORE_HOLE_MAP,
-    ICD_ROLE_DESTINATION,
-    ICD_ROLE_BLOCK_SIZE,
-    ICD_ROLE_BUSY,
-    ICD_ROLE_NUMBER,
-    ICD_ROLE_BYTES,
-    ICD_ROLE_ALL,
-    ICD_ROLE_SIZE,
-    ICD_ROLE_TIME,
     ICD_ROLE_NODE_TYPE,
     ICD_ROLE_INTERFACE_VERSION,
     ICD_ROLE_ID,
     ICD_ROLE_PROCESSED,
-    ICD_ROLE_PARAMETER,
-    ICD_ROLE_PROGRAM
+    ICD_ROLE_ERROR,
+    ICD_ROLE_PARAMETER
 } icd_role_t;
 
 /** Position of the field with a role, in bits. */
@@ -309,162 +300,14 @@ typedef struct {
     uint16_t bits;
 } icd_place_t;
 
-/** A message used in a procedure. An id is -1 if the message does not exist in this direction. */
+/** A message that the wire layer requests. An id is -1 if the message does not exist in this direction. */
 typedef struct {
     int16_t telecommand;
     int16_t telemetry;
     uint16_t length;
     uint8_t place_count;
     const icd_place_t *places;
-    const uint8_t *fresh; /**< Initial content of the frame. */
 } icd_step_t;
-
-/** A message that carries a piece of the hole map. */
-typedef struct {
-    int16_t telecommand;
-    int16_t telemetry;
-    uint16_t length;
-    uint16_t at;
-} icd_hole_map_message_t;
-
-/** Hole map: one bit for each packet of a block. */
-typedef struct {
-    /** Length of the map. */
-    uint16_t bytes;
-    /** Bytes of the map in each message. */
-    uint16_t message_bytes;
-    /** Whether bit 0 is the most significant bit of a byte. */
-    bool msb0;
-    /** Value of the bit of a received packet. */
-    bool received;
-    /** Value of the bits of packets beyond the end of the block. */
-    bool beyond_end;
-    uint8_t message_count;
-    const icd_hole_map_message_t *messages;
-} icd_hole_map_form_t;
-
-/** Files and their blocks. `packet_ids` are indexed by icd_bus_t; -1: no download packets on this bus. */
-typedef struct {
-    /** Bytes of the file in a packet. */
-    uint16_t packet_bytes;
-    /** Bytes of the packet counter before them. */
-    uint8_t counter_bytes;
-    /** Number of the first packet of a block. */
-    uint16_t first_packet;
-    /** Value of the bytes of the last packet beyond the end of the file. */
-    uint8_t fill;
-    /** Maximum number of packets of a block. */
-    uint32_t block_packets;
-    /** Maximum number of bytes of a block. */
-    uint32_t block_bytes;
-    int16_t packet_ids[3];
-} icd_files_form_t;
-
-/** Listing files. */
-typedef struct {
-    /** Returns to the first file. */
-    icd_step_t reset;
-    /** Advances to the next file. */
-    icd_step_t advance;
-    /** Describes a file. */
-    icd_step_t information;
-    /** Time between two polls of the busy flag, in milliseconds. */
-    uint32_t poll_interval;
-    /** Longest time that the busy flag is set, in milliseconds. */
-    uint32_t timeout;
-    /** Maximum number of files in the list. */
-    uint32_t max_entries;
-} icd_list_form_t;
-
-/** Downloading a file. */
-typedef struct {
-    /** Loads a block. */
-    icd_step_t load;
-    /** Reports that the block is loaded. */
-    icd_step_t ready;
-    /** Starts the transfer of the block. */
-    icd_step_t burst;
-    /** Value of the length in the burst telecommand. */
-    uint32_t message_length;
-    /** Whether the checksum of a block covers the padding of its last packet. */
-    bool checksum_covers_fill;
-    /** Counter of the index file, in addition to its type. */
-    uint8_t index_counter;
-    /** Time between two polls of the ready flag, in milliseconds. */
-    uint32_t poll_interval;
-    /** Longest time to load a block, in milliseconds. */
-    uint32_t ready_timeout;
-    /** Time without a new packet after which a burst has ended, in milliseconds. */
-    uint32_t silence;
-    /** Maximum number of bursts for one block. */
-    uint32_t rounds;
-    /** Maximum number of bytes of a file. */
-    uint32_t max_bytes;
-} icd_download_form_t;
-
-/** Uploading a file. */
-typedef struct {
-    /** Erases the destination. */
-    icd_step_t initiate;
-    /** Reports that the destination is erased. */
-    icd_step_t initiated;
-    /** Begins a block. */
-    icd_step_t begin;
-    /** Contains a packet. */
-    icd_step_t packet;
-    /** Reports the checksum of the received block. */
-    icd_step_t checksum;
-    /** Commits a block. */
-    icd_step_t finalize;
-    /** Reports that the block is committed. */
-    icd_step_t finalized;
-    /** Value of the block size in `initiate`. */
-    uint32_t block_size;
-    /** Whether the checksum of a block covers the padding of its last packet. */
-    bool checksum_covers_fill;
-    /** Time between two polls of a busy flag, in milliseconds. */
-    uint32_t poll_interval;
-    /** Longest time to erase the destination, in milliseconds. */
-    uint32_t erase_timeout;
-    /** Longest time to commit a block, in milliseconds. */
-    uint32_t finalize_timeout;
-    /** Maximum number of rounds of packets for one block. */
-    uint32_t rounds;
-    /** Size of a destination in bytes, the maximum size of a file; 0 if the ICD does not say. */
-    uint32_t destination_bytes;
-    /** Supported destinations; empty if all are supported. */
-    const uint8_t *destinations;
-    /** Their number. */
-    uint16_t destinations_count;
-} icd_upload_form_t;
-
-/** Erasing files, or formatting their medium. */
-typedef struct {
-    /** Starts the procedure. */
-    icd_step_t request;
-    /** Reports that it has ended. */
-    icd_step_t progress;
-    /** Time between two polls of the busy flag, in milliseconds. */
-    uint32_t poll_interval;
-    /** Longest duration, in milliseconds. */
-    uint32_t timeout;
-} icd_erase_form_t;
-
-/** An operation on a stored program: a telecommand starts it, and a frame reports its end. */
-typedef struct {
-    /** Starts the operation. */
-    icd_step_t request;
-    /** Reports that it has ended. */
-    icd_step_t progress;
-    /** Time between two polls of that frame, in milliseconds. */
-    uint32_t poll_interval;
-    /** Longest duration, in milliseconds. */
-    uint32_t timeout;
-    /** Supported programs; empty if all are supported. */
-    const uint8_t *programs;
-    /** Their number. */
-    uint16_t programs_count;
-} icd_operation_form_t;
 
 /* ---- framing of a link: header and trailer fields with roles ----------------------------------------------------- */
 
@@ -657,6 +500,172 @@ typedef struct {
     const icd_telemetry_request_t *request; /**< NULL if only telecommands request telemetry. */
 } icd_stream_form_t;
 
+/* ---- description of the procedures of a node --------------------------------------------------------------------- */
+
+/** Value of an optional input that is not given, such as the size of a file that is read to its end. */
+#define ICD_UNKNOWN UINT32_C(0xFFFFFFFF)
+
+/** Registers of a procedure. The inputs that are numbers follow, then fields of telemetry. */
+typedef enum {
+    ICD_BLOCK_OFFSET,
+    ICD_BLOCK_LENGTH,
+    ICD_BLOCK_IS_EMPTY, /**< 1 until a packet of the block has been received. */
+    ICD_PACKET_NUMBER,
+    ICD_PACKET_OFFSET,
+    ICD_FIRST_INPUT
+} icd_register_t;
+
+/** A constant, or the content of the register with this index. */
+typedef struct {
+    uint32_t number;
+    bool in_register;
+} icd_value_t;
+
+/** Field of a telecommand that gets a value. */
+typedef struct {
+    icd_number_place_t place;
+    icd_value_t value;
+} icd_put_t;
+
+/** Field of telemetry that is kept in a register. */
+typedef struct {
+    icd_number_place_t place;
+    uint8_t into;
+} icd_take_t;
+
+/** Whether a register is equal to a value. */
+typedef struct {
+    uint8_t of;
+    icd_value_t value;
+} icd_test_t;
+
+/** Sends a telecommand. */
+typedef struct {
+    uint32_t id;
+    uint16_t length;
+    const uint8_t *data; /**< Before the values are put into it; NULL: zeros. */
+    const icd_put_t *puts;
+    uint8_t put_count;
+    int32_t packet_at;    /**< Where the bytes of the packet stand; -1: nowhere. */
+    bool repeats;         /**< Whether it may be sent again after a time-out. */
+    bool ignores_timeout; /**< Whether a time-out counts as done. */
+} icd_send_form_t;
+
+/** Requests telemetry until all tests hold. Without tests, one request. */
+typedef struct {
+    uint32_t id;
+    const icd_take_t *takes;
+    const icd_test_t *tests; /**< First those that must hold, then those that must not. */
+    uint8_t take_count;
+    uint8_t until_count;
+    uint8_t fails_count;
+    uint32_t interval; /**< In milliseconds. */
+    uint32_t timeout;  /**< In milliseconds. */
+} icd_poll_form_t;
+
+/** Receives packets. */
+typedef struct {
+    uint32_t id;
+    icd_number_place_t number;
+    uint16_t data_at;
+    uint32_t silence;     /**< In milliseconds. */
+    uint8_t requested_on; /**< Buses on which packets are requested; bit n: on bus n of icd_bus_t. */
+} icd_receive_form_t;
+
+/** Compares a checksum with a value. */
+typedef struct {
+    const icd_crc_form_t *crc; /**< NULL: that of files. */
+    bool of_block;             /**< Of the block; otherwise of all bytes to send. */
+    bool covers_fill;          /**< Whether it covers the fill of the last packet. */
+    icd_value_t value;
+} icd_checksum_test_t;
+
+typedef enum {
+    ICD_STEP_SEND,
+    ICD_STEP_POLL,
+    ICD_STEP_NEXT_BLOCK,   /* without another block, continue at `to` */
+    ICD_STEP_SET_LENGTH,   /* of the block, which is then at most the requested one */
+    ICD_STEP_NEXT_ROUND,   /* if no packet is missing, continue at `to` */
+    ICD_STEP_NEXT_PACKET,  /* without another missing packet in this round, continue at `to` */
+    ICD_STEP_PACKET_DONE,  /* the packet is no longer missing */
+    ICD_STEP_SEND_MAP,     /* of the received packets */
+    ICD_STEP_GET_MAP,      /* of the received packets */
+    ICD_STEP_RECEIVE,      /* packets */
+    ICD_STEP_VERIFY_CRC,   /* otherwise transfer the block again, or end */
+    ICD_STEP_VERIFY,       /* otherwise transfer the block again, or end */
+    ICD_STEP_COLLECT,      /* the telemetry is the next entry */
+    ICD_STEP_END_IF_ZEROS, /* end if all bytes of the telemetry are 0 */
+    ICD_STEP_SKIP_UNLESS,  /* continue at `to` unless the test holds */
+    ICD_STEP_JUMP          /* continue at `to` */
+} icd_step_kind_t;
+
+/** A step. The next one follows unless it continues elsewhere. */
+typedef struct {
+    uint8_t kind;  /**< See icd_step_kind_t. */
+    uint8_t index; /**< In the array of what the step does; of SET_LENGTH and tests in `tests`. */
+    bool again;    /**< VERIFY, VERIFY_CRC: whether to transfer the block again. */
+    uint16_t to;   /**< Index of the step where it continues. */
+} icd_step_form_t;
+
+/** Limits of an input. */
+typedef struct {
+    uint32_t most;
+    const uint32_t *values; /**< Supported values; NULL: all. */
+    uint16_t value_count;
+    bool is_optional; /**< It may be ICD_UNKNOWN. */
+} icd_input_form_t;
+
+/** A message with a piece of the map of received packets. */
+typedef struct {
+    uint32_t telecommand;
+    uint32_t telemetry;
+} icd_map_message_t;
+
+/** Map of the received packets of a block, with one bit for each packet. */
+typedef struct {
+    const icd_map_message_t *messages;
+    uint8_t message_count;
+    uint16_t length; /**< Of each message. */
+    uint16_t at;     /**< Offset of the bytes of the map in each message. */
+    uint16_t bytes;  /**< Of the map in each message. */
+    bool msb0;       /**< Whether bit 0 is the most significant bit of a byte. */
+    bool received;   /**< Value of the bit of a received packet. */
+    bool beyond_end; /**< Value of the bits of packets beyond the end of the block. */
+} icd_map_form_t;
+
+/** Blocks of the bytes that a procedure sends or receives, and their packets. */
+typedef struct {
+    bool sends;
+    uint8_t total;  /**< Register with the number of bytes; 0: until a shorter block. */
+    uint16_t begin; /**< Index of the first step of a block. */
+    uint32_t size;  /**< Largest number of bytes of a block. */
+    uint16_t packet_bytes;
+    uint32_t first_packet; /**< Number of the first packet of a block. */
+    uint8_t fill;          /**< Value of the bytes after the end of the block. */
+    uint32_t rounds;       /**< Largest number of rounds of a block. */
+    uint32_t most;         /**< Largest number of bytes in all. */
+    const icd_map_form_t *map;
+} icd_blocks_form_t;
+
+/** A procedure: steps that a client runs one after another. */
+typedef struct {
+    const icd_step_form_t *steps;
+    uint16_t step_count;
+    const icd_send_form_t *sends;
+    const icd_poll_form_t *polls;
+    const icd_receive_form_t *receives;
+    const icd_checksum_test_t *checksums;
+    const icd_test_t *tests;
+    const icd_input_form_t *inputs; /**< Inputs that are numbers. */
+    uint8_t input_count;
+    uint8_t receive_count;
+    const icd_blocks_form_t *blocks; /**< NULL if it transfers no blocks. */
+    uint32_t most_bytes;             /**< Largest number of bytes to send. */
+    uint32_t most_entries;
+    uint32_t time;     /**< Longest duration, in milliseconds. */
+    uint32_t requests; /**< Largest number of requests. */
+} icd_procedure_form_t;
+
 /** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
 #ifndef ICDGEN_MOST_AWAITED
 #define ICDGEN_MOST_AWAITED 8u
@@ -706,6 +715,8 @@ typedef struct {
     uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
+    const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
+    uint8_t unsolicited_count;
     int16_t i2c_address;      /**< 7-bit address, -1 if the ICD has none. */
     bool i2c_repeated_start;  /**< Whether a read may follow its write without a stop. */
     int32_t boot_ms;          /**< Waiting time of the boot program in ms, -1 if unknown. */
@@ -718,15 +729,6 @@ typedef struct {
     const icd_log_message_form_t *log_message;
     const icd_time_form_t *time;
     const icd_index_form_t *index;
-    const icd_hole_map_form_t *hole_map;
-    const icd_files_form_t *files;
-    const icd_list_form_t *list;
-    const icd_download_form_t *download;
-    const icd_upload_form_t *upload;
-    const icd_erase_form_t *erase;
-    const icd_erase_form_t *format;
-    const icd_operation_form_t *program_copy;
-    const icd_operation_form_t *program_information;
     const icd_step_t *identification;
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
@@ -735,7 +737,7 @@ typedef struct {
 ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node);
 
 /** Return the message with this id; NULL if the node has none. */
-ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id);
+ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, uint32_t id);
 
 /** Identity of a node. */
 typedef struct {
@@ -764,7 +766,7 @@ typedef enum {
     ICD_EVENT_DONE,             /**< Client: the request succeeded; for telemetry, `data` is the frame. */
     ICD_EVENT_REFUSED,          /**< Client: the node rejected the request (negative acknowledge). */
     ICD_EVENT_TIMEOUT,          /**< Client: no reply, or the node did not process the telecommand in time. */
-    ICD_EVENT_PACKET,           /**< Client: a packet of a file download. */
+    ICD_EVENT_ARRIVED,          /**< Client: unsolicited telemetry. */
     ICD_EVENT_LOG,              /**< Client: an unsolicited log message; `data` starts with its id. */
     ICD_EVENT_STRAY, /**< Client: an unexpected message; `data` starts with its id (I2C: the bytes that were read). */
     ICD_EVENT_CHECKSUM, /**< Client: a frame with a wrong checksum; the request continues. */
@@ -772,7 +774,7 @@ typedef enum {
 } icd_event_kind_t;
 
 /** Kinds of messages from the node on the UART. */
-typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_PACKET, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
+typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_ARRIVED, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
 
 /** An event. The event and its data are valid only during the call of the callback. */
 typedef struct {
@@ -786,7 +788,6 @@ typedef struct {
     icd_reason_t reason;       /**< REFUSED: meaning of the error code. */
     int64_t code;              /**< REFUSED: error code, -1 if the bus does not report it. */
     int64_t parameter;         /**< REFUSED: index of the invalid parameter, -1 if the bus does not report it. */
-    uint32_t number;           /**< PACKET: number of the packet. */
     uint32_t missing;          /**< INCOMPLETE: number of missing packets. */
     uint8_t source;            /**< CAN: address of the sender. */
     uint8_t destination;       /**< MESSAGE on CAN. */
@@ -1315,25 +1316,7 @@ ICDGEN_API icd_status_t icd_dos_time_unpack(const icd_link_t *link, uint32_t val
 ICDGEN_API icd_status_t
 icd_dos_time_pack(const icd_link_t *link, const icd_dos_time_t *time, uint32_t *value, const char **wrong);
 
-/* ---- hole maps and the index file -------------------------------------------------------------------------------- */
-
-/**
- * Initialize the map of a block of `packets` packets, all of them missing. Return ICD_ERROR_RANGE if a block cannot
- * have so many packets.
- */
-ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
-
-/**
- * Mark packet `number` as received. Return ICD_ERROR_RANGE if the block or the map has no such packet,
- * ICD_ERROR_UNSUPPORTED if the node has no hole maps.
- */
-ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
-
-/** Return whether packet `number` is marked as received; false if the map has no such packet. */
-ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
-
-/** Return the number of missing packets of a block. */
-ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets);
+/* ---- the index file ---------------------------------------------------------------------------------------------- */
 
 /** An entry of the index file. `time` is packed; see icd_dos_time_unpack(). */
 typedef struct {
@@ -1373,7 +1356,7 @@ typedef enum {
  */
 typedef struct {
     icd_direction_t direction;
-    uint8_t id;
+    uint32_t id;
     bool repeat;
     const uint8_t *data;
     size_t length;
@@ -1709,6 +1692,9 @@ ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *no
 /** Size in bytes of the longest message in a procedure of any node. */
 #define ICD_STEP_BYTES 22u
 
+/** Largest number of registers of a procedure of any node. */
+#define ICD_REGISTERS 12u
+
 /* ---- procedures -------------------------------------------------------------------------------------------------- */
 
 /** State and result of a procedure. */
@@ -1716,46 +1702,90 @@ typedef enum {
     ICD_RUNNING,
     ICD_DONE,
     ICD_REFUSED,   /**< The node rejected a necessary request. */
-    ICD_TIMED_OUT, /**< No reply to a necessary request, or a flag did not change in time. */
-    ICD_PARAMETER, /**< The node cannot load the block. */
-    ICD_LENGTH,    /**< A block or frame has a different length than requested. */
-    ICD_LIMIT,     /**< The file or the list is longer than the ICD allows. */
+    ICD_BUSY,      /**< The node was too busy for a necessary request. */
+    ICD_TIMED_OUT, /**< No reply to a necessary request, or the node was not ready in time. */
+    ICD_FAILED,    /**< The node reports an error. */
+    ICD_LENGTH,    /**< A block has a different length than requested. */
+    ICD_CHECKSUM,  /**< The checksum of a block is wrong after the maximum number of rounds. */
     ICD_ROUNDS,    /**< Packets are still missing after the maximum number of rounds. */
-    ICD_CHECKSUM,  /**< The checksum is still wrong after the maximum number of rounds. */
-    ICD_FAILED     /**< The node reports that the operation failed. */
+    ICD_LIMIT      /**< The procedure exceeds a limit of the ICD: time, requests, bytes or entries. */
 } icd_result_t;
 
-typedef enum { ICDGEN_WANT_NOTHING, ICDGEN_WANT_REQUEST, ICDGEN_WANT_TIME } icdgen_want_t;
+/** Callback for each received block. `data` is valid during the call; `offset` and `length` are in bytes. */
+typedef void icd_block_fn(void *context, uint32_t offset, const uint8_t *data, size_t length);
 
-typedef struct icd_procedure icd_procedure_t;
+/** Callback for each entry of a list: the data of telemetry, valid during the call. */
+typedef void icd_entry_fn(void *context, const uint8_t *data, size_t length);
+
+/** Memory and callbacks of a procedure. The memory must stay valid while the procedure runs. */
+typedef struct {
+    const uint8_t *bytes; /**< Bytes to send. */
+    size_t byte_count;
+    uint32_t block;  /**< Largest number of bytes of a block; 0: that of the ICD. */
+    uint8_t *buffer; /**< For a received block. */
+    size_t buffer_size;
+    uint8_t *bitmap; /**< For the packets of a block. */
+    size_t bitmap_size;
+    icd_block_fn *on_block;
+    icd_entry_fn *on_entry;
+    void *context; /**< For the callbacks. */
+} icd_procedure_memory_t;
 
 /**
- * Common state of all procedures. A procedure returns the next request and processes its outcome. All members except
+ * A procedure: returns the next request and processes its outcome. NODE_PROCEDURE() initializes it. All members except
  * `result` are internal.
  */
-struct icd_procedure {
-    const icd_link_t *link;
+typedef struct {
     icd_result_t result;
-    uint32_t now;
-    uint32_t until;        /* time at which a wait ends */
+    const icd_link_t *link;
+    const icd_procedure_form_t *form;
+    icd_procedure_memory_t memory;
+    icd_bus_t bus;
+    uint32_t registers[ICD_REGISTERS];
+    uint16_t at;           /* index of the current step */
+    bool is_entered;       /* the current step has begun */
+    bool is_started;       /* icd_procedure_next() was called */
+    bool has_request;      /* the current step has a request */
+    bool is_requested;     /* icd_procedure_next() returned it */
+    bool has_reply;        /* its telemetry arrived before its outcome */
+    bool waits;            /* the current step waits */
+    bool has_block;        /* a block has begun */
+    bool has_round;        /* a round has begun since the block began, or began again */
+    uint8_t damaged;       /* number of damaged acknowledges of the request */
     icd_request_t request; /* the next request, or the request in progress */
-    icdgen_want_t want;
-    bool started;
-    bool asked;               /* the request was returned to the caller */
-    bool tolerant;            /* the procedure continues after any outcome of the request */
-    uint32_t damaged;         /* number of damaged acknowledges of the request */
-    const icd_step_t *polled; /* frame that is polled until its flag has the value `wanted` */
-    icd_role_t flag;
-    bool wanted;
-    uint8_t program; /* expected program, if the frame contains its number */
-    uint32_t interval;
-    uint32_t poll_end;
-    uint8_t state;
-    uint8_t data[ICD_STEP_BYTES]; /* data of the request */
-    void (*resume)(
-        icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome is NULL at the start and after a wait */
-    void (*packet)(icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length);
-};
+    uint32_t requests;     /* number of requests */
+    uint32_t now;
+    uint32_t begin;       /* time of the first call */
+    uint32_t until;       /* time at which the wait ends */
+    uint32_t end;         /* of a poll */
+    uint32_t last_packet; /* time of the last new packet */
+    uint32_t left;        /* messages of a map or packets that the step requests */
+    uint32_t requested;   /* length of the block */
+    uint32_t count;       /* packets of the block */
+    uint32_t missing;     /* packets of the block that are not there */
+    uint32_t cursor;      /* position in the block after the selected packet */
+    uint32_t rounds;      /* of the block */
+    uint32_t entries;     /* number of entries */
+    uint32_t repetitions; /* of the last entry */
+    size_t frame_length;
+    size_t entry_length;
+    uint8_t frame[ICD_STEP_BYTES]; /* the last telemetry */
+    uint8_t entry[ICD_STEP_BYTES]; /* the last entry */
+    uint8_t data[ICD_STEP_BYTES];  /* of the request */
+} icd_procedure_t;
+
+/**
+ * Initialize a procedure. NODE_PROCEDURE() is the typed version. `inputs` are the inputs that are numbers.
+ * Return ICD_ERROR_RANGE if an input is not supported, ICD_ERROR_LENGTH if there are too many bytes to send or a buffer
+ * is too small, ICD_ERROR_UNSUPPORTED if procedures are left out. After an error the procedure must not be used.
+ */
+ICDGEN_API icd_status_t icd_procedure_init(
+    icd_procedure_t *procedure,
+    const icd_link_t *link,
+    const icd_procedure_form_t *form,
+    icd_bus_t bus,
+    const uint32_t *inputs,
+    const icd_procedure_memory_t *memory);
 
 /**
  * Get the next request. Each request is returned once and is valid until the next call. `now` is in milliseconds.
@@ -1766,12 +1796,18 @@ ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd
 /** Pass an event of the client to the procedure. Unrelated events are ignored. */
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event);
 
+/** Pass an event of the client of a framed link to the procedure. Unrelated events are ignored. */
+ICDGEN_API void icd_procedure_stream_event(icd_procedure_t *procedure, uint32_t now, const icd_stream_event_t *event);
+
 /**
  * Get the time in milliseconds at which icd_procedure_next() must be called again. Return false if the procedure is not
  * waiting for a time: before the first call and after an outcome (call icd_procedure_next() at once), while a request
  * is in progress, and at the end.
  */
 ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline);
+
+/** Return the number of bytes transferred, and get their total; ICD_UNKNOWN if it is unknown. */
+ICDGEN_API uint32_t icd_procedure_progress(const icd_procedure_t *procedure, uint32_t *total);
 
 /**
  * Start the next request of the procedure if there is one and the client is idle. `on_event` is the callback that is
@@ -1780,163 +1816,12 @@ ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_
 ICDGEN_API icd_status_t icd_procedure_step(
     icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
-/** A file of the node. `size` is in bytes; `time` is packed, see icd_dos_time_unpack(). */
-typedef struct {
-    uint32_t type;
-    uint32_t counter;
-    uint32_t size;
-    uint32_t time;
-    uint32_t checksum;
-} icd_file_t;
-
-/** Callback for each file. `file` is valid during the call. */
-typedef void icd_file_fn(void *context, const icd_file_t *file);
-
-/** Listing of the files. Pass `&list.procedure` to the icd_procedure_...() functions. */
-typedef struct {
-    icd_procedure_t procedure;
-    icd_file_fn *on_file;
-    void *context;
-    uint32_t count; /* files passed to `on_file` */
-    uint32_t again; /* number of identical frames in a row */
-    bool has_last;
-    uint8_t last[ICD_STEP_BYTES];
-} icd_list_t;
-
-ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context);
-
-/** Callback for each block of a file. `data` is valid during the call; `offset` and `length` are in bytes. */
-typedef void icd_block_fn(void *context, uint32_t offset, const uint8_t *data, size_t length);
-
-/** Value of `size` for a file whose size is unknown before its end is reached, such as the index file. */
-#define ICD_SIZE_UNKNOWN UINT32_C(0xFFFFFFFF)
-
-/** Download of a file block by block. Pass `&download.procedure` to the icd_procedure_...() functions. */
-typedef struct {
-    icd_procedure_t procedure;
-    icd_bus_t bus;
-    uint8_t type;
-    uint8_t counter;
-    uint32_t size;
-    uint32_t block; /* bytes requested at once */
-    uint8_t *buffer;
-    uint8_t *got; /* one bit for each packet of the block */
-    icd_block_fn *on_block;
-    void *context;
-    uint32_t offset;   /**< Progress: bytes passed to `on_block`. */
-    uint32_t length;   /* of the current block */
-    uint32_t checksum; /* of the current block */
-    uint32_t count;    /* packets of the current block */
-    uint32_t there;    /* packets received */
-    uint32_t rounds;
-    uint32_t left; /* I2C, CAN: packets still to be requested; or messages of the hole map sent */
-    uint32_t last; /* time of the last new packet */
-} icd_download_t;
-
 /**
- * Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes; 0 if the node
- * has no file transfer.
- */
-ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block);
-
-ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
-
-/**
- * Initialize a download. `size`: file size in bytes, or ICD_SIZE_UNKNOWN. `block`: bytes per block, or 0 for the block
- * size of the ICD. `buffer` needs icd_block_buffer() bytes and `bitmap` icd_block_bitmap() bytes; NODE_BLOCK_BYTES and
- * NODE_BLOCK_BITMAP_BYTES are always enough. Both must stay valid during the download.
- * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_RANGE if the size is above the limit of the ICD,
- * ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
- */
-ICDGEN_API icd_status_t icd_download_init(
-    icd_download_t *download,
-    const icd_link_t *link,
-    icd_bus_t bus,
-    uint8_t type,
-    uint8_t counter,
-    uint32_t size,
-    uint32_t block,
-    uint8_t *buffer,
-    size_t buffer_size,
-    uint8_t *bitmap,
-    size_t bitmap_size,
-    icd_block_fn *on_block,
-    void *context);
-
-/** Upload of a file block by block. Pass `&upload.procedure` to the icd_procedure_...() functions. */
-typedef struct {
-    icd_procedure_t procedure;
-    uint8_t destination;
-    const uint8_t *file;
-    uint32_t size;
-    uint32_t block;
-    uint8_t *missing; /* one bit for each packet of the block */
-    uint32_t sent;    /**< Progress: bytes committed. */
-    uint32_t count;   /* packets of the current block */
-    uint32_t next;    /* next packet, or next message of the hole map */
-    uint32_t rounds;
-} icd_upload_t;
-
-/**
- * Initialize an upload of `size` bytes from `file`. `block`: bytes per block, or 0 for the block size of the ICD.
- * `bitmap` needs icd_block_bitmap() bytes. `file` and `bitmap` must stay valid during the upload.
- * Return ICD_ERROR_UNSUPPORTED if the node has no uploads, ICD_ERROR_RANGE if the destination is not supported,
- * ICD_ERROR_LENGTH if the file is larger than the destination or the bitmap is too small.
- */
-ICDGEN_API icd_status_t icd_upload_init(
-    icd_upload_t *upload,
-    const icd_link_t *link,
-    uint8_t destination,
-    const uint8_t *file,
-    uint32_t size,
-    uint32_t block,
-    uint8_t *bitmap,
-    size_t bitmap_size);
-
-/**
- * Deletion of one file or all files, or formatting of the medium. Pass `&erase.procedure` to the icd_procedure_...()
- * functions.
- */
-typedef struct {
-    icd_procedure_t procedure;
-    const icd_erase_form_t *form;
-    uint8_t type;
-    uint8_t counter;
-    bool all;
-} icd_erase_t;
-
-typedef icd_erase_t icd_format_t;
-
-/**
- * Initialize the deletion of one file, or of all files if `all` is true. Deleting all files ends when the node is no
- * longer busy.
+ * Start the next request of the procedure if there is one and the client has a free slot. The callback of the client
+ * must pass each event to icd_procedure_stream_event().
  */
 ICDGEN_API icd_status_t
-icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all);
-
-/** Initialize the formatting of the medium. It ends when the node is no longer busy. */
-ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link);
-
-/** Operation on a stored program. Pass `&operation.procedure` to the icd_procedure_...() functions. */
-typedef struct {
-    icd_procedure_t procedure;
-    const icd_operation_form_t *form;
-    uint32_t size;     /**< Size of the program in bytes. Valid if icd_program_information_t ended with ICD_DONE. */
-    uint32_t checksum; /**< Checksum of the program. Valid as `size`. */
-} icd_program_operation_t;
-
-typedef icd_program_operation_t icd_program_copy_t;
-typedef icd_program_operation_t icd_program_information_t;
-
-/**
- * Initialize copying of a stored program to the memory from which it runs. Return ICD_ERROR_RANGE if the program is not
- * supported, ICD_ERROR_UNSUPPORTED if the node has no such operation.
- */
-ICDGEN_API icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program);
-
-/** Initialize reading of `size` and `checksum` of a stored program. Errors: see icd_program_copy_init(). */
-ICDGEN_API icd_status_t
-icd_program_information_init(icd_program_information_t *information, const icd_link_t *link, uint8_t program);
+icd_procedure_stream_step(icd_procedure_t *procedure, icd_stream_client_t *client, uint32_t now);
 
 #ifndef ICDGEN_SHARED
 #include "icdgen_wire.c"

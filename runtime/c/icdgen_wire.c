@@ -46,14 +46,4 @@
 
 #include "wire/procedure.c"
 
-#include "wire/list.c"
-
-#include "wire/download.c"
-
-#include "wire/upload.c"
-
-#include "wire/erase.c"
-
-#include "wire/program.c"
-
 #endif /* ICDGEN_WIRE_C */

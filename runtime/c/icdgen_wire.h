@@ -3,7 +3,7 @@
 
 /**
  * @file
- * Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, file transfer and logs.
+ * Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, procedures and logs.
  *
  * The functions perform no input or output: the application passes received bytes in, and takes bytes to send and
  * events out. They do not open ports, sleep, read a clock or allocate memory. The application provides all buffers and
@@ -14,7 +14,7 @@
  * ICDGEN_SHARED     For programs of several source files: declare the functions only. Compile icdgen_wire.c and
  *                   NODE/link.c once and link them. Otherwise, each source file gets its own static copy.
  * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
- * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
+ * ICDGEN_NO_FILES   Leave out procedures, such as the transfer of files. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
  *                   Largest number of requests whose responses a client awaits or that may still arrive late, 8 unless
@@ -29,9 +29,9 @@
 
 #include "wire/forms.h"
 
-#include "wire/procedure_forms.h"
-
 #include "wire/stream_form.h"
+
+#include "wire/procedure_forms.h"
 
 #include "wire/link.h"
 
@@ -64,16 +64,6 @@
 #include "wire/sizes.h"
 
 #include "wire/procedure.h"
-
-#include "wire/list.h"
-
-#include "wire/download.h"
-
-#include "wire/upload.h"
-
-#include "wire/erase.h"
-
-#include "wire/program.h"
 
 #ifndef ICDGEN_SHARED
 #include "icdgen_wire.c"

@@ -114,7 +114,7 @@ def template(path: Path) -> str:
     """What made a file."""
     name = (
         path.name
-        if path.name in ("enums.h", "link.h", "link.c", "client.h")
+        if path.name in ("enums.h", "link.h", "link.c", "client.h", "procedures.h")
         else "message.h" if len(path.parts) > 1 else "node.h"
     )
     return f"{name}.j2"

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+from typing import Any
 
 from icdgen.icd.model import Icd, Node
 
@@ -40,6 +41,8 @@ def _changed(node: Node) -> Node:
         files["hole_map"] |= {"bit_order": "msb0", "received": 0, "beyond_end": 0}
         files["download"]["checksum_covers_fill"] = True
         files["upload"]["checksum_covers_fill"] = False
+        for procedure in protocol["procedures"].values():
+            _change_steps(procedure["steps"])
     for part in protocol.get("msdos_time", {}).get("parts", ()):
         if part["name"] == "hour":
             part["bits"] = 4
@@ -51,3 +54,18 @@ def _changed(node: Node) -> Node:
     return dataclasses.replace(
         node, byte_order="big", bit_order="msb0", protocol=protocol
     )
+
+
+def _change_steps(steps: list[dict[str, Any]]) -> None:
+    """Gives each step of procedures other facts."""
+    for step in steps:
+        if "missing" in step:
+            step["missing"] |= {"first": 1, "fill": 0x5A}
+        if "map" in step:
+            step |= {"bit_order": "msb0", "received": 0, "beyond_end": 0}
+        if "checksum" in step.get("verify", {}):
+            verify = step["verify"]
+            verify["covers_fill"] = not verify.get("covers_fill", False)
+        for row in (step, step.get("blocks"), step.get("missing")):
+            for key in ("repeat", "steps", "each"):
+                _change_steps((row or {}).get(key, []))

@@ -7,8 +7,6 @@
 typedef struct {
     int port;
     icd_link_t link; /* that of the node, with short waits: the simulator is never slow */
-    icd_download_form_t download;
-    icd_upload_form_t upload;
     icd_client_t client;
     icd_procedure_t *procedure; /* that is running, or NULL */
     icd_event_t outcome;        /* of the last request */
@@ -47,15 +45,6 @@ static inline void session_becomes(session_t *session, const icd_link_t *link)
     memset(session, 0, sizeof *session);
     session->port = port;
     session->link = *link;
-    session->download = *link->download;
-    session->download.silence = 60;
-    session->download.poll_interval = 5;
-    session->link.download = &session->download;
-    if (link->upload != NULL) {
-        session->upload = *link->upload;
-        session->upload.poll_interval = 5;
-        session->link.upload = &session->upload;
-    }
     session->link.client = settings;
     session->buffer = (uint8_t *)malloc(icd_client_bytes(link));
     session->frame = (uint8_t *)malloc(link->longest);
@@ -126,8 +115,33 @@ static inline const icd_event_t *session_send(session_t *session, uint8_t id, co
     return outcome;
 }
 
+/* The same procedure with short waits. */
+static inline void session_hurry(session_t *session, icd_procedure_t *procedure)
+{
+    static icd_procedure_form_t form;
+    static icd_poll_form_t polls[8];
+    static icd_receive_form_t receives[2];
+    form = *procedure->form;
+    for (size_t i = 0; i < form.step_count; ++i) {
+        const icd_step_form_t *const step = &form.steps[i];
+        if (step->kind == ICD_STEP_POLL) {
+            polls[step->index] = form.polls[step->index];
+            polls[step->index].interval = 5;
+        }
+    }
+    for (size_t i = 0; i < form.receive_count; ++i) {
+        receives[i] = form.receives[i];
+        receives[i].silence = 60;
+    }
+    form.polls = polls;
+    form.receives = receives;
+    procedure->form = &form;
+    procedure->link = &session->link;
+}
+
 static inline icd_result_t session_run(session_t *session, icd_procedure_t *procedure)
 {
+    session_hurry(session, procedure);
     session->procedure = procedure;
     while (procedure->result == ICD_RUNNING) {
         uint32_t later;

@@ -231,7 +231,7 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
             sizes["telecommands"] // 4 - 1,
             sizes["telemetry"] // 4 - 1,
         )  # the last one is none
-        rows.append((*ends, "download" in sizes, "log_bits" in sizes))
+        rows.append((*ends, "log_bits" in sizes))
     link = links_of(describe(harness.shipped()))["cubeacp"]
     needed = [one.name for one in (*link.always_needed, *link.in_procedures)]
     few = [
@@ -244,10 +244,10 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
     ]
     assert own == [0, 2] and few > own
     assert rows == [
-        (len(link.telecommands), len(link.telemetry), True, True),
-        (*few, True, True),
-        (*own, False, True),
-        (*own, False, False),
+        (len(link.telecommands), len(link.telemetry), True),
+        (*few, True),
+        (*own, True),
+        (*own, False),
     ]
     with pytest.raises(AssertionError, match="cubeacp_request_identification"):
         linked(folder, "uart", "-DCUBEACP_CHOSEN")
@@ -277,10 +277,10 @@ def test_what_is_left_out_is_unsupported(folder):
 #include "cubeacp.h"
 int main(void)
 {
-    icd_list_t list;
+    icd_procedure_t procedure;
     icd_log_reader_t reader;
     uint8_t buffer[CUBEACP_LOG_BYTES];
-    if (icd_list_init(&list, cubeacp_link(), NULL, NULL) != ICD_ERROR_UNSUPPORTED) {
+    if (cubeacp_list(&procedure, NULL, NULL) != ICD_ERROR_UNSUPPORTED) {
         return 1;
     }
     return icd_log_reader_init(&reader, cubeacp_link(), buffer, sizeof buffer) == ICD_ERROR_UNSUPPORTED ? 0 : 2;

@@ -22,20 +22,13 @@ PARTS = {
     "statistics_reset": [],
     "boot_status": [],
     "program_start": [],
-    "program_copy": ["program_copy"],
-    "program_information": ["program_information"],
-    "uart": ["framing", "acknowledge"],
+    "program_copy": [],
+    "program_information": [],
+    "uart": ["framing", "acknowledge", "unsolicited"],
     "i2c": ["polled"],
     "can": ["can"],
-    "file_transfer": [
-        "hole_map",
-        "files",
-        "list",
-        "download",
-        "upload",
-        "erase",
-        "format",
-    ],
+    "file_transfer": [],
+    "procedures": [],
     "crc16": ["crc16"],
     "index_file": ["index"],
     "msdos_time": ["time"],
@@ -61,12 +54,20 @@ def icd() -> Icd:
         {**shipped.protocol_of(bootloader), **shipped.protocol_of(acp)}
     )
     del whole["file_transfer"]["upload"]["nodes"]  # any of these nodes can
+    whole["procedures"] |= bootloader.protocol["procedures"]
+    for procedure in whole["procedures"].values():
+        procedure.pop("nodes", None)
     protocols = {"whole": whole}
+    needed = {"procedures": {"crc16"}}  # sections by those that need them
     for section in whole:
         protocols[f"without_{section}"] = {
-            name: part for name, part in whole.items() if name != section
+            name: part
+            for name, part in whole.items()
+            if name != section and section not in needed.get(name, ())
         }
-        protocols[f"only_{section}"] = {section: whole[section]}
+        protocols[f"only_{section}"] = {
+            name: whole[name] for name in (section, *needed.get(section, ()))
+        }
     taken = {id for message in bootloader.messages for id in message.ids}
     names = {
         message.identifier for message in bootloader.messages

@@ -47,7 +47,7 @@ def test_acknowledges_that_are_damaged_or_late_cost_nothing_but_time(client, fau
             1,
             "Cache enabled state: refused",
         ),
-        (["--node", "cubeacp"], 1, "download: parameter"),  # it has no such file
+        (["--node", "cubeacp"], 1, "download: failed"),  # it has no such file
     ],
 )
 def test_a_node_that_is_another_one_or_does_not_answer_is_noticed(

@@ -92,21 +92,6 @@ def refused(cases: list[dict]) -> Iterator[dict]:
             yield {**request, "bytes": request["bytes"] + "0"}
 
 
-# Languages whose testees do not answer requests of `procedure` yet.
-WITHOUT_PROCEDURES = ("c",)
-
-
-def _without_procedures(batch: Batch) -> Batch:
-    """The requests of a batch that each language answers."""
-    kept = [
-        at for at, line in enumerate(batch.lines) if b'"op": "procedure"' not in line
-    ]
-    parts = (batch.lines, batch.answers, batch.about)
-    return Batch(
-        *([part[at] for at in kept] for part in parts), batch.messages, len(kept)
-    )
-
-
 def run(
     languages: list[Language], icd: Icd, files: dict, folder: Path | None = None
 ) -> list[Result]:
@@ -123,8 +108,7 @@ def run(
         testees.append(testee)
     for batch in batches(files):
         for result, testee in zip(results, testees, strict=True):
-            waits = result.name.split("-")[0] in WITHOUT_PROCEDURES
-            drive(testee, _without_procedures(batch) if waits else batch, result)
+            drive(testee, batch, result)
     for result, testee in zip(results, testees, strict=True):
         status = testee.close()
         if status:

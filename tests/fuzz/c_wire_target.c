@@ -1,11 +1,8 @@
 /* libFuzzer harness on the stream decoders and step machines of the C wire layer. See README.md. */
 
-#include "testee.h"
+#include "testee_wire.h"
 
-#include <icdgen_wire.h>
 #include <stdlib.h>
-
-const icd_link_t *testee_link(size_t node);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -32,7 +29,7 @@ static void require(bool holds)
 }
 
 /* Memory of just that size, so that touching anything beyond it is noticed. */
-static uint8_t *memory(size_t size)
+static uint8_t *allocate(size_t size)
 {
     uint8_t *found = (uint8_t *)malloc(size != 0u ? size : 1u);
     require(found != NULL);
@@ -72,7 +69,7 @@ static void on_uart(void *context, const icd_event_t *event)
     on_event(context, event);
     if (event->kind == ICD_EVENT_MESSAGE) {
         const size_t room = ICD_UART_BYTES(event->length);
-        uint8_t *line = memory(room);
+        uint8_t *line = allocate(room);
         size_t written = 0;
         require(icd_uart_encode(seen->link, event->data, event->length, line, room, &written) == ICD_OK);
         seen->on_line += written;
@@ -88,7 +85,7 @@ static void uart(const icd_link_t *link, input_t *input)
 {
     const size_t limit = (take(input) % link->longest) + 1u;
     const uint8_t cuts = (uint8_t)(take(input) | 1u);
-    uint8_t *stream = memory(input->left), *buffer = memory(limit);
+    uint8_t *stream = allocate(input->left), *buffer = allocate(limit);
     seen_t whole = {link, 1, 0, 0}, pieces = {link, 1, 0, 0};
     icd_uart_decoder_t decoder;
     size_t at, step = cuts;
@@ -127,7 +124,7 @@ static void can(const icd_link_t *link, input_t *input)
 {
     const size_t count = (take(input) % 4u) + 1u;
     const size_t size = link->can != NULL ? count * icd_can_slot_bytes(link) : 0u;
-    uint8_t *buffer = memory(size);
+    uint8_t *buffer = allocate(size);
     icd_can_slot_t slots[4];
     icd_can_joiner_t joiner;
     seen_t seen = {link, 1, 0, 0};
@@ -162,7 +159,7 @@ static void logs(const icd_link_t *link, input_t *input)
 {
     const uint8_t cuts = (uint8_t)(take(input) | 1u);
     const size_t size = link->log_file != NULL && link->log_mask != NULL ? icd_log_bytes(link) : 0u;
-    uint8_t *file = memory(input->left), *buffer = memory(size);
+    uint8_t *file = allocate(input->left), *buffer = allocate(size);
     seen_t whole = {link, 1, 0, 0}, pieces = {link, 1, 0, 0};
     icd_log_reader_t reader;
     icd_log_message_t message;
@@ -199,7 +196,7 @@ static void drain(icd_client_t *client)
 static void receive(icd_client_t *client, input_t *input, uint32_t now, seen_t *seen)
 {
     const size_t given = take(input), count = given < input->left ? given : input->left;
-    uint8_t *bytes = memory(count);
+    uint8_t *bytes = allocate(count);
     if (client->bus == ICD_BUS_CAN) {
         const icd_can_packet_t packet = packet_of(client->link, input);
         icd_client_packet(client, now, &packet, on_event, seen);
@@ -234,8 +231,8 @@ static icd_status_t begin_client(
 static void client(const icd_link_t *link, icd_bus_t bus, input_t *input)
 {
     const size_t size = icd_client_bytes(link);
-    uint8_t *buffer = memory(size), *data = memory(link->longest);
-    icd_client_t *one = (icd_client_t *)(void *)memory(sizeof *one);
+    uint8_t *buffer = allocate(size), *data = allocate(link->longest);
+    icd_client_t *one = (icd_client_t *)(void *)allocate(sizeof *one);
     seen_t seen = {link, 1, 0, 0};
     uint32_t now = 0xFFFFF000u, deadline;
     size_t started = 0, rounds = 0;
@@ -284,9 +281,9 @@ static void on_block(void *context, uint32_t offset, const uint8_t *block, size_
     note((seen_t *)context, block, length);
 }
 
-static void on_file(void *context, const icd_file_t *file)
+static void on_frame(void *context, const uint8_t *entry, size_t length)
 {
-    note((seen_t *)context, file, sizeof *file);
+    note((seen_t *)context, entry, length);
 }
 
 /* A procedure that is told anything. */
@@ -295,8 +292,8 @@ static void run(icd_procedure_t *procedure, input_t *input)
     uint32_t now = 0xFFFFF000u;
     while (input->left != 0u && procedure->result == ICD_RUNNING) {
         const uint8_t what = take(input);
-        const size_t given = take(input) % 32u, count = given < input->left ? given : input->left;
-        uint8_t *bytes = memory(count);
+        const size_t given = take(input) % 64u, count = given < input->left ? given : input->left;
+        uint8_t *bytes = allocate(count);
         icd_event_t event;
         icd_request_t request;
         memset(&event, 0, sizeof event);
@@ -307,8 +304,8 @@ static void run(icd_procedure_t *procedure, input_t *input)
         event.kind = (what & 7u) < 4u ? ICD_EVENT_DONE
             : (what & 7u) == 4u       ? ICD_EVENT_TIMEOUT
             : (what & 7u) == 5u       ? ICD_EVENT_REFUSED
-                                      : ICD_EVENT_PACKET;
-        event.number = take(input);
+                                      : ICD_EVENT_ARRIVED;
+        event.id = procedure->form->receive_count != 0u ? (uint8_t)procedure->form->receives[0].id : 0u;
         event.data = bytes;
         event.length = count;
         if (icd_procedure_next(procedure, now, &request)) {
@@ -319,42 +316,56 @@ static void run(icd_procedure_t *procedure, input_t *input)
     }
 }
 
-static void procedures(const icd_link_t *link, input_t *input)
+/* Any procedure of the node, with just the memory that its blocks need. */
+static void procedures(size_t node, const icd_link_t *link, input_t *input)
 {
     const uint8_t which = take(input);
-    const uint32_t block = (take(input) * 7u) + 1u;
-    const uint32_t most = link->files != NULL && block > link->files->block_bytes ? link->files->block_bytes : block;
-    const size_t size = link->files != NULL ? icd_block_buffer(link, most) : 0u;
-    const size_t bits = link->files != NULL ? icd_block_bitmap(link, most) : 0u;
-    uint8_t *buffer = memory(size), *bitmap = memory(bits);
-    uint8_t *file = memory(1000);
+    const testee_procedure_t *tested = testee_procedure(node, which % 8u);
+    const icd_procedure_form_t *form = tested != NULL ? tested->form() : NULL;
+    const icd_blocks_form_t *blocks = form != NULL ? form->blocks : NULL;
+    uint32_t numbers[ICD_REGISTERS] = {0};
+    uint8_t *file = allocate(1000);
     seen_t seen = {link, 1, 0, 0};
-    icd_list_t list;
-    icd_download_t download;
-    icd_upload_t upload;
-    icd_erase_t erase;
-    memset(file, which, 1000);
-    if (which % 4u == 0u && icd_list_init(&list, link, on_file, &seen) == ICD_OK) {
-        run(&list.procedure, input);
-    } else if (which % 4u == 1u &&
-               icd_download_init(
-                   &download, link, (icd_bus_t)((which >> 2) % 3u), 1, 2, (which & 0x80u) != 0u ? ICD_SIZE_UNKNOWN : 1000u,
-                   most, buffer, size, bitmap, bits, on_block, &seen) == ICD_OK) {
-        run(&download.procedure, input);
-    } else if (which % 4u == 2u && icd_upload_init(&upload, link, 3, file, 1000, most, bitmap, bits) == ICD_OK) {
-        run(&upload.procedure, input);
-    } else if (which % 4u == 3u && icd_erase_init(&erase, link, 1, 2, true) == ICD_OK) {
-        run(&erase.procedure, input);
+    icd_procedure_memory_t given;
+    icd_procedure_t procedure;
+    if (form == NULL) {
+        free(file);
+        return;
     }
-    free(buffer);
-    free(bitmap);
+    memset(&given, 0, sizeof given);
+    memset(file, which, 1000);
+    given.block = (take(input) * 7u) + 1u;
+    if (blocks != NULL) {
+        const uint32_t block = given.block < blocks->size ? given.block : blocks->size;
+        const uint32_t packets = (block + blocks->packet_bytes - 1u) / blocks->packet_bytes;
+        given.bitmap_size = (packets + 7u) / 8u;
+        given.buffer_size = blocks->sends ? 0u : (size_t)packets * blocks->packet_bytes;
+    }
+    given.bytes = file;
+    given.byte_count = 1000;
+    given.buffer = allocate(given.buffer_size);
+    given.bitmap = allocate(given.bitmap_size);
+    given.on_block = on_block;
+    given.on_entry = on_frame;
+    given.context = &seen;
+    for (size_t i = 0; i < form->input_count; i++) {
+        const icd_input_form_t *one = &form->inputs[i];
+        numbers[i] = one->is_optional && (which & 0x80u) != 0u ? ICD_UNKNOWN : one->values != NULL ? one->values[0] : 1u;
+        numbers[i] = one->is_optional && (which & 0x80u) == 0u ? 1000u : numbers[i];
+    }
+    if (tested->begin(&procedure, (icd_bus_t)((which >> 3) % 3u), numbers, &given) == ICD_OK) {
+        run(&procedure, input);
+    }
+    free(given.buffer);
+    free(given.bitmap);
     free(file);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     input_t input = {data, size};
-    const icd_link_t *link = size < 2u ? NULL : testee_link(take(&input) % testee_node_count);
+    const size_t node = take(&input) % testee_node_count;
+    const icd_link_t *link = size < 2u ? NULL : testee_link(node);
     if (link == NULL) {
         return 0;
     }
@@ -378,7 +389,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         client(link, ICD_BUS_CAN, &input);
         break;
     default:
-        procedures(link, &input);
+        procedures(node, link, &input);
         break;
     }
     return 0;

@@ -167,7 +167,7 @@ class LinkDescription:
 
     def __init__(self, description: Description, facts: Facts) -> None:
         self.facts, self._describe = facts, description.message
-        self._description = description
+        self.description = description
 
     @property
     def telecommands(self) -> list[SentMessage]:
@@ -219,7 +219,7 @@ class LinkDescription:
         """
         exchanges = self.facts.stream.exchanges if self.facts.stream else ()
         enums = [
-            self._description.enum(response.enum)
+            self.description.enum(response.enum)
             for exchange in exchanges
             for response in exchange.responses
             if response.enum is not None

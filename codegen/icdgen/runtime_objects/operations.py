@@ -214,12 +214,10 @@ def identify(link: AnyLink, request: Request) -> Response:
 
 def link_data(link: AnyLink, request: Request) -> Response:
     """Return the facts that only user-defined code reads."""
-    download = link.files.download if link.files else None
     return {
         "boot_ms": link.boot_time,
         "log_file_type": link.log_file.file_type if link.log_file else None,
         "index_file_type": link.index_file.file_type if link.index_file else None,
-        "index_counter": download.index_counter if download else None,
     }
 
 

@@ -18,13 +18,30 @@
 #define BOOTLOADER_CAN_SLOT_BYTES 29u
 /** Buffer size of a client in bytes. */
 #define BOOTLOADER_CLIENT_BYTES 52u
-/** Size in bytes of the largest block of a file. */
-#define BOOTLOADER_BLOCK_BYTES 20480u
-/** Size in bytes of a bitmap for the packets of this block. */
-#define BOOTLOADER_BLOCK_BITMAP_BYTES 128u
 
 /** Return the description of the protocol of Bootloader. */
 ICDGEN_API const icd_link_t *bootloader_link(void);
+
+/** Return the steps of the procedure `list`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_list_form(void);
+
+/** Return the steps of the procedure `download`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_download_form(void);
+
+/** Return the steps of the procedure `upload`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_upload_form(void);
+
+/** Return the steps of the procedure `erase`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_erase_form(void);
+
+/** Return the steps of the procedure `format`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_format_form(void);
+
+/** Return the steps of the procedure `program_information`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_program_information_form(void);
+
+/** Return the steps of the procedure `program_copy`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *bootloader_program_copy_form(void);
 
 #ifndef ICDGEN_SHARED
 #include "link.c"

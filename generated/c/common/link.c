@@ -18,166 +18,243 @@ ICDGEN_API const icd_link_t *common_link(void)
         "common",
     };
     static const icd_message_t telecommands[] = {
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_RESET)
         /*
          * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
          * one that comes is accepted.
          */
         {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_CURRENT_UNIX_TIME)
         {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_CACHE_ENABLED_STATE)
         {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_LOG_POINTER)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_RESET_LOG_POINTER)
         {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ADVANCE_LOG_POINTER)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_ADVANCE_LOG_POINTER)
         {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_BOOT_REGISTERS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_RESET_BOOT_REGISTERS)
         {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
         {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
         {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FORMAT_SD_CARD) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_FORMAT_SD_CARD) || \
+    !defined(ICDGEN_NO_FILES)
         {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ERASE_FILE) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_ERASE_FILE) || \
+    !defined(ICDGEN_NO_FILES)
         {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LOAD_FILE_DOWNLOAD_BLOCK) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_LOAD_FILE_DOWNLOAD_BLOCK) || \
+    !defined(ICDGEN_NO_FILES)
         {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ADVANCE_FILE_LIST_READ_POINTER) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_ADVANCE_FILE_LIST_READ_POINTER) || \
+    !defined(ICDGEN_NO_FILES)
         {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIATE_FILE_UPLOAD)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_INITIATE_FILE_UPLOAD)
         {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_UPLOAD_PACKET)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_FILE_UPLOAD_PACKET)
         {115u, 0u, 22u}, /* File Upload Packet */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FINALIZE_UPLOAD_BLOCK)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_FINALIZE_UPLOAD_BLOCK)
         {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_UPLOAD_BLOCK)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_RESET_UPLOAD_BLOCK)
         {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_FILE_LIST_READ_POINTER) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_RESET_FILE_LIST_READ_POINTER) || \
+    !defined(ICDGEN_NO_FILES)
         {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIATE_DOWNLOAD_BURST) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_INITIATE_DOWNLOAD_BURST) || \
+    !defined(ICDGEN_NO_FILES)
         {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_1) || \
+    !defined(ICDGEN_NO_FILES)
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_2) || \
+    !defined(ICDGEN_NO_FILES)
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_3) || \
+    !defined(ICDGEN_NO_FILES)
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_4) || \
+    !defined(ICDGEN_NO_FILES)
         {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_5) || \
+    !defined(ICDGEN_NO_FILES)
         {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_6) || \
+    !defined(ICDGEN_NO_FILES)
         {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_7) || \
+    !defined(ICDGEN_NO_FILES)
         {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_8) || \
+    !defined(ICDGEN_NO_FILES)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
 #endif
         {0u, 0u, 0u}, /* the end */
     };
     static const icd_message_t telemetry[] = {
         {128u, 0u, 8u}, /* Identification */
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
         {129u, 0u, 6u}, /* Boot And Running Program Status */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_INDEX_AND_STATUS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_BOOT_INDEX_AND_STATUS)
         {130u, 0u, 2u}, /* Boot Index and Status */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_CACHE_ENABLED_STATE)
         {131u, 0u, 1u}, /* Cache enabled state */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
         {134u, 0u, 2u}, /* SRAM Scrub Parameters */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_CURRENT_UNIX_TIME)
         {140u, 0u, 6u}, /* Current Unix Time */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LAST_LOGGED_EVENT)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_LAST_LOGGED_EVENT)
         {141u, 0u, 6u}, /* Last Logged Event */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_LATCHUP_COUNTERS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_SRAM_LATCHUP_COUNTERS)
         {142u, 0u, 6u}, /* SRAM Latchup counters */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_EDAC_ERROR_COUNTERS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_EDAC_ERROR_COUNTERS)
         {143u, 0u, 6u}, /* EDAC Error Counters */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_COMMUNICATION_STATUS)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_COMMUNICATION_STATUS)
         {144u, 0u, 6u}, /* Communication Status */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
         {145u, 0u, 2u}, /* Unix Time Save to Flash */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SD_CARD_FORMAT_ERASE_PROGRESS) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_SD_CARD_FORMAT_ERASE_PROGRESS) || \
+    !defined(ICDGEN_NO_FILES)
         {234u, 0u, 1u}, /* SD card format/erase progress */
 #endif
         {240u, 0u, 4u}, /* Telecommand Acknowledge */
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || \
+    !defined(ICDGEN_NO_FILES)
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_DOWNLOAD_BLOCK_READY) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_DOWNLOAD_BLOCK_READY) || \
+    !defined(ICDGEN_NO_FILES)
         {242u, 0u, 5u}, /* Download Block Ready */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_INFORMATION) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_FILE_INFORMATION) || \
+    !defined(ICDGEN_NO_FILES)
         {243u, 0u, 12u}, /* File Information */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIALIZE_UPLOAD_COMPLETE)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_INITIALIZE_UPLOAD_COMPLETE)
         {244u, 0u, 1u}, /* Initialize Upload Complete */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UPLOAD_BLOCK_COMPLETE)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_UPLOAD_BLOCK_COMPLETE)
         {245u, 0u, 1u}, /* Upload Block Complete */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BLOCK_CHECKSUM)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_BLOCK_CHECKSUM)
         {246u, 0u, 2u}, /* Block Checksum */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_1) || \
+    !defined(ICDGEN_NO_FILES)
         {247u, 0u, 16u}, /* Hole Map 1 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_2) || \
+    !defined(ICDGEN_NO_FILES)
         {248u, 0u, 16u}, /* Hole Map 2 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_3) || \
+    !defined(ICDGEN_NO_FILES)
         {249u, 0u, 16u}, /* Hole Map 3 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_4) || \
+    !defined(ICDGEN_NO_FILES)
         {250u, 0u, 16u}, /* Hole Map 4 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_5) || \
+    !defined(ICDGEN_NO_FILES)
         {251u, 0u, 16u}, /* Hole Map 5 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_6) || \
+    !defined(ICDGEN_NO_FILES)
         {252u, 0u, 16u}, /* Hole Map 6 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_7) || \
+    !defined(ICDGEN_NO_FILES)
         {253u, 0u, 16u}, /* Hole Map 7 */
 #endif
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8) || !defined(ICDGEN_NO_FILES)
+#if !defined(COMMON_CHOSEN) || \
+    defined(COMMON_WITH_HOLE_MAP_8) || \
+    !defined(ICDGEN_NO_FILES)
         {254u, 0u, 16u}, /* Hole Map 8 */
 #endif
         {0u, 0u, 0u}, /* the end */
@@ -210,6 +287,9 @@ ICDGEN_API const icd_link_t *common_link(void)
         0u, /* id_at */
         1u, /* error_at */
     };
+    static const icd_unsolicited_t unsolicited[] = {
+        {119u, 241u, 22u}, /* File Download Buffer with File Contents */
+    };
     static const icd_place_t polled_places[] = {
         {ICD_ROLE_ID, 0u, 8u}, /* Last TC ID */
         {ICD_ROLE_PROCESSED, 8u, 1u}, /* Processed flag */
@@ -217,7 +297,7 @@ ICDGEN_API const icd_link_t *common_link(void)
         {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
     };
     static const icd_step_t polled = {
-        -1, 240, 4u, 4u, polled_places, NULL,
+        -1, 240, 4u, 4u, polled_places,
     };
     /**
      * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
@@ -305,196 +385,43 @@ ICDGEN_API const icd_link_t *common_link(void)
         {12u, 25u}, /* meta */
     };
 #endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_hole_map_message_t hole_maps[] = {
-        {120, 247, 16u, 0u}, /* Hole Map 1 */
-        {121, 248, 16u, 0u}, /* Hole Map 2 */
-        {122, 249, 16u, 0u}, /* Hole Map 3 */
-        {123, 250, 16u, 0u}, /* Hole Map 4 */
-        {124, 251, 16u, 0u}, /* Hole Map 5 */
-        {125, 252, 16u, 0u}, /* Hole Map 6 */
-        {126, 253, 16u, 0u}, /* Hole Map 7 */
-        {127, 254, 16u, 0u}, /* Hole Map 8 */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    /**
-     * Assumed beyond_end: What the bits beyond the end of a short block are is not said. Marked as received, nothing is
-     * sent for them; from the node they are ignored.
-     */
-    static const icd_hole_map_form_t hole_map = {
-        128u, /* bytes */
-        16u, /* message_bytes */
-        false, /* msb0 */
-        true, /* received */
-        true, /* beyond_end */
-        8u, hole_maps, /* messages */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    /**
-     * Assumed first_packet: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
-     * fill: The value is not defined. Erased flash memory reads 0xFF.
-     */
-    static const icd_files_form_t files = {
-        20u, /* packet_bytes */
-        2u, /* counter_bytes */
-        0u, /* first_packet */
-        0xffu, /* fill */
-        1024u, /* block_packets */
-        20480u, /* block_bytes */
-        {119, 241, 241}, /* ids of download packets */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t list_information_places[] = {
-        {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
-        {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* File Ctr */
-        {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
-        {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
-        {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    /**
-     * Assumed poll_interval_ms: No time is given. Assumed max_entries: No number is given. A list without a last file
-     * has to end at some point. Assumed timeout_ms: No time is given. The checksum of a large file has to be computed
-     * meanwhile.
-     */
-    static const icd_list_form_t list = {
-        {118, -1, 0u, 0u, NULL, NULL}, /* Reset File List Read Pointer */
-        {113, -1, 0u, 0u, NULL, NULL}, /* Advance File List Read Pointer */
-        {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u, /* poll_interval in ms */
-        10000u, /* timeout in ms */
-        1024u, /* max_entries */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t download_load_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
-        {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
-        {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t download_ready_places[] = {
-        {ICD_ROLE_READY, 0u, 1u}, /* Ready */
-        {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
-        {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
-        {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t download_burst_places[] = {
-        {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
-        {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    /**
-     * Assumed message_length: The field is not explained. Drivers in use send 20, the bytes of the file in a packet.
-     * Assumed checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the
-     * fill. Assumed index_counter: Which counter goes with the index file is not said. Assumed poll_interval_ms: No
-     * time is given. Assumed ready_timeout_ms: No time is given. Assumed silence_ms: How a burst ends is not said.
-     * Packets follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed
-     * max_bytes: No number is given. A file of unknown size has to end at some point. Assumed i2c: That the reads are
-     * headed by the id of the frame with the packet's format is not said. Assumed can: Download over CAN is not
-     * described. The packets are requested one by one as on I2C.
-     */
-    static const icd_download_form_t download = {
-        {112, -1, 8u, 4u, download_load_places, NULL}, /* Load File Download Block */
-        {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
-        {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
-        20u, /* message_length */
-        false, /* checksum_covers_fill */
-        0u, /* index_counter */
-        50u, /* poll_interval in ms */
-        10000u, /* ready_timeout in ms */
-        500u, /* silence in ms */
-        32u, /* rounds */
-        16777216u, /* max_bytes */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t erase_request_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
-        {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t erase_progress_places[] = {
-        {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
-    static const icd_erase_form_t erase = {
-        {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
-        {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u, /* poll_interval in ms */
-        60000u, /* timeout in ms */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const uint8_t format_request_fresh[] = {
-        0x5au,
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    static const icd_place_t format_progress_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u}, /* Format Busy */
-    };
-#endif
-#ifndef ICDGEN_NO_FILES
-    /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
-    static const icd_erase_form_t format = {
-        {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
-        {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u, /* poll_interval in ms */
-        60000u, /* timeout in ms */
-    };
-#endif
     static const icd_place_t identification_places[] = {
         {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
     };
     static const icd_step_t identification = {
-        -1, 128, 8u, 2u, identification_places, NULL,
+        -1, 128, 8u, 2u, identification_places,
     };
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed
-     * poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
-     * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
-     * the checksum. Assumed finalize: The procedure ends with the checksum and does not name the telecommand that
-     * commits the block. Assumed finalize_timeout_ms: No time is given. Assumed attempts: One attempt and two more are
-     * announced. But the status is raised before each start, so it reads 3 Failed boot attempts before the third, and
-     * at that value no start is said to follow. Assumed time_s: No time is given. Assumed requests: No number is given.
-     * Assumed entries: No number is given. A list without a last file has to end at some point. Assumed every_ms: No
-     * time is given. Assumed for_ms: No time is given. The checksum of a large file has to be computed meanwhile.
-     * Assumed time_s: No time is given. Assumed requests: No number is given. Assumed bytes: No number is given. A file
-     * of unknown size has to end at some point. Assumed rounds: Nothing is said about giving up. Assumed every_ms: No
-     * time is given. Assumed for_ms: No time is given. Assumed first: Where the count begins is not said. Bit 0 of the
-     * hole map is the first packet. Assumed beyond_end: What the bits beyond the end of a short block are is not said.
-     * Marked as received, nothing is sent for them. Assumed with: Message Length is not explained. Drivers in use send
-     * 20, the bytes of the file in a packet. Assumed silence_ms: How a burst ends is not said. Packets follow one
-     * another in rapid succession. Assumed requested_on: That the reads on I2C are headed by the id of the frame with
-     * the packet's format is not said. Download over CAN is not described; the packets are requested one by one as on
-     * I2C. Assumed verify: Whether the checksum covers the fill is not said. It comes with the length of the block,
-     * which does not count the fill. Assumed time_s: No time is given. Assumed requests: No number is given. Assumed
-     * every_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed first: Where the count
-     * begins is not said. Bit 0 of the hole map is the first packet. Assumed fill: The value is not defined. Erased
-     * flash memory reads 0xFF. Assumed verify: Whether the checksum covers the fill is not said. The node learns the
-     * length of the block only when the block is committed, after the checksum. Assumed send: The procedure ends with
-     * the checksum and does not name the telecommand that commits the block. Assumed every_ms: No time is given.
-     * Assumed for_ms: No time is given. Assumed time_s: No time is given. Assumed requests: No number is given. Assumed
-     * every_ms: No time is given. Assumed for_ms: No time is given. Assumed time_s: No time is given. Assumed requests:
-     * No number is given. Assumed every_ms: No time is given. Assumed for_ms: No time is given.
+     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed first_packet:
+     * Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed fill: The value is not
+     * defined. Erased flash memory reads 0xFF. Assumed beyond_end: What the bits beyond the end of a short block are is
+     * not said. Marked as received, nothing is sent for them; from the node they are ignored. Assumed message_length:
+     * The field is not explained. Drivers in use send 20, the bytes of the file in a packet. Assumed
+     * checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the fill.
+     * Assumed index_counter: Which counter goes with the index file is not said. Assumed poll_interval_ms: No time is
+     * given. Assumed ready_timeout_ms: No time is given. Assumed silence_ms: How a burst ends is not said. Packets
+     * follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed max_bytes: No
+     * number is given. A file of unknown size has to end at some point. Assumed i2c: That the reads are headed by the
+     * id of the frame with the packet's format is not said. Assumed can: Download over CAN is not described. The
+     * packets are requested one by one as on I2C. Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing
+     * is said about giving up. Assumed checksum_covers_fill: Not said. The node learns the length of the block only
+     * when the block is committed, after the checksum. Assumed finalize: The procedure ends with the checksum and does
+     * not name the telecommand that commits the block. Assumed finalize_timeout_ms: No time is given. Assumed
+     * poll_interval_ms: No time is given. Assumed max_entries: No number is given. A list without a last file has to
+     * end at some point. Assumed timeout_ms: No time is given. The checksum of a large file has to be computed
+     * meanwhile. Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. Assumed
+     * poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. Assumed attempts: One attempt and two
+     * more are announced. But the status is raised before each start, so it reads 3 Failed boot attempts before the
+     * third, and at that value no start is said to follow. Assumed time_s: No time is given. Assumed requests: No
+     * number is given. Assumed every_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
+     * first: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed fill: The value is
+     * not defined. Erased flash memory reads 0xFF. Assumed verify: Whether the checksum covers the fill is not said.
+     * The node learns the length of the block only when the block is committed, after the checksum. Assumed send: The
+     * procedure ends with the checksum and does not name the telecommand that commits the block. Assumed every_ms: No
+     * time is given. Assumed for_ms: No time is given.
      */
     static const icd_link_t link = {
         nodes, /* whose messages */
@@ -515,6 +442,7 @@ ICDGEN_API const icd_link_t *common_link(void)
         5u, 0u, /* how many; no error */
         &framing, /* framing of the UART */
         &acknowledge, /* acknowledges on the UART */
+        unsolicited, 1u, /* unsolicited */
         87, /* I2C address */
         true, /* I2C: a read may follow its write without a stop */
         5000, /* boot time in ms */
@@ -527,20 +455,278 @@ ICDGEN_API const icd_link_t *common_link(void)
         NULL, /* unsolicited logs */
         ICDGEN_OF_FILES(&packed_time), /* packed times */
         ICDGEN_OF_FILES(&index_entry), /* index of files */
-        ICDGEN_OF_FILES(&hole_map), /* hole map */
-        ICDGEN_OF_FILES(&files), /* file transfer */
-        ICDGEN_OF_FILES(&list), /* list */
-        ICDGEN_OF_FILES(&download), /* download */
-        NULL, /* upload */
-        ICDGEN_OF_FILES(&erase), /* erase */
-        ICDGEN_OF_FILES(&format), /* format */
-        NULL, /* program copy */
-        NULL, /* program information */
         &identification, /* identification */
         NULL, /* envelope */
     };
     /* clang-format on */
     return &link;
+}
+
+ICDGEN_API const icd_procedure_form_t *common_list_form(void)
+{
+#ifdef ICDGEN_NO_FILES
+    return NULL;
+#else
+    /* clang-format off */
+    static const icd_take_t takes_0[] = {
+        {{4u, 1u, 4u, 1u, true}, 5u},
+    };
+    static const icd_test_t conditions_0[] = {
+        {5u, {0u, false}},
+    };
+    static const icd_send_form_t sends[] = {
+        {0x76u, 0u, NULL, NULL, 0u, -1, true, false},
+        {0x71u, 0u, NULL, NULL, 0u, -1, false, true},
+    };
+    static const icd_poll_form_t polls[] = {
+        {0xf3u, takes_0, conditions_0, 1u, 1u, 0u, 50u, 10000u},
+    };
+    static const icd_step_form_t steps[] = {
+        {ICD_STEP_SEND, 0u, false, 0u}, /* Reset File List Read Pointer */
+        {ICD_STEP_POLL, 0u, false, 0u}, /* File Information */
+        {ICD_STEP_END_IF_ZEROS, 0u, false, 0u},
+        {ICD_STEP_COLLECT, 0u, false, 0u},
+        {ICD_STEP_SEND, 1u, false, 0u}, /* Advance File List Read Pointer */
+        {ICD_STEP_JUMP, 0u, false, 1u},
+    };
+    /**
+     * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed limits entries: No
+     * number is given. A list without a last file has to end at some point. Assumed repeat.File Information every_ms:
+     * No time is given. Assumed repeat.File Information for_ms: No time is given. The checksum of a large file has to
+     * be computed meanwhile.
+     */
+    static const icd_procedure_form_t form = {
+        steps, 6u, /* steps */
+        sends, polls, NULL, NULL, NULL, /* sends, polls, receives, checksums, tests */
+        NULL, /* inputs */
+        0u, 0u, /* how many inputs, receives */
+        NULL, /* blocks */
+        0u, /* largest number of bytes to send */
+        1024u, /* largest number of entries */
+        3600000u, /* longest duration in ms */
+        1000000u, /* largest number of requests */
+    };
+    /* clang-format on */
+    return &form;
+#endif
+}
+
+ICDGEN_API const icd_procedure_form_t *common_download_form(void)
+{
+#ifdef ICDGEN_NO_FILES
+    return NULL;
+#else
+    /* clang-format off */
+    static const icd_put_t puts_0[] = {
+        {{4u, 1u, 0u, 8u, true}, {5u, true}},
+        {{5u, 1u, 0u, 8u, true}, {6u, true}},
+        {{6u, 4u, 0u, 32u, true}, {0u, true}},
+        {{10u, 2u, 0u, 16u, true}, {1u, true}},
+    };
+    static const icd_take_t takes_0[] = {
+        {{4u, 1u, 0u, 1u, true}, 8u},
+        {{4u, 1u, 1u, 1u, true}, 9u},
+        {{7u, 2u, 0u, 16u, true}, 10u},
+        {{5u, 2u, 0u, 16u, true}, 11u},
+    };
+    static const icd_test_t conditions_0[] = {
+        {8u, {1u, false}},
+        {9u, {1u, false}},
+    };
+    static const icd_put_t puts_1[] = {
+        {{4u, 1u, 0u, 8u, true}, {20u, false}},
+        {{5u, 1u, 0u, 1u, true}, {2u, true}},
+    };
+    static const icd_send_form_t sends[] = {
+        {0x70u, 8u, NULL, puts_0, 4u, -1, true, false},
+        {0x77u, 2u, NULL, puts_1, 2u, -1, false, true},
+    };
+    static const icd_poll_form_t polls[] = {
+        {0xf2u, takes_0, conditions_0, 4u, 1u, 1u, 50u, 10000u},
+    };
+    static const icd_receive_form_t receives[] = {
+        {0xf1u, {4u, 2u, 0u, 16u, true}, 2u, 500u, 6u},
+    };
+    static const icd_checksum_test_t checksums[] = {
+        {NULL, true, false, {11u, true}},
+    };
+    static const icd_test_t tests[] = {
+        {0u, {10u, true}},
+        {2u, {0u, false}},
+    };
+    static const icd_step_form_t steps[] = {
+        {ICD_STEP_NEXT_BLOCK, 0u, false, 12u},
+        {ICD_STEP_SEND, 0u, false, 0u}, /* Load File Download Block */
+        {ICD_STEP_POLL, 0u, false, 0u}, /* Download Block Ready */
+        {ICD_STEP_SET_LENGTH, 0u, false, 0u},
+        {ICD_STEP_NEXT_ROUND, 0u, false, 10u},
+        {ICD_STEP_SKIP_UNLESS, 1u, false, 7u},
+        {ICD_STEP_SEND_MAP, 0u, false, 0u},
+        {ICD_STEP_SEND, 1u, false, 0u}, /* Initiate Download Burst */
+        {ICD_STEP_RECEIVE, 0u, false, 0u}, /* File Download Buffer with File Contents */
+        {ICD_STEP_JUMP, 0u, false, 4u},
+        {ICD_STEP_VERIFY_CRC, 0u, true, 0u},
+        {ICD_STEP_JUMP, 0u, false, 0u},
+    };
+    static const icd_input_form_t inputs[] = {
+        {255u, NULL, 0u, false}, /* type */
+        {255u, NULL, 0u, false}, /* counter */
+        {16777216u, NULL, 0u, true}, /* size */
+    };
+    static const icd_map_message_t map_messages[] = {
+        {0x78u, 0xf7u}, /* Hole Map 1 */
+        {0x79u, 0xf8u}, /* Hole Map 2 */
+        {0x7au, 0xf9u}, /* Hole Map 3 */
+        {0x7bu, 0xfau}, /* Hole Map 4 */
+        {0x7cu, 0xfbu}, /* Hole Map 5 */
+        {0x7du, 0xfcu}, /* Hole Map 6 */
+        {0x7eu, 0xfdu}, /* Hole Map 7 */
+        {0x7fu, 0xfeu}, /* Hole Map 8 */
+    };
+    static const icd_map_form_t map = {
+        map_messages, 8u, /* messages */
+        16u, 0u, 16u, /* length of a message, offset and bytes of the map */
+        false, true, true, /* bit 0 is the most significant one, received, beyond the end */
+    };
+    static const icd_blocks_form_t blocks = {
+        false, /* sends */
+        7u, /* register with the number of bytes */
+        1u, 20480u, /* first step, bytes of a block */
+        20u, 0u, 0x00u, /* bytes of a packet, first number, fill */
+        32u, 16777216u, /* rounds, bytes in all */
+        &map, /* map */
+    };
+    /**
+     * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed limits bytes: No
+     * number is given. A file of unknown size has to end at some point. Assumed blocks.blocks rounds: Nothing is said
+     * about giving up. Assumed blocks.blocks.Download Block Ready every_ms: No time is given. Assumed
+     * blocks.blocks.Download Block Ready for_ms: No time is given. Assumed blocks.blocks.missing.missing first: Where
+     * the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
+     * blocks.blocks.missing.missing.send beyond_end: What the bits beyond the end of a short block are is not said.
+     * Marked as received, nothing is sent for them. Assumed blocks.blocks.missing.missing.Initiate Download Burst with:
+     * Message Length is not explained. Drivers in use send 20, the bytes of the file in a packet. Assumed
+     * blocks.blocks.missing.missing.File Download Buffer with File Contents silence_ms: How a burst ends is not said.
+     * Packets follow one another in rapid succession. Assumed blocks.blocks.missing.missing.File Download Buffer with
+     * File Contents requested_on: That the reads on I2C are headed by the id of the frame with the packet's format is
+     * not said. Download over CAN is not described; the packets are requested one by one as on I2C. Assumed
+     * blocks.blocks.verify verify: Whether the checksum covers the fill is not said. It comes with the length of the
+     * block, which does not count the fill.
+     */
+    static const icd_procedure_form_t form = {
+        steps, 12u, /* steps */
+        sends, polls, receives, checksums, tests, /* sends, polls, receives, checksums, tests */
+        inputs, /* inputs */
+        3u, 1u, /* how many inputs, receives */
+        &blocks, /* blocks */
+        0u, /* largest number of bytes to send */
+        0u, /* largest number of entries */
+        86400000u, /* longest duration in ms */
+        100000000u, /* largest number of requests */
+    };
+    /* clang-format on */
+    return &form;
+#endif
+}
+
+ICDGEN_API const icd_procedure_form_t *common_erase_form(void)
+{
+#ifdef ICDGEN_NO_FILES
+    return NULL;
+#else
+    /* clang-format off */
+    static const icd_put_t puts_0[] = {
+        {{4u, 1u, 0u, 8u, true}, {5u, true}},
+        {{5u, 1u, 0u, 8u, true}, {6u, true}},
+        {{6u, 1u, 0u, 1u, true}, {7u, true}},
+    };
+    static const icd_take_t takes_0[] = {
+        {{4u, 1u, 1u, 1u, true}, 8u},
+    };
+    static const icd_test_t conditions_0[] = {
+        {8u, {0u, false}},
+    };
+    static const icd_send_form_t sends[] = {
+        {0x6cu, 3u, NULL, puts_0, 3u, -1, true, false},
+    };
+    static const icd_poll_form_t polls[] = {
+        {0xeau, takes_0, conditions_0, 1u, 1u, 0u, 200u, 60000u},
+    };
+    static const icd_test_t tests[] = {
+        {7u, {1u, false}},
+    };
+    static const icd_step_form_t steps[] = {
+        {ICD_STEP_SEND, 0u, false, 0u}, /* Erase File */
+        {ICD_STEP_SKIP_UNLESS, 0u, false, 3u},
+        {ICD_STEP_POLL, 0u, false, 0u}, /* SD card format/erase progress */
+    };
+    static const icd_input_form_t inputs[] = {
+        {255u, NULL, 0u, false}, /* type */
+        {255u, NULL, 0u, false}, /* counter */
+        {1u, NULL, 0u, false}, /* all */
+    };
+    /**
+     * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed SD card
+     * format/erase progress every_ms: No time is given. Assumed SD card format/erase progress for_ms: No time is given.
+     */
+    static const icd_procedure_form_t form = {
+        steps, 3u, /* steps */
+        sends, polls, NULL, NULL, tests, /* sends, polls, receives, checksums, tests */
+        inputs, /* inputs */
+        3u, 0u, /* how many inputs, receives */
+        NULL, /* blocks */
+        0u, /* largest number of bytes to send */
+        0u, /* largest number of entries */
+        600000u, /* longest duration in ms */
+        10000u, /* largest number of requests */
+    };
+    /* clang-format on */
+    return &form;
+#endif
+}
+
+ICDGEN_API const icd_procedure_form_t *common_format_form(void)
+{
+#ifdef ICDGEN_NO_FILES
+    return NULL;
+#else
+    /* clang-format off */
+    static const uint8_t data_0[] = {
+        0x5au,
+    };
+    static const icd_take_t takes_0[] = {
+        {{4u, 1u, 0u, 1u, true}, 5u},
+    };
+    static const icd_test_t conditions_0[] = {
+        {5u, {0u, false}},
+    };
+    static const icd_send_form_t sends[] = {
+        {0x21u, 1u, data_0, NULL, 0u, -1, true, false},
+    };
+    static const icd_poll_form_t polls[] = {
+        {0xeau, takes_0, conditions_0, 1u, 1u, 0u, 200u, 60000u},
+    };
+    static const icd_step_form_t steps[] = {
+        {ICD_STEP_SEND, 0u, false, 0u}, /* Format SD card */
+        {ICD_STEP_POLL, 0u, false, 0u}, /* SD card format/erase progress */
+    };
+    /**
+     * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed SD card
+     * format/erase progress every_ms: No time is given. Assumed SD card format/erase progress for_ms: No time is given.
+     */
+    static const icd_procedure_form_t form = {
+        steps, 2u, /* steps */
+        sends, polls, NULL, NULL, NULL, /* sends, polls, receives, checksums, tests */
+        NULL, /* inputs */
+        0u, 0u, /* how many inputs, receives */
+        NULL, /* blocks */
+        0u, /* largest number of bytes to send */
+        0u, /* largest number of entries */
+        600000u, /* longest duration in ms */
+        10000u, /* largest number of requests */
+    };
+    /* clang-format on */
+    return &form;
+#endif
 }
 
 #endif /* COMMON_LINK_C */

@@ -18,13 +18,21 @@
 #define COMMON_CAN_SLOT_BYTES 29u
 /** Buffer size of a client in bytes. */
 #define COMMON_CLIENT_BYTES 52u
-/** Size in bytes of the largest block of a file. */
-#define COMMON_BLOCK_BYTES 20480u
-/** Size in bytes of a bitmap for the packets of this block. */
-#define COMMON_BLOCK_BITMAP_BYTES 128u
 
 /** Return the description of the protocol of Common messages. */
 ICDGEN_API const icd_link_t *common_link(void);
+
+/** Return the steps of the procedure `list`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *common_list_form(void);
+
+/** Return the steps of the procedure `download`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *common_download_form(void);
+
+/** Return the steps of the procedure `erase`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *common_erase_form(void);
+
+/** Return the steps of the procedure `format`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *common_format_form(void);
 
 #ifndef ICDGEN_SHARED
 #include "link.c"

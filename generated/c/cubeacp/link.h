@@ -20,13 +20,21 @@
 #define CUBEACP_CLIENT_BYTES 1012u
 /** Buffer size of a log reader in bytes. */
 #define CUBEACP_LOG_BYTES 496u
-/** Size in bytes of the largest block of a file. */
-#define CUBEACP_BLOCK_BYTES 20480u
-/** Size in bytes of a bitmap for the packets of this block. */
-#define CUBEACP_BLOCK_BITMAP_BYTES 128u
 
 /** Return the description of the protocol of CubeACP. */
 ICDGEN_API const icd_link_t *cubeacp_link(void);
+
+/** Return the steps of the procedure `list`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *cubeacp_list_form(void);
+
+/** Return the steps of the procedure `download`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *cubeacp_download_form(void);
+
+/** Return the steps of the procedure `erase`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *cubeacp_erase_form(void);
+
+/** Return the steps of the procedure `format`; NULL if procedures are left out. */
+ICDGEN_API const icd_procedure_form_t *cubeacp_format_form(void);
 
 #ifndef ICDGEN_SHARED
 #include "link.c"

@@ -252,7 +252,7 @@ ICDGEN_API icd_status_t icd_client_start(
         return ICD_ERROR_LENGTH;
     }
     status = icd_i2c_write(
-        client->link, request->id, request->data, telecommand ? request->length : 0u,
+        client->link, message->id, request->data, telecommand ? request->length : 0u,
         telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
         &client->whole_length);
     client->direction = request->direction;

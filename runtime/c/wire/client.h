@@ -27,7 +27,7 @@ typedef enum {
  */
 typedef struct {
     icd_direction_t direction;
-    uint8_t id;
+    uint32_t id;
     bool repeat;
     const uint8_t *data;
     size_t length;

@@ -4,6 +4,7 @@
 #include "client_input.h"
 #include "link.c"
 #include "events.c"
+#include "uart.c"
 #include "client.c"
 
 /*
@@ -147,12 +148,9 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         icdgen_client_tell(ICD_EVENT_LOG, message[0], message, length, call->on_event, call->context);
         return;
     }
-    if (kind == ICD_UART_PACKET) {
-        icd_event_t event = icdgen_event(ICD_EVENT_PACKET, message[0]);
-        event.number = icdgen_number(link, message + 1, link->files->counter_bytes);
-        event.data = message + 1u + link->files->counter_bytes;
-        event.length = link->files->packet_bytes;
-        call->on_event(call->context, &event);
+    if (kind == ICD_UART_ARRIVED) {
+        const uint8_t id = icdgen_unsolicited(link, message, length)->telemetry;
+        icdgen_client_tell(ICD_EVENT_ARRIVED, id, message + 1, length - 1u, call->on_event, call->context);
         return;
     }
     if (kind == ICD_UART_REPLY) {

@@ -20,7 +20,7 @@ typedef enum {
     ICD_EVENT_DONE,             /**< Client: the request succeeded; for telemetry, `data` is the frame. */
     ICD_EVENT_REFUSED,          /**< Client: the node rejected the request (negative acknowledge). */
     ICD_EVENT_TIMEOUT,          /**< Client: no reply, or the node did not process the telecommand in time. */
-    ICD_EVENT_PACKET,           /**< Client: a packet of a file download. */
+    ICD_EVENT_ARRIVED,          /**< Client: unsolicited telemetry. */
     ICD_EVENT_LOG,              /**< Client: an unsolicited log message; `data` starts with its id. */
     ICD_EVENT_STRAY, /**< Client: an unexpected message; `data` starts with its id (I2C: the bytes that were read). */
     ICD_EVENT_CHECKSUM, /**< Client: a frame with a wrong checksum; the request continues. */
@@ -28,7 +28,7 @@ typedef enum {
 } icd_event_kind_t;
 
 /** Kinds of messages from the node on the UART. */
-typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_PACKET, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
+typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_ARRIVED, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
 
 /** An event. The event and its data are valid only during the call of the callback. */
 typedef struct {
@@ -42,7 +42,6 @@ typedef struct {
     icd_reason_t reason;       /**< REFUSED: meaning of the error code. */
     int64_t code;              /**< REFUSED: error code, -1 if the bus does not report it. */
     int64_t parameter;         /**< REFUSED: index of the invalid parameter, -1 if the bus does not report it. */
-    uint32_t number;           /**< PACKET: number of the packet. */
     uint32_t missing;          /**< INCOMPLETE: number of missing packets. */
     uint8_t source;            /**< CAN: address of the sender. */
     uint8_t destination;       /**< MESSAGE on CAN. */

@@ -6,25 +6,7 @@
 #include "forms.h"
 #include "link.h"
 
-/* ---- hole maps and the index file -------------------------------------------------------------------------------- */
-
-/**
- * Initialize the map of a block of `packets` packets, all of them missing. Return ICD_ERROR_RANGE if a block cannot
- * have so many packets.
- */
-ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
-
-/**
- * Mark packet `number` as received. Return ICD_ERROR_RANGE if the block or the map has no such packet,
- * ICD_ERROR_UNSUPPORTED if the node has no hole maps.
- */
-ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
-
-/** Return whether packet `number` is marked as received; false if the map has no such packet. */
-ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
-
-/** Return the number of missing packets of a block. */
-ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets);
+/* ---- the index file ---------------------------------------------------------------------------------------------- */
 
 /** An entry of the index file. `time` is packed; see icd_dos_time_unpack(). */
 typedef struct {

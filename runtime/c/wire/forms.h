@@ -47,6 +47,13 @@ typedef struct {
     uint16_t error_at;
 } icd_acknowledge_t;
 
+/** Telemetry that arrives unsolicited on the UART: id at the head of the message, and what it contains. */
+typedef struct {
+    uint8_t id;
+    uint8_t telemetry;
+    uint16_t length; /**< Of the telemetry. */
+} icd_unsolicited_t;
+
 /** What an error code means. */
 typedef enum {
     ICD_REASON_UNKNOWN = 0,
@@ -245,30 +252,14 @@ typedef struct {
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
 
-/** Role of a field in a procedure. */
+/** Role of a field in a message that the wire layer requests. */
 typedef enum {
-    ICD_ROLE_TYPE,
-    ICD_ROLE_COUNTER,
-    ICD_ROLE_OFFSET,
-    ICD_ROLE_LENGTH,
-    ICD_ROLE_READY,
-    ICD_ROLE_ERROR,
-    ICD_ROLE_CHECKSUM,
-    ICD_ROLE_IGNORE_HOLE_MAP,
-    ICD_ROLE_DESTINATION,
-    ICD_ROLE_BLOCK_SIZE,
-    ICD_ROLE_BUSY,
-    ICD_ROLE_NUMBER,
-    ICD_ROLE_BYTES,
-    ICD_ROLE_ALL,
-    ICD_ROLE_SIZE,
-    ICD_ROLE_TIME,
     ICD_ROLE_NODE_TYPE,
     ICD_ROLE_INTERFACE_VERSION,
     ICD_ROLE_ID,
     ICD_ROLE_PROCESSED,
-    ICD_ROLE_PARAMETER,
-    ICD_ROLE_PROGRAM
+    ICD_ROLE_ERROR,
+    ICD_ROLE_PARAMETER
 } icd_role_t;
 
 /** Position of the field with a role, in bits. */
@@ -278,55 +269,13 @@ typedef struct {
     uint16_t bits;
 } icd_place_t;
 
-/** A message used in a procedure. An id is -1 if the message does not exist in this direction. */
+/** A message that the wire layer requests. An id is -1 if the message does not exist in this direction. */
 typedef struct {
     int16_t telecommand;
     int16_t telemetry;
     uint16_t length;
     uint8_t place_count;
     const icd_place_t *places;
-    const uint8_t *fresh; /**< Initial content of the frame. */
 } icd_step_t;
-
-/** A message that carries a piece of the hole map. */
-typedef struct {
-    int16_t telecommand;
-    int16_t telemetry;
-    uint16_t length;
-    uint16_t at;
-} icd_hole_map_message_t;
-
-/** Hole map: one bit for each packet of a block. */
-typedef struct {
-    /** Length of the map. */
-    uint16_t bytes;
-    /** Bytes of the map in each message. */
-    uint16_t message_bytes;
-    /** Whether bit 0 is the most significant bit of a byte. */
-    bool msb0;
-    /** Value of the bit of a received packet. */
-    bool received;
-    /** Value of the bits of packets beyond the end of the block. */
-    bool beyond_end;
-    uint8_t message_count;
-    const icd_hole_map_message_t *messages;
-} icd_hole_map_form_t;
-
-/** Files and their blocks. `packet_ids` are indexed by icd_bus_t; -1: no download packets on this bus. */
-typedef struct {
-    /** Bytes of the file in a packet. */
-    uint16_t packet_bytes;
-    /** Bytes of the packet counter before them. */
-    uint8_t counter_bytes;
-    /** Number of the first packet of a block. */
-    uint16_t first_packet;
-    /** Value of the bytes of the last packet beyond the end of the file. */
-    uint8_t fill;
-    /** Maximum number of packets of a block. */
-    uint32_t block_packets;
-    /** Maximum number of bytes of a block. */
-    uint32_t block_bytes;
-    int16_t packet_ids[3];
-} icd_files_form_t;
 
 #endif /* ICDGEN_WIRE_FORMS_H */

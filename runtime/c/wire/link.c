@@ -22,7 +22,7 @@ ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node)
     return false;
 }
 
-ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
+ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, uint32_t id)
 {
     const icd_message_t *const table = direction == ICD_TELECOMMAND ? link->telecommands : link->telemetry;
     size_t low = 0, high = direction == ICD_TELECOMMAND ? link->telecommand_count : link->telemetry_count;
@@ -88,35 +88,6 @@ static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step
         at += count;
     }
     return value;
-}
-
-/* Write the raw value of the field with a role. Its bits in the frame must be 0. */
-static inline void icdgen_put(
-    const icd_link_t *link, const icd_step_t *step, uint8_t *frame, icd_role_t role, uint32_t value)
-{
-    const icd_place_t *const place = icdgen_place(step, role);
-    unsigned at = place != NULL ? place->at : 0u;
-    const unsigned end = place != NULL ? at + place->bits : 0u;
-    unsigned below = link->little ? 0u : end - at;
-    while (at < end) {
-        const unsigned first = at % 8u;
-        const unsigned count = 8u - first < end - at ? 8u - first : end - at;
-        const unsigned shift = link->msb0 ? 8u - first - count : first;
-        below -= link->little ? 0u : count;
-        frame[at / 8u] = ICDGEN_U8(frame[at / 8u] | (((value >> below) & ((1u << count) - 1u)) << shift));
-        below += link->little ? count : 0u;
-        at += count;
-    }
-}
-
-/* Return whether a number is in the list. NULL allows all numbers. */
-static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
-{
-    bool found = allowed == NULL;
-    for (size_t i = 0; !found && i < count; ++i) {
-        found = allowed[i] == number;
-    }
-    return found;
 }
 
 ICDGEN_API icd_status_t

@@ -4,7 +4,6 @@
 #include "../icdgen.h"
 #include "linkage.h"
 #include "forms.h"
-#include "procedure_forms.h"
 #include "stream_form.h"
 
 /** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
@@ -56,6 +55,8 @@ typedef struct {
     uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
+    const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
+    uint8_t unsolicited_count;
     int16_t i2c_address;      /**< 7-bit address, -1 if the ICD has none. */
     bool i2c_repeated_start;  /**< Whether a read may follow its write without a stop. */
     int32_t boot_ms;          /**< Waiting time of the boot program in ms, -1 if unknown. */
@@ -68,15 +69,6 @@ typedef struct {
     const icd_log_message_form_t *log_message;
     const icd_time_form_t *time;
     const icd_index_form_t *index;
-    const icd_hole_map_form_t *hole_map;
-    const icd_files_form_t *files;
-    const icd_list_form_t *list;
-    const icd_download_form_t *download;
-    const icd_upload_form_t *upload;
-    const icd_erase_form_t *erase;
-    const icd_erase_form_t *format;
-    const icd_operation_form_t *program_copy;
-    const icd_operation_form_t *program_information;
     const icd_step_t *identification;
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
@@ -85,7 +77,7 @@ typedef struct {
 ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node);
 
 /** Return the message with this id; NULL if the node has none. */
-ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id);
+ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, uint32_t id);
 
 /** Identity of a node. */
 typedef struct {

@@ -189,11 +189,22 @@ static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mas
     return count;
 }
 
+/* Return what an unsolicited message contains; NULL if it is none. */
+static inline const icd_unsolicited_t *icdgen_unsolicited(const icd_link_t *link, const uint8_t *message, size_t length)
+{
+    for (size_t i = 0; i < link->unsolicited_count; ++i) {
+        const icd_unsolicited_t *const row = &link->unsolicited[i];
+        if (row->id == message[0] && length == 1u + ICDGEN_SIZE(row->length)) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
 {
     const uint8_t id = message[0];
     const icd_log_message_form_t *const log = link->log_message;
-    const icd_files_form_t *const files = link->files;
     if (log != NULL && id == log->id) {
         const size_t given = length > log->mask_at ? length - log->mask_at : 0u;
         const size_t slots = icdgen_log_slots(link, given != 0u ? message + log->mask_at : message, given);
@@ -205,11 +216,7 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     if (link->acknowledge != NULL && length == link->acknowledge->length) {
         return ICD_UART_ACKNOWLEDGE;
     }
-    if (files != NULL && ICDGEN_I16(id) == files->packet_ids[ICD_BUS_UART] &&
-        length == 1u + ICDGEN_U32(files->counter_bytes) + files->packet_bytes) {
-        return ICD_UART_PACKET;
-    }
-    return ICD_UART_OTHER;
+    return icdgen_unsolicited(link, message, length) != NULL ? ICD_UART_ARRIVED : ICD_UART_OTHER;
 }
 
 #endif /* ICDGEN_WIRE_UART_C */

@@ -26,7 +26,7 @@ CAN_BYTES = 8  # of a classic CAN frame
 MOST = (1 << 32) - 1
 DATE = ("year", "month", "day", "hour", "minute", "second")
 ENTRY = ("type", "counter", "checksum", "size", "time")
-USERS = ("boot_ms", "log_file_type", "index_file_type", "index_counter")
+USERS = ("boot_ms", "log_file_type", "index_file_type")
 TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
+from icdgen.backends.c.procedures import ProcedureCode
 from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.types import type_of
@@ -20,6 +21,7 @@ from icdgen.describe import (
     NodeDescription,
     describe,
 )
+from icdgen.describe.links import Assumptions, LinkDescription, links_of
 from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
@@ -99,6 +101,17 @@ class Dispatcher(NamedTuple):
     is_open: bool  # frames of some of its messages differ in length
 
 
+class ProcedureRow(NamedTuple):
+    """A procedure of a node, and how its typed function is called."""
+
+    place: int
+    form: str
+    name: str
+    types: list[str]  # of the inputs that are numbers
+    arguments: list[str]
+    outputs: list[str]
+
+
 class CTesteeBackend:
     """Includes the headers of the ``c`` backend and takes all names from its plan."""
 
@@ -129,8 +142,17 @@ class CTesteeBackend:
             if linked or name in MESSAGES:
                 yield PurePosixPath(name), render.source(name)
         nodes = [node.name for node in description.nodes]
+        links = links_of(description)
+        procedures = {
+            place: list(_procedures(description.node(name), links[name]))
+            for place, name in linked.items()
+        }
         yield PurePosixPath("testee_nodes.c"), render(
-            "nodes.c.j2", origin=origin(), nodes=nodes, linked=linked
+            "nodes.c.j2",
+            origin=origin(),
+            nodes=nodes,
+            linked=linked,
+            procedures=procedures,
         )
         yield PurePosixPath("testee_ops.c"), render(
             "ops.c.j2", origin=origin(), linked=bool(linked)
@@ -144,6 +166,33 @@ class CTesteeBackend:
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None of its own: all are made from those of the ``c`` backend."""
         return iter(())
+
+
+def _procedures(node: NodeDescription, link: LinkDescription) -> Iterator[ProcedureRow]:
+    assumed = Assumptions(link.facts)
+    for place, each in enumerate(link.facts.procedures):
+        yield _procedure(place, ProcedureCode(node, link, each, assumed))
+
+
+def _procedure(place: int, code: ProcedureCode) -> ProcedureRow:
+    inputs, types = [], []
+    for each in code.procedure.inputs:
+        if each.is_bytes:
+            inputs += ["given->bytes", "given->byte_count"]
+        else:
+            inputs.append(f"({code.type_of(each)})numbers[{len(types)}]")
+            types.append(code.type_of(each))
+    members = {value: member for member, value in code.members}
+    memory = [f"given->{members[name]}" for name in code.memory_names]
+    bus = ["bus"] if code.needs_bus else []
+    return ProcedureRow(
+        place,
+        code.form,
+        code.name,
+        types,
+        ["procedure", *bus, *inputs, *memory],
+        [output.name for output in code.outputs],
+    )
 
 
 class _Rows:

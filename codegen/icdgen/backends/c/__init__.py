@@ -81,8 +81,10 @@ class CBackend:
             )
         links = links_of(description)
         if links:
-            step_bytes = max(1, *(link.longest_step for link in links.values()))
-            sizes = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
+            from icdgen.backends.c.procedures import procedure_sizes
+
+            longest = procedure_sizes(links.values())
+            sizes = {"wire/sizes.h": render("sizes.h.j2", sizes=longest)}
             yield PurePosixPath("icdgen_wire.h"), first + assembled(
                 "icdgen_wire.h", render, sizes
             )
@@ -147,13 +149,27 @@ def _link(
     render: Renderer,
     shared: Mapping[str, object],
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """List the files of the link of a node: its facts, and its client."""
+    """List the files of the link of a node: its facts, its client and its procedures."""
     from icdgen.backends.c import links
+    from icdgen.backends.c.procedures import ProcedureCode
+    from icdgen.describe.links import Assumptions
 
-    folder, tables = PurePosixPath(node.name), links.tables(link)
-    values = {"node": node, "link": link, "sizes": links.sizes(link), **shared}
+    folder, assumed = PurePosixPath(node.name), Assumptions(link.facts)
+    procedures = [
+        ProcedureCode(node, link, each, assumed) for each in link.facts.procedures
+    ]
+    values = {
+        "node": node,
+        "link": link,
+        "sizes": links.sizes(link),
+        "procedures": procedures,
+        **shared,
+    }
+    tables = links.tables(link, assumed)
     yield folder / "link.h", render("link.h.j2", **values)
     yield folder / "link.c", render("link.c.j2", tables=tables, **values)
+    if procedures:
+        yield folder / "procedures.h", render("procedures.h.j2", **values)
     client = "client.h.j2" if node.has_client else "stream_client.h.j2"
     yield folder / "client.h", render(client, **values)
 
@@ -163,6 +179,12 @@ def client_headers(node: NodeDescription) -> list[str]:
     included = (f"../{name}.h" for name in node.model.includes)
     own = (f"{message.name}.h" for message in node.messages)
     return ["link.h", *sorted({*included, *own})]
+
+
+def procedure_headers(node: NodeDescription) -> list[str]:
+    """Return the headers that the procedures of a node include."""
+    included = (f"../{name}.h" for name in node.model.includes)
+    return ["link.h", *included, *(["enums.h"] if node.enums else [])]
 
 
 _FUNCTIONS = {
@@ -177,8 +199,9 @@ _FUNCTIONS = {
         encoding.counted_text, encoding.encode_statements, encoding.size, encoding.write_statements, file_comment,
         head, includes, length_text, like, literal, members.excess, members.initial_statements, members.misfits,
         names.client_function, names.constant, names.enumerator, names.enumerator_of, names.getter, names.has,
-        names.part_name, names.reading, names.selector, names.setter, names.walking, names.writing, parts.part_about,
-        parts.part_statements, presence_comment, prose, sentence, C_NAMES.symbol, types.declaration, types.type_of,
+        names.part_name, names.reading, procedure_headers, names.selector, names.setter, names.walking,
+        names.writing, parts.part_about, parts.part_statements, presence_comment, prose, sentence, C_NAMES.symbol,
+        types.declaration, types.type_of,
         words,
     )
 }  # fmt: skip

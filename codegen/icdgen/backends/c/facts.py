@@ -16,9 +16,6 @@ TYPES: dict[type, str] = {
     sections.Checksum: "icd_checksum_form_t", sections.Can: "icd_can_form_t", sections.Extended: "icd_can_extended_t",
     sections.LogMask: "icd_log_mask_form_t", sections.LogFile: "icd_log_file_form_t",
     sections.LogMessage: "icd_log_message_form_t", sections.Index: "icd_index_form_t",
-    sections.HoleMap: "icd_hole_map_form_t", sections.Files: "icd_files_form_t", sections.Listing: "icd_list_form_t",
-    sections.Download: "icd_download_form_t", sections.Upload: "icd_upload_form_t",
-    sections.Erasure: "icd_erase_form_t", sections.Operation: "icd_operation_form_t",
 }  # fmt: skip
 
 

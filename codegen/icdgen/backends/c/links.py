@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator
 
-from icdgen.backends.c.facts import TYPES, Row, boolean, or_none, spelled
+from icdgen.backends.c.facts import TYPES, Row, boolean, or_none
 from icdgen.backends.c.stream_rows import (
     field_row,
     message_row,
@@ -14,8 +13,9 @@ from icdgen.backends.c.stream_rows import (
     stream_sizes,
     verdict_name,
 )
+from icdgen.backends.c.tables import Table, TableSet
 from icdgen.backends.c.text import comment, plain
-from icdgen.backends.lines import STEP, in_rows
+from icdgen.backends.lines import STEP
 from icdgen.describe.links import (
     CAN_PARTS,
     INDEX_PARTS,
@@ -23,10 +23,8 @@ from icdgen.describe.links import (
     LinkDescription,
     SentMessage,
     StepDescription,
-    byte_table,
 )
 from icdgen.icd.responses import ID_BYTES
-from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.envelope import (
     CRC,
     DIRECTIONS,
@@ -35,21 +33,11 @@ from icdgen.protocol.envelope import (
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, Response
-from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
+from icdgen.protocol.sections import CAN_KINDS, Crc
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256
 _CRC = f"/* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */\n{STEP * 2}"
-
-
-class Table(NamedTuple):
-    """Constant of the link."""
-
-    comment: str
-    type: str
-    name: str
-    rows: Sequence[str]
-    unless: str = ""  # macro that omits the table
 
 
 def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
@@ -79,44 +67,19 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     if facts.log_file and facts.mask:
         most = max(facts.mask.size + link.log_entry_bytes, facts.log_file.header_bytes)
         rows.append(("LOG_BYTES", most, "Buffer size of a log reader in bytes."))
-    if facts.files:
-        packets = facts.packets_of(facts.files.block_bytes)
-        rows.append(
-            (
-                "BLOCK_BYTES",
-                packets * facts.files.packet_bytes,
-                "Size in bytes of the largest block of a file.",
-            )
-        )
-        rows.append(
-            (
-                "BLOCK_BITMAP_BYTES",
-                -(-packets // 8),
-                "Size in bytes of a bitmap for the packets of this block.",
-            )
-        )
     return rows
 
 
-def tables(link: LinkDescription) -> list[Table]:
+def tables(link: LinkDescription, assumed: Assumptions) -> list[Table]:
     """Return the tables of a node, in the order of their declaration."""
-    return _Tables(link).all()
+    return _Tables(link, assumed).all()
 
 
-class _Tables:
+class _Tables(TableSet):
     """Tables of a node.
 
     Each method declares a table and returns the expression that refers to it.
     """
-
-    def __init__(self, link: LinkDescription) -> None:
-        self.link, self.facts_of_link, self.assumed = (
-            link,
-            link.facts,
-            Assumptions(link.facts),
-        )
-        self.tables: list[Table] = []
-        self._shared: dict[tuple[str, tuple[str, ...]], str] = {}
 
     def all(self) -> list[Table]:
         """Return the tables of the parts, then that of the link."""
@@ -170,6 +133,7 @@ class _Tables:
             Row(
                 self.part("acknowledge", facts.acknowledge), "acknowledges on the UART"
             ),
+            Row(f"{self.unsolicited()}, {len(facts.unsolicited)}u", "unsolicited"),
             Row(or_none(facts.i2c_address), "I2C address"),
             Row(
                 boolean(facts.i2c_repeated_start),
@@ -198,6 +162,20 @@ class _Tables:
         self.add("link", "icd_link_t", rows, assumed)
         return self.tables
 
+    def unsolicited(self) -> str:
+        telemetry = self.facts_of_link.telemetry
+        return self.array(
+            "unsolicited",
+            "icd_unsolicited_t",
+            (
+                Row(
+                    f"{{{id}u, {contained}u, {telemetry[contained].length}u}}",
+                    plain(telemetry[contained].name),
+                )
+                for id, contained in self.facts_of_link.unsolicited.items()
+            ),
+        )
+
     def logs(self) -> Iterator[Row]:
         facts = self.facts_of_link
         yield Row(self.log_mask(), "mask of logs")
@@ -208,15 +186,8 @@ class _Tables:
         )
 
     def of_files(self) -> Iterator[Row]:
-        facts = self.facts_of_link
         yield Row(self.time(), "packed times")
         yield Row(self.index(), "index of files")
-        yield Row(self.hole_map(), "hole map")
-        yield Row(self.files(), "file transfer")
-        yield from (Row(self.procedure(name), name) for name in PROCEDURES)
-        yield Row(self.part("program_copy", facts.program_copy), "program copy")
-        information = self.part("program_information", facts.program_information)
-        yield Row(information, "program information")
 
     def optional(self, what: str, rows: Iterable[Row]) -> Iterator[Row]:
         """List rows that a program can omit, together with their tables."""
@@ -257,84 +228,12 @@ class _Tables:
         return Row(
             f"{{{sent.id}u, {flags}, {sent.message.length}u}}",
             plain(sent.message.name),
-            " || ".join(conditions),
+            f" || \\\n{STEP}".join(conditions),
         )
-
-    def add(
-        self,
-        name: str,
-        type: str,
-        rows: Iterable[str | Row],
-        assumed: Iterable[tuple[str, str]] = (),
-    ) -> str:
-        """Declare a table, with a comment on assumed facts: their keys and reasons."""
-        about = " ".join(f"Assumed {plain(f'{key}: {why}')}" for key, why in assumed)
-        self.tables.append(
-            Table(
-                comment([about], STEP) if about else "",
-                type,
-                name,
-                list(map(str, rows)),
-            )
-        )
-        return f"&{name}"
-
-    def array(self, name: str, type: str, rows: Iterable[str | Row]) -> str:
-        """Declare an array; return NULL if it is empty."""
-        items = [row if isinstance(row, Row) else Row(row) for row in rows]
-        return self.add(f"{name}[]", type, items).strip("&[]") if items else "NULL"
-
-    def numbers(self, name: str, type: str, numbers: Iterable[str], count: int) -> str:
-        """Declare an array of numbers, ``count`` per line; return NULL if it is empty."""
-        rows = in_rows(numbers, count)
-        return self.add(f"{name}[]", type, rows).strip("&[]") if rows else "NULL"
-
-    def part(self, name: str, part: object, *further: Row) -> str:
-        """Declare the table of a part: its facts, then further rows.
-
-        Return NULL for None.
-        """
-        if part is None:
-            return "NULL"
-        return self.add(
-            name,
-            TYPES[type(part)],
-            [*self.facts(name, part), *further],
-            self.assumed.of_part(part),
-        )
-
-    def facts(self, name: str, part: object) -> list[Row]:
-        """Return a row for each declared fact."""
-        rows = []
-        for fact in facts_of(part):
-            value, text = getattr(part, fact.name), fact.name
-            if isinstance(value, Step):
-                step = self.step(f"{name}_{fact.name}", self.link.step(value))
-                rows.append(Row(f"{{{step}}}", plain(value.message.name)))
-            elif fact.kind is Kind.ALLOWED:
-                allowed = self.numbers(
-                    f"{name}_{fact.name}",
-                    "uint8_t",
-                    (f"{number}u" for number in value),
-                    16,
-                )
-                rows.append(Row(f"{allowed}, {len(value)}u", text))
-            else:
-                rows.append(
-                    Row(
-                        spelled(fact, value),
-                        f"{text} in ms" if fact.kind is Kind.TIME else text,
-                    )
-                )
-        return rows
-
-    def values(self, name: str, part: object) -> str:
-        """Return the facts of a part as one row."""
-        return ", ".join(row.value for row in self.facts(name, part))
 
     def step(self, name: str, step: StepDescription) -> str:
-        """Return the initialiser of a step without braces; its places and its initial
-        frame are separate tables.
+        """Return the initialiser of a step without braces; its places are a separate
+        table.
         """
         rows = [
             Row(
@@ -344,16 +243,8 @@ class _Tables:
             for role, field in step.places
         ]
         places = self.array(f"{name}_places", "icd_place_t", rows)
-        initial_frame = "NULL"
-        if any(step.initial_frame):
-            initial_frame = self.numbers(
-                f"{name}_fresh",
-                "uint8_t",
-                (f"{byte:#04x}u" for byte in step.initial_frame),
-                16,
-            )
         ids = f"{or_none(step.message.telecommand_id)}, {or_none(step.message.telemetry_id)}"
-        return f"{ids}, {step.message.length}u, {len(rows)}u, {places}, {initial_frame}"
+        return f"{ids}, {step.message.length}u, {len(rows)}u, {places}"
 
     def named_step(self, name: str, step: StepDescription | None) -> str:
         """Declare the table of a single step."""
@@ -403,23 +294,6 @@ class _Tables:
             Row(f"{{{extended_types}}}", "types of messages of several packets"),
             Row(self.part("can_extended", form), "messages of several packets"),
         )
-
-    def crc(self, name: str, parameters: Crc, is_crc: bool = True) -> str:
-        """Return the initialiser of a CRC without braces; the table for whole bytes is
-        separate.
-        """
-        tables = ["NULL", "NULL"]
-        if is_crc and parameters.width <= 16:
-            entries = (
-                f"{value:#0{2 + -(-parameters.width // 4)}x}u"
-                for value in byte_table(parameters)
-            )
-            bits = 8 if parameters.width <= 8 else 16
-            tables[bits // 8 - 1] = (
-                f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
-            )
-            self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
-        return ", ".join((self.values(name, parameters), *tables))
 
     def checksum(self) -> str:
         checksum = self.facts_of_link.checksum
@@ -590,16 +464,6 @@ class _Tables:
         )
         return f"{{{', '.join(numbers)}}}"
 
-    def shared(self, name: str, type: str, rows: Iterable[str]) -> str:
-        """Declare an array with a number in its name, unless an array of these rows is
-        declared; return NULL if it is empty.
-        """
-        items = tuple(rows)
-        number = len([other for other, _ in self._shared if other == name])
-        if items and (name, items) not in self._shared:
-            self._shared[name, items] = self.array(f"{name}_{number}", type, items)
-        return self._shared.get((name, items), "NULL")
-
     def log_mask(self) -> str:
         mask = self.facts_of_link.mask
         if mask is None:
@@ -626,34 +490,6 @@ class _Tables:
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         rows = (Row(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields)
         return self.part("index_entry", form, *rows)
-
-    def hole_map(self) -> str:
-        rows = []
-        for field in self.link.map_pieces:
-            message = field.message.model
-            ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
-            rows.append(
-                Row(
-                    f"{{{ids}, {message.length}u, {field.model.at // 8}u}}",
-                    plain(message.name),
-                )
-            )
-        messages = self.array("hole_maps", "icd_hole_map_message_t", rows)
-        further = Row(f"{len(rows)}u, {messages}", "messages")
-        return self.part("hole_map", self.facts_of_link.hole_map, further)
-
-    def files(self) -> str:
-        files = self.facts_of_link.files
-        ids = (
-            ", ".join(or_none(files.packet_ids.get(bus)) for bus in BUSES)
-            if files
-            else ""
-        )
-        return self.part("files", files, Row(f"{{{ids}}}", "ids of download packets"))
-
-    def procedure(self, name: str) -> str:
-        """Declare the table of a procedure of file transfer."""
-        return self.part(name, getattr(self.facts_of_link.files, name, None))
 
 
 def _error_code(code: tuple[str, int]) -> str:

@@ -129,3 +129,37 @@ def client_function(node: str, verb: str, message: MessageDescription) -> str:
 def part_name(part: MessageDescription) -> str:
     """Return the end of the name of the function for a contained message."""
     return f"part_{part.name}"
+
+
+PROCEDURE_PARAMETERS = {
+    "procedure": "icd_procedure_t *",
+    "bus": "icd_bus_t ",
+    "block_size": "uint32_t ",
+    "buffer": "uint8_t *",
+    "buffer_size": "size_t ",
+    "bitmap": "uint8_t *",
+    "bitmap_size": "size_t ",
+    "on_block": "icd_block_fn *",
+    "on_entry": "icd_entry_fn *",
+    "context": "void *",
+    "numbers": "",  # local variables
+    "memory": "",
+}
+"""Names in the functions of procedures, which no input can have, and types."""
+
+
+def procedure(node: NodeDescription, name: str, end: str = "") -> str:
+    """``demo_download``: the function that initializes a procedure;
+    ``demo_download_size``: the function that returns an output.
+    """
+    return "_".join(filter(None, (node.name, name, end)))
+
+
+def procedure_size(node: NodeDescription, name: str, end: str) -> str:
+    """``DEMO_DOWNLOAD_BLOCK_BYTES``: the size of a buffer."""
+    return procedure(node, name, end).upper()
+
+
+def input_parameters(name: str, is_bytes: bool) -> tuple[str, ...]:
+    """Return the parameters for an input of a procedure."""
+    return (name, f"{name}_size") if is_bytes else (name,)

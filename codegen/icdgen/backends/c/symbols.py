@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from icdgen.backends import Identifier
@@ -20,6 +20,7 @@ from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Part, Symbols
+from icdgen.icd.procedures import BYTES
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -32,8 +33,7 @@ _SUPPORT = (
     *(f"ICD_ERROR_{end}" for end in _STATUS),
 )
 _SIZES = (
-    "LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "REQUEST_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES",
-    "LINE_BYTES", "SEQUENCES",
+    "LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "REQUEST_BYTES", "LOG_BYTES", "LINE_BYTES", "SEQUENCES",
 )  # fmt: skip
 _BUSES = ("uart", "i2c", "can")
 
@@ -99,6 +99,31 @@ class CNames(NamingPolicy):
             yield Identifier(FILE, f"{node.name}_{end}", owner, source, end)
         for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
             yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source, end)
+        if node.procedures:
+            yield Identifier(FILES, f"{node.name}/procedures.h", owner, source)
+            guard = f"{node.name.upper()}_PROCEDURES_H"
+            yield Identifier(FILE, guard, owner, source, "PROCEDURES_H")
+        for name, section in node.procedures.items():
+            yield from self._procedure(node, name, section)
+
+    def _procedure(
+        self, node: NodeDescription, name: str, section: Mapping[str, Any]
+    ) -> Symbols:
+        """Names of a procedure, and of the parameters of its function."""
+        owner, source = f"procedure `{name}` of node `{node.name}`", node.model.source
+        stem = names.procedure(node, name)
+        yield Identifier(FILE, stem, owner, source)
+        yield Identifier(FILE, names.procedure(node, name, "form"), owner, source)
+        for output in section.get("outputs", {}):
+            yield Identifier(FILE, names.procedure(node, name, output), owner, source)
+        for end in ("BLOCK_BYTES", "BITMAP_BYTES"):
+            yield Identifier(FILE, names.procedure_size(node, name, end), owner, source)
+        for parameter in names.PROCEDURE_PARAMETERS:
+            yield Identifier(f"parameters of {stem}", parameter, owner, None)
+        for input, row in section.get("inputs", {}).items():
+            for parameter in names.input_parameters(input, row.get("type") == BYTES):
+                about = f"input `{input}` of {owner}"
+                yield Identifier(f"parameters of {stem}", parameter, about, source)
 
     def enumeration(self, enum: EnumDescription) -> Symbols:
         for end in ("t", "name"):

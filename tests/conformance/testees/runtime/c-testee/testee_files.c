@@ -1,4 +1,4 @@
-/* What files are about: packed times, hole maps and the index file. */
+/* What files are about: packed times and the index file. */
 
 #include "testee_wire.h"
 
@@ -40,59 +40,7 @@ static void dos_time_pack(void)
     }
 }
 
-/* ---- hole maps and the index file ----------------------------------------------------------------------------------------- */
-
-static void put_missing(const icd_link_t *link, const uint8_t *map, uint32_t packets)
-{
-    const uint32_t first = link->files->first_packet;
-    uint32_t i;
-    put_list("missing");
-    for (i = first; i < first + packets; i++) {
-        if (!icd_hole_map_get(link, map, i)) {
-            put_item(i);
-        }
-    }
-}
-
-static void hole_map_missing(void)
-{
-    const icd_link_t *link = next_link();
-    const uint32_t packets = next_number();
-    const octets_t map = next_octets();
-    if (link->hole_map == NULL || link->files == NULL) {
-        refuse("unsupported");
-    } else if (map.length != link->hole_map->bytes) {
-        refuse_length("length", link->hole_map->bytes, map.length);
-    } else if (packets > link->hole_map->bytes * 8u) {
-        refuse("range");
-    } else {
-        put_row("ok");
-        put_missing(link, map.data, packets);
-    }
-}
-
-static void hole_map(void)
-{
-    const icd_link_t *link = next_link();
-    const uint32_t packets = next_number();
-    const size_t size = link->hole_map != NULL ? link->hole_map->bytes : 0u;
-    uint8_t *map = (uint8_t *)memory(size);
-    icd_status_t status = icd_hole_map_init(link, map, packets);
-    size_t i, piece;
-    while (status == ICD_OK && has_words()) {
-        status = icd_hole_map_set(link, map, packets, next_number());
-    }
-    if (!answers(status)) {
-        return;
-    }
-    put_octets("bytes", map, size);
-    put_list("messages");
-    piece = link->hole_map->message_bytes;
-    for (i = 0; i < size; i += piece) {
-        put_octets_item(map + i, piece < size - i ? piece : size - i);
-    }
-    put_missing(link, map, packets);
-}
+/* ---- the index file ---------------------------------------------------------------------------------------------------- */
 
 static void index_decode(void)
 {
@@ -154,8 +102,6 @@ static void index_encode(void)
 const testee_op_t testee_file_ops[] = {
     {"dos_time_unpack", dos_time_unpack},
     {"dos_time_pack", dos_time_pack},
-    {"hole_map_missing", hole_map_missing},
-    {"hole_map", hole_map},
     {"index_decode", index_decode},
     {"index_encode", index_encode},
     {NULL, NULL},

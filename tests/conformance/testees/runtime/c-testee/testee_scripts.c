@@ -11,16 +11,14 @@ static void on_event(void *context, const icd_event_t *event)
     const bool outcome = kind == ICD_EVENT_DONE || kind == ICD_EVENT_REFUSED || kind == ICD_EVENT_TIMEOUT;
     (void)context;
     put_row(event_name(kind));
-    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE) || kind >= ICD_EVENT_CHECKSUM) {
+    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE) || kind >= ICD_EVENT_CHECKSUM ||
+        kind == ICD_EVENT_ARRIVED) {
         put_number("id", event->id);
     }
     if (outcome) {
         put_number("attempts", event->attempts);
     }
-    if (kind == ICD_EVENT_PACKET) {
-        put_number("number", event->number);
-    }
-    if (kind == ICD_EVENT_DONE || kind == ICD_EVENT_PACKET || kind == ICD_EVENT_LOG || kind == ICD_EVENT_STRAY) {
+    if (kind == ICD_EVENT_DONE || kind == ICD_EVENT_ARRIVED || kind == ICD_EVENT_LOG || kind == ICD_EVENT_STRAY) {
         put_octets("bytes", event->data, event->length);
     }
     if (kind == ICD_EVENT_REFUSED) {
@@ -150,15 +148,11 @@ static void client_script(void)
 
 /* ---- procedures ------------------------------------------------------------------------------------------------------- */
 
-static void on_file(void *context, const icd_file_t *file)
+static void on_entry(void *context, const uint8_t *data, size_t length)
 {
     (void)context;
     put_row("entry");
-    put_number("type", file->type);
-    put_number("counter", file->counter);
-    put_number("size", file->size);
-    put_number("time", file->time);
-    put_number("checksum", file->checksum);
+    put_octets("bytes", data, length);
 }
 
 static void on_block(void *context, uint32_t offset, const uint8_t *data, size_t length)
@@ -169,110 +163,98 @@ static void on_block(void *context, uint32_t offset, const uint8_t *data, size_t
     put_octets("bytes", data, length);
 }
 
-/* A procedure of any kind. */
-typedef union {
-    icd_procedure_t procedure;
-    icd_list_t list;
-    icd_download_t download;
-    icd_upload_t upload;
-    icd_erase_t erase;
-    icd_format_t format;
-    icd_program_operation_t program;
-} any_procedure_t;
-
-/* Just the size that the blocks of a transfer need. */
-static size_t block_size(const icd_link_t *link, uint32_t block, size_t (*size_of)(const icd_link_t *, uint32_t))
+/* Just the memory that the blocks of a procedure need. */
+static void take_memory(icd_procedure_memory_t *memory_of, const icd_blocks_form_t *blocks)
 {
-    const uint32_t most = link->files != NULL ? link->files->block_bytes : 0u;
-    return link->files != NULL ? size_of(link, block != 0u && block < most ? block : most) : 0u;
+    const uint32_t given = memory_of->block;
+    const uint32_t block = given != 0u && given < blocks->size ? given : blocks->size;
+    const uint32_t packets = (block + blocks->packet_bytes - 1u) / blocks->packet_bytes;
+    memory_of->bitmap_size = (packets + 7u) / 8u;
+    memory_of->bitmap = (uint8_t *)memory(memory_of->bitmap_size);
+    memory_of->buffer_size = blocks->sends ? 0u : (size_t)packets * blocks->packet_bytes;
+    memory_of->buffer = (uint8_t *)memory(memory_of->buffer_size);
 }
 
-static uint8_t *block_memory(const icd_link_t *link, uint32_t block, size_t (*size_of)(const icd_link_t *, uint32_t))
+static icd_status_t begin(icd_procedure_t *procedure, const testee_procedure_t *tested)
 {
-    return (uint8_t *)memory(block_size(link, block, size_of));
-}
-
-static icd_status_t begin_download(any_procedure_t *any, const icd_link_t *link)
-{
+    const icd_procedure_form_t *const form = tested->form();
     const icd_bus_t bus = next_bus();
-    const uint8_t type = next_byte(), counter = next_byte();
-    const uint32_t size = next_or(ICD_SIZE_UNKNOWN), block = next_number();
-    return icd_download_init(
-        &any->download, link, bus, type, counter, size, block, block_memory(link, block, icd_block_buffer),
-        block_size(link, block, icd_block_buffer), block_memory(link, block, icd_block_bitmap),
-        block_size(link, block, icd_block_bitmap), on_block, NULL);
-}
-
-static icd_status_t begin_upload(any_procedure_t *any, const icd_link_t *link)
-{
-    const uint8_t destination = next_byte();
-    const uint32_t block = next_number();
-    const octets_t file = next_octets();
-    const icd_status_t status = icd_upload_init(
-        &any->upload, link, destination, file.data, (uint32_t)file.length, block,
-        block_memory(link, block, icd_block_bitmap), block_size(link, block, icd_block_bitmap));
+    uint32_t numbers[ICD_REGISTERS] = {0};
+    icd_procedure_memory_t given;
+    icd_status_t status;
+    memset(&given, 0, sizeof given);
+    given.block = next_number();
+    const octets_t octets = next_octets();
+    const uint32_t count = next_number();
+    for (uint32_t i = 0; i < count; i++) {
+        numbers[i] = next_or(ICD_UNKNOWN);
+    }
+    given.bytes = octets.data;
+    given.byte_count = octets.length;
+    given.on_block = on_block;
+    given.on_entry = on_entry;
+    if (form->blocks != NULL) {
+        take_memory(&given, form->blocks);
+    }
+    status = tested->begin(procedure, bus, numbers, &given);
     if (status == ICD_ERROR_LENGTH) {
-        refuse_length("too-long", link->upload->destination_bytes, file.length);
+        refuse_length("too-long", form->most_bytes, octets.length);
+    } else if (status != ICD_OK) {
+        refuse_status(status);
     }
     return status;
 }
 
-static icd_status_t begin(any_procedure_t *any, const icd_link_t *link, const char *name)
-{
-    uint8_t type, counter;
-    if (is_word(name, "list")) {
-        return icd_list_init(&any->list, link, on_file, NULL);
-    }
-    if (is_word(name, "download")) {
-        return begin_download(any, link);
-    }
-    if (is_word(name, "upload")) {
-        return begin_upload(any, link);
-    }
-    if (is_word(name, "format")) {
-        return icd_format_init(&any->format, link);
-    }
-    if (is_word(name, "program_copy")) {
-        return icd_program_copy_init(&any->program, link, next_byte());
-    }
-    if (is_word(name, "program_information")) {
-        return icd_program_information_init(&any->program, link, next_byte());
-    }
-    type = next_byte();
-    counter = next_byte();
-    return icd_erase_init(&any->erase, link, type, counter, next_number() != 0u);
-}
-
+/* Passes an event to the procedure, of the client of its link where that has such an event. */
 static void take_event(icd_procedure_t *procedure, uint32_t now, const char *name)
 {
-    static const icd_event_kind_t kinds[] = {ICD_EVENT_DONE, ICD_EVENT_REFUSED, ICD_EVENT_TIMEOUT, ICD_EVENT_PACKET};
-    icd_event_t event;
-    octets_t octets;
-    size_t i;
-    if (is_word(name, "damaged")) {
-        event = icdgen_event(ICD_EVENT_REFUSED, 0);
-        event.code = 255;
-        event.reason = ICD_REASON_UNKNOWN;
-        icd_procedure_event(procedure, now, &event);
-    }
-    for (i = 0; i < 4u; i++) {
-        if (is_word(name, event_name(kinds[i]))) {
-            event = icdgen_event(kinds[i], 0);
-            event.number = kinds[i] == ICD_EVENT_PACKET ? next_number() : 0u;
-            if (kinds[i] == ICD_EVENT_PACKET || kinds[i] == ICD_EVENT_DONE) {
-                octets = next_octets();
-                event.data = octets.data;
-                event.length = octets.length;
-            }
+    static const struct {
+        const char *name;
+        icd_event_kind_t kind;
+        icd_stream_kind_t stream_kind;
+        bool is_of_bus;
+    } rows[] = {
+        {"done", ICD_EVENT_DONE, ICD_STREAM_DONE, true},
+        {"arrived", ICD_EVENT_ARRIVED, ICD_STREAM_MESSAGE, true},
+        {"refused", ICD_EVENT_REFUSED, ICD_STREAM_REFUSED, true},
+        {"damaged", ICD_EVENT_REFUSED, ICD_STREAM_REFUSED, true},
+        {"timeout", ICD_EVENT_TIMEOUT, ICD_STREAM_TIMEOUT, true},
+        {"sent", ICD_EVENT_DONE, ICD_STREAM_SENT, false},
+        {"busy", ICD_EVENT_TIMEOUT, ICD_STREAM_BUSY, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const bool has_data = i < 2u;
+        const octets_t nothing = {NULL, 0};
+        uint32_t id = procedure->request.id;
+        octets_t octets;
+        if (!is_word(name, rows[i].name)) {
+            continue;
+        }
+        id = rows[i].stream_kind == ICD_STREAM_MESSAGE ? next_number() : id;
+        octets = has_data ? next_octets() : nothing;
+        if (procedure->link->stream == NULL && rows[i].is_of_bus) {
+            icd_event_t event = icdgen_event(rows[i].kind, (uint8_t)id);
+            event.code = is_word(name, "damaged") ? 255 : -1;
+            event.data = octets.data;
+            event.length = octets.length;
             icd_procedure_event(procedure, now, &event);
+        } else {
+            icd_stream_event_t event;
+            memset(&event, 0, sizeof event);
+            event.kind = rows[i].stream_kind;
+            event.direction = procedure->request.direction;
+            event.id = id;
+            event.data = octets.data;
+            event.length = octets.length;
+            icd_procedure_stream_event(procedure, now, &event);
         }
     }
 }
 
 static void put_step(icd_procedure_t *procedure, uint32_t now)
 {
-    static const char *const results[] = {
-        "", "done", "refused", "timeout", "parameter", "length", "limit", "rounds", "checksum", "error"};
+    static const char *const results[] = {"",       "done",   "refused",  "busy",   "timeout",
+                                          "failed", "length", "checksum", "rounds", "limit"};
     icd_request_t request;
     uint32_t deadline;
     const bool asks = icd_procedure_next(procedure, now, &request);
@@ -292,36 +274,35 @@ static void put_step(icd_procedure_t *procedure, uint32_t now)
     }
 }
 
-static void file_script(void)
+static void procedure_script(void)
 {
-    const icd_link_t *link = next_link();
-    const char *name = next_word();
-    any_procedure_t *any = (any_procedure_t *)memory(sizeof *any);
-    const icd_status_t status = begin(any, link, name);
-    if (status != ICD_OK) {
-        if (status != ICD_ERROR_LENGTH) {
-            refuse_status(status);
-        }
+    const size_t node = next_number(), place = next_number();
+    const testee_procedure_t *const tested = testee_procedure(node, place);
+    icd_procedure_t *procedure = (icd_procedure_t *)memory(sizeof *procedure);
+    uint32_t total = 0;
+    if (begin(procedure, tested) != ICD_OK) {
         return;
     }
     put_row("ok");
     while (has_words()) {
         const uint32_t now = next_number();
-        take_event(&any->procedure, now, next_word());
-        put_step(&any->procedure, now);
+        take_event(procedure, now, next_word());
+        put_step(procedure, now);
     }
     put_row("ok");
-    if (is_word(name, "upload")) {
-        put_number("sent", any->upload.sent);
+    if (procedure->form->blocks != NULL && procedure->form->blocks->sends) {
+        put_number("sent", icd_procedure_progress(procedure, &total));
     }
-    if (is_word(name, "program_information") && any->procedure.result == ICD_DONE) {
-        if (icdgen_place(&any->program.form->progress, ICD_ROLE_SIZE) != NULL) {
-            put_number("size", any->program.size);
-        }
-        if (icdgen_place(&any->program.form->progress, ICD_ROLE_CHECKSUM) != NULL) {
-            put_number("checksum", any->program.checksum);
+    if (tested->output_count != 0u && procedure->result == ICD_DONE) {
+        put_list("outputs");
+        for (size_t i = 0; i < tested->output_count; i++) {
+            put_item(tested->outputs[i](procedure));
         }
     }
 }
 
-const testee_op_t testee_script_ops[] = {{"client", client_script}, {"file", file_script}, {NULL, NULL}};
+const testee_op_t testee_script_ops[] = {
+    {"client", client_script},
+    {"procedure", procedure_script},
+    {NULL, NULL},
+};

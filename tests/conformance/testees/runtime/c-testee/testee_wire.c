@@ -17,7 +17,7 @@ const char *event_name(icd_event_kind_t kind)
 {
     static const char *const names[] = {
         "message",   "unexpected_start", "protocol_error", "overrun",      "empty", "duplicate", "incomplete",
-        "malformed", "busy",             "unknown_type",   "done",         "refused", "timeout", "packet",
+        "malformed", "busy",             "unknown_type",   "done",         "refused", "timeout", "arrived",
         "log",       "stray",            "checksum",       "unchecked",
     };
     return names[kind];
@@ -57,7 +57,6 @@ static void link_data(void)
         put_known("boot_ms", link->boot_ms);
         put_known("log_file_type", link->log_file != NULL ? link->log_file->file_type : -1);
         put_known("index_file_type", link->index != NULL ? link->index->file_type : -1);
-        put_known("index_counter", link->download != NULL ? link->download->index_counter : -1);
     }
 }
 

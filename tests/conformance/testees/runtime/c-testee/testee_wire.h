@@ -11,6 +11,19 @@
 /* That of a node; NULL if the ICD says nothing of how its messages travel. */
 const icd_link_t *testee_link(size_t node);
 
+/* A procedure of a node. */
+typedef struct {
+    const icd_procedure_form_t *(*form)(void);
+    /* Initializes it with its typed function. */
+    icd_status_t (*begin)(icd_procedure_t *procedure, icd_bus_t bus, const uint32_t *numbers,
+                          const icd_procedure_memory_t *given);
+    uint32_t (*const *outputs)(const icd_procedure_t *procedure);
+    size_t output_count;
+} testee_procedure_t;
+
+/* That of a node with this number; NULL if there is none. */
+const testee_procedure_t *testee_procedure(size_t node, size_t place);
+
 /* That of the node that the next word is the number of. */
 const icd_link_t *next_link(void);
 icd_bus_t next_bus(void);
