@@ -35,6 +35,7 @@ def effects_name_what_exists(ctx: Context) -> Iterator[Fault]:
             effect = procedure.get("effect") if isinstance(procedure, Map) else None
             if isinstance(effect, Map):
                 yield from _verbs(effect)
+                yield from _steps_for(procedure, effect)
                 yield from _key(procedure, effect)
                 yield from _fields(node, procedure, effect, messages, keys)
 
@@ -58,6 +59,25 @@ def _verbs(effect: Map) -> Iterator[Fault]:
         if verb in effect and key not in effect:
             text = f"an effect with `{verb}` lacks `{key}`"
             yield Fault.at_key(effect, verb, text, f"add `{key}`")
+
+
+def _steps_for(procedure: Map, effect: Map) -> Iterator[Fault]:
+    """Yield the fault of an effect that the steps of its procedure cannot have."""
+    rows = procedure.get("steps")
+    steps = (
+        [row for row in rows if isinstance(row, Map)] if isinstance(rows, Seq) else []
+    )
+    blocks = [row["blocks"] for row in steps if isinstance(row.get("blocks"), Map)]
+    sends = [row for row in blocks if "of" in row]
+    cases = (
+        ("read", len(blocks) > len(sends), "`blocks` without `of`"),
+        ("write", bool(sends), "`blocks` with `of`"),
+        ("list", any("repeat" in row for row in steps), "`repeat`"),
+    )
+    for verb, is_there, needed in cases:
+        if verb in effect and not is_there:
+            text = f"a procedure with the effect `{verb}` has a step {needed}"
+            yield Fault.at_key(effect, verb, text, "correct the effect, or the steps")
 
 
 def _key(procedure: Map, effect: Map) -> Iterator[Fault]:
