@@ -68,7 +68,7 @@ def test_the_conversations_end_in_every_way(conversations):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["python"])
+@pytest.mark.parametrize("name", ["python", "c-sanitizers"])
 def test_a_hostile_device_is_given_up_at_the_same_step(icd, conversations, name):
     assert different(icd, conversations, name) == []
 
@@ -99,7 +99,7 @@ def test_a_client_does_the_same_with_a_hostile_device(icd, clients, name):
     assert different(icd, clients, name) == []
 
 
-@pytest.mark.parametrize("name", ["python"])
+@pytest.mark.parametrize("name", ["python", "c-sanitizers"])
 def test_a_download_above_the_limit_of_the_icd_is_refused(icd, name):
     testee = Testee(build(all_languages()[name], icd))
     request = {"op": "procedure", "node": "board", "name": "download", "script": []}
