@@ -21,7 +21,7 @@ MAKERS = {
     },
     **{
         f"runtime/rust/src/wire/link/{name}.rs": rust.written
-        for name in ("mod", "can", "logs", "transfer")
+        for name in ("mod", "can", "logs")
     },
 }
 

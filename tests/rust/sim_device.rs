@@ -1,7 +1,7 @@
 //! A session with a simulated node: in a hurry, and patient with what happens to acknowledges.
 
 use icd::wire::session::Failure;
-use icd::wire::{Link, NodeLink, Session, Settings, TelecommandOf};
+use icd::wire::{NodeLink, Session, Settings, TelecommandOf};
 use icd::{Error, Telecommand};
 use std::net::TcpStream;
 use std::ops::{Deref, DerefMut};
@@ -31,7 +31,7 @@ pub struct Device<const N: usize, T: 'static> {
 }
 
 impl<const N: usize, T: 'static> Device<N, T> {
-    pub fn connect(place: &str, link: &NodeLink<T>) -> Result<Self, Problem> {
+    pub fn connect(place: &str, link: &'static NodeLink<T>) -> Result<Self, Problem> {
         let port = TcpStream::connect(place)?;
         port.set_nodelay(true)?;
         port.set_read_timeout(Some(Duration::from_millis(5)))?;
@@ -39,12 +39,11 @@ impl<const N: usize, T: 'static> Device<N, T> {
     }
 
     /// The same device, while the program of that link runs.
-    pub fn running<U: 'static>(&self, link: &NodeLink<U>) -> Result<Device<N, U>, Problem> {
+    pub fn running<U: 'static>(&self, link: &'static NodeLink<U>) -> Result<Device<N, U>, Problem> {
         Device::over(self.port.try_clone()?, link)
     }
 
-    fn over(port: TcpStream, link: &NodeLink<T>) -> Result<Self, Problem> {
-        let link: &'static NodeLink<T> = Box::leak(Box::new(link.changed(hasty)));
+    fn over(port: TcpStream, link: &'static NodeLink<T>) -> Result<Self, Problem> {
         let session = Session::new(link, port.try_clone()?)?.with_settings(SETTINGS);
         Ok(Self { link, port, session })
     }
@@ -80,20 +79,4 @@ impl<const N: usize, T> DerefMut for Device<N, T> {
 /// The data of a message.
 pub fn data_of<M: Telecommand>(message: &M) -> Result<Vec<u8>, Error> {
     Ok(message.to_bytes()?.as_ref().to_vec())
-}
-
-/// The facts with short waits, for a device that is never slow.
-fn hasty(link: &mut Link) {
-    if let Some(files) = &mut link.files {
-        if let Some(download) = &mut files.download {
-            download.silence_ms = 60;
-            download.poll_interval_ms = 5;
-        }
-        if let Some(upload) = &mut files.upload {
-            upload.poll_interval_ms = 5;
-        }
-    }
-    for operation in [&mut link.program_copy, &mut link.program_information].into_iter().flatten() {
-        operation.poll_interval_ms = 5;
-    }
 }

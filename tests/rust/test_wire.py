@@ -43,7 +43,7 @@ def test_the_golden_vectors(shipped):
 
 def test_streams_packets_and_scripts_that_nobody_thought_of(shipped):
     """Streams cut anywhere, packets in any order, long scripts of the client and of
-    file transfer.
+    procedures.
     """
     program = harness.build_testee(shipped.icd)
     asked = list(wire_random.requests(shipped.icd, 60))

@@ -49,7 +49,7 @@ def test_acknowledges_that_are_spoilt_or_late_cost_nothing_but_time(client, faul
         (
             ["--node", "cubeacp"],
             1,
-            "download: the procedure failed: Parameter",
+            "download: the procedure failed: Failed",
         ),  # it has no such file
     ],
 )

@@ -3,8 +3,10 @@
 use icd::common::Reset;
 use icd::cubeacp::enums::{ConModeSelect, EstimModeSelect};
 use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, EstimatedAttitudeAngles, SetAttitudeControlMode, Telecommand, Telemetry};
-use icd::wire::files::{Download, End, Procedure};
-use icd::wire::{crc16, identify, uart, Bus, Client, Crc, Event, Link, Reason, Started, Table};
+use icd::common::enums::FileType;
+use icd::cubeacp::procedures::{Download, DOWNLOAD_MEMORY};
+use icd::wire::procedure::End;
+use icd::wire::{crc16, identify, uart, Client, Crc, Event, Link, Reason, Started, Table};
 use icd::{Coded, Error, Message};
 
 fn main() {
@@ -217,20 +219,20 @@ fn downloading() {
     let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(link).unwrap();
     let file: Vec<u8> = (0..45_000_u32).map(|n| (n * n >> 3) as u8).collect();
     let mut node = Node { file: file.clone(), block: Vec::new(), burst: false, sent: 0 };
-    let (mut buffer, mut found) = (vec![0; 20_480], Vec::new());
+    let (mut memory, mut found) = (vec![0; DOWNLOAD_MEMORY], Vec::new());
     let mut hears = uart::Decoder::<{ icd::cubeacp::LONGEST }>::new(link).unwrap();
     let size = Some(45_000);
     let on_block = |offset, block: &[u8]| {
         assert_eq!(offset as usize, found.len());
         found.extend_from_slice(block);
     };
-    let mut download = Download::new(link, Bus::Uart, (2, 1), size, &mut buffer, on_block).unwrap();
+    let too_large = Download::new(FileType::from(2), 1, Some(1 << 30), &mut [0; 99], |_, _| {}).err().unwrap();
+    assert_eq!(too_large.to_string(), "`size` takes 0 to 16777216");
+    let mut download = Download::new(FileType::from(2), 1, size, &mut memory, on_block).unwrap();
     let mut now = 0_u32;
     while download.result().is_none() {
         assert!(now < 1_000_000);
-        if let Some(request) = download.next(now) {
-            assert_eq!(client.start(now, &request), Ok(Started::Waiting));
-        }
+        while client.advance(now, &mut download).unwrap() {}
         let mut answers = Vec::new();
         while let Some(bytes) = client.output() {
             hears.feed(bytes, |event| {

@@ -1,7 +1,10 @@
 // Calls everything of the wire layer that a user can call, so that the linker sees it all.
 
-use icd::wire::files::{self, Download, Erase, Format, HoleMap, IndexEntries, IndexEntry, List, Procedure, Upload};
-use icd::wire::{can, i2c, log, uart, Bus, Client, Crc, DosTime, Error, Event, Identity, Link, NodeEvent, NodeLink, Request, Started, Table};
+use icd::bootloader::procedures::{Download, Erase, Format, List, ProgramInformation, Upload};
+use icd::common::enums::{FileType, FileUploadDestination};
+use icd::wire::files::{IndexEntries, IndexEntry};
+use icd::wire::procedure::{Procedure, Sink};
+use icd::wire::{can, i2c, log, stream, uart, Client, Crc, DosTime, Error, Event, Identity, Link, NodeEvent, NodeLink, Request, Started, Table};
 
 const LONGEST: usize = icd::cubeacp::LONGEST;
 type ClientOf = Client<icd::cubeacp::Node, LONGEST>;
@@ -30,9 +33,6 @@ type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 #[no_mangle] pub fn wire_log_encode(link: &'static Link, mask: &[u8], frames: &[&[u8]], out: &mut [u8]) -> Result<usize, Error> { log::Message::encode(link, mask, frames, out) }
 #[no_mangle] pub fn wire_time(link: &Link, value: u32) -> Result<u32, Error> { DosTime::unpack(link, value)?.pack(link) }
 #[no_mangle] pub fn wire_time_valid(time: &DosTime) -> bool { time.is_valid() }
-#[no_mangle] pub fn wire_hole_map(link: &Link, packets: usize, number: u32) -> Result<HoleMap, Error> { let mut map = HoleMap::new(link, packets)?; map.set(number)?; Ok(map) }
-#[no_mangle] pub fn wire_missing(link: &Link, packets: usize, bytes: &[u8], each: fn(u32)) -> Option<Error> { HoleMap::from_bytes(link, packets, bytes).map(|map| map.missing().for_each(each)).err() }
-#[no_mangle] pub fn wire_map_messages(map: &HoleMap, each: fn(&[u8])) { map.messages().for_each(each) }
 #[no_mangle] pub fn wire_index(link: &'static Link, bytes: &[u8], each: fn(IndexEntry<'_>)) -> Result<usize, Error> { let entries = IndexEntries::new(link, bytes)?; let truncated = entries.truncated(); entries.for_each(each); Ok(truncated) }
 #[no_mangle] pub fn wire_index_encode(entry: &IndexEntry<'_>, link: &Link, out: &mut [u8]) -> Result<usize, Error> { entry.encode(link, out) }
 #[no_mangle] pub fn wire_identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> { icd::wire::identify(link, frame) }
@@ -43,7 +43,7 @@ type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 #[no_mangle] pub fn wire_client_start(client: &mut ClientOf, now: u32, request: &Request<'_>) -> Result<Started, Error> { client.start(now, request) }
 #[no_mangle] pub fn wire_client_request(client: &mut ClientOf, now: u32) -> Result<(), Error> { client.request::<icd::cubeacp::EstimatedAttitudeAngles>(now) }
 #[no_mangle] pub fn wire_client_send(client: &mut ClientOf, now: u32, message: &icd::cubeacp::AdcsConfiguration) -> Result<Started, Error> { client.send(now, message) }
-#[no_mangle] pub fn wire_client_advance(client: &mut ClientOf, now: u32, procedure: &mut dyn Procedure) -> Result<bool, Error> { client.advance(now, procedure) }
+#[no_mangle] pub fn wire_client_advance(client: &mut ClientOf, now: u32, procedure: &mut Procedure<'_, &'static mut dyn Sink>) -> Result<bool, Error> { client.advance(now, procedure) }
 #[no_mangle] pub fn wire_client_output(client: &mut ClientOf) -> Option<&[u8]> { client.output() }
 #[no_mangle] pub fn wire_client_packet(client: &mut ClientOf) -> Option<can::Packet> { client.output_packet() }
 #[no_mangle] pub fn wire_client_transaction(client: &mut ClientOf) -> Option<icd::wire::Transaction<'_>> { client.output_transaction() }
@@ -54,16 +54,19 @@ type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 
 macro_rules! procedure {
     ($next:ident, $event:ident, $type:ty) => {
-        #[no_mangle] pub fn $next<'a>(procedure: &'a mut $type, now: u32) -> Option<Request<'a>> { procedure.next(now) }
+        #[no_mangle] pub fn $next<'a>(procedure: &'a mut $type, now: u32) -> Option<stream::Request<'a>> { procedure.next(now) }
         #[no_mangle] pub fn $event(procedure: &mut $type, now: u32, event: &Event<'_>) { procedure.event(now, event) }
     };
 }
 
 type Block = fn(u32, &[u8]);
-procedure!(wire_list_next, wire_list_event, List<fn(files::Entry)>);
+type Entry = fn(icd::common::FileInformation);
+procedure!(wire_list_next, wire_list_event, List<Entry>);
 procedure!(wire_download_next, wire_download_event, Download<'static, Block>);
 procedure!(wire_upload_next, wire_upload_event, Upload<'static>);
 procedure!(wire_erase_next, wire_erase_event, Erase);
 procedure!(wire_format_next, wire_format_event, Format);
-#[no_mangle] pub fn wire_download(link: &'static Link, bus: Bus, buffer: &'static mut [u8], block: Block, to: &mut Option<Download<'static, Block>>) { *to = Download::new(link, bus, (15, 0), None, buffer, block).ok().map(|one| one.with_block(99)); }
-#[no_mangle] pub fn wire_upload(link: &'static Link, data: &'static [u8], to: &mut Option<Upload<'static>>) { *to = Upload::new(link, 3, data).ok().map(|one| one.with_block(99)); }
+#[no_mangle] pub fn wire_list(entry: Entry, to: &mut Option<List<Entry>>) { *to = List::new(entry).ok(); }
+#[no_mangle] pub fn wire_download(memory: &'static mut [u8], block: Block, to: &mut Option<Download<'static, Block>>) { *to = Download::new(FileType::from(15), 0, None, memory, block).ok(); }
+#[no_mangle] pub fn wire_upload(data: &'static [u8], memory: &'static mut [u8], to: &mut Option<Upload<'static>>) { *to = Upload::new(FileUploadDestination::from(3), data, memory).ok(); if let Some(one) = to { one.set_block(99) } }
+#[no_mangle] pub fn wire_information(procedure: &ProgramInformation) -> (Option<u32>, Option<u32>) { (procedure.size(), procedure.checksum()) }

@@ -139,12 +139,15 @@ def _wire(
     linked: dict[str, LinkDescription], render: Renderer, common: dict[str, object]
 ) -> Iterator[tuple[PurePosixPath, str]]:
     """List the files of the wire layer and of the links."""
-    from icdgen.backends.rust import links
+    from icdgen.backends.rust import links, procedures
 
     yield from _runtime("src/wire", render, str(common["crate"]))
     folder = PurePosixPath(LINKS)
     yield folder / "mod.rs", render(
-        "links.rs.j2", nodes=list(linked), sizes=links.sizes(linked.values()), **common
+        "links.rs.j2",
+        nodes=list(linked),
+        sizes=procedures.sizes(linked.values()),
+        **common,
     )
     for name, link in linked.items():
         yield folder / f"{name}.rs", render(

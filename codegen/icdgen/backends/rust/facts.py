@@ -5,23 +5,10 @@ from __future__ import annotations
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, some, spelled
 from icdgen.backends.rust.text import mask
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.sections import (
-    BUSES,
-    Crc,
-    Download,
-    Erasure,
-    HoleMap,
-    Index,
-    Listing,
-    Operation,
-    Upload,
-)
+from icdgen.protocol.sections import BUSES, Crc, Index
 
 # Types whose names in generated code are not those of the facts.
-_TYPES: dict[type, str] = {
-    Crc: "CrcForm", Index: "IndexForm", HoleMap: "HoleMapForm", Listing: "ListForm",
-    Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm", Operation: "OperationForm",
-}  # fmt: skip
+_TYPES: dict[type, str] = {Crc: "CrcForm", Index: "IndexForm"}
 
 
 def type_name(part: type) -> str:
@@ -35,7 +22,7 @@ def member_name(fact: Fact) -> str:
 
 
 def value_of(fact: Fact, part: object) -> Expression:
-    """Return the value of a fact other than a step of a procedure."""
+    """Return the value of a fact."""
     value = getattr(part, fact.name)
     expression = None if value is None else _required(fact, value, part)
     return some(expression) if fact.is_optional else expression or ""

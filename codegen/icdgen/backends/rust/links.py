@@ -4,8 +4,6 @@ of buffers for all nodes.
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust import procedures
 from icdgen.backends.rust.facts import member_name, type_name, value_of
@@ -34,31 +32,10 @@ from icdgen.describe.links import (
     StepDescription,
 )
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Step
+from icdgen.protocol.sections import CAN_KINDS
 
 _REASONS = {"none": "NoError"}
 _RENAMED = {"type": "kind", "channel": "id"}  # `type` is a keyword
-_ONLY_POLLED = frozenset({"id", "processed", "parameter"})
-"""Roles of the polled frame that procedures do not use."""
-_NUMBER_BITS = 32
-"""Largest numbers that the wire layer handles."""
-
-
-def sizes(links: Collection[LinkDescription]) -> dict[str, int]:
-    """Return the sizes of the buffers of procedures: the largest that any node needs."""
-    facts = [link.facts for link in links]
-    of_procedures = procedures.sizes(links)
-    return {
-        "step": max(
-            of_procedures["telecommand"],
-            max((link.longest_step for link in links), default=1),
-        ),
-        "entry": of_procedures["entry"],
-        "map": max((node.hole_map.bytes for node in facts if node.hole_map), default=1),
-        "packets": max(
-            (node.files.block_packets for node in facts if node.files), default=1
-        ),
-    }
 
 
 def values(link: LinkDescription) -> dict[str, object]:
@@ -115,6 +92,10 @@ class _Literal:
             f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})"
             for key, code in link.error_codes
         )
+        unsolicited = (
+            f"({integer(first)}, {integer(id)})"
+            for first, id in sorted(facts.unsolicited.items())
+        )
         return struct(
             "Link",
             part("node", string(facts.node.name)),
@@ -149,10 +130,8 @@ class _Literal:
             ),
             part("time", some(self.time())),
             part("index", some(self.index())),
-            part("files", some(self.files())),
-            part("program_copy", some(self.struct(facts.program_copy))),
-            part("program_information", some(self.struct(facts.program_information))),
-            part("identification", some(_step(link.identification, "telemetry"))),
+            part("unsolicited", flat_rows(unsolicited)),
+            part("identification", some(_identification(link.identification))),
             part("boot_ms", some(facts.boot_ms)),
             part("stream", some(stream_of(facts.stream) if facts.stream else None)),
         )
@@ -163,16 +142,10 @@ class _Literal:
             return None
         items = []
         for fact in facts_of(declared):
-            value = getattr(declared, fact.name)
-            step = (
-                _step(self.description.step(value), fact.direction)
-                if isinstance(value, Step)
-                else None
-            )
             items.append(
                 part(
                     member_name(fact),
-                    step or value_of(fact, declared),
+                    value_of(fact, declared),
                     self.assumed.why_fact(declared, fact),
                 )
             )
@@ -234,43 +207,6 @@ class _Literal:
         )
         return self.struct(form, *spans)
 
-    def files(self) -> Brackets | None:
-        """Return the facts of file transfer, with the procedures that the ICD describes
-        completely.
-        """
-        form = self.facts.files
-        if form is None:
-            return None
-        ids = (
-            part(
-                bus,
-                some(form.packet_ids.get(bus)),
-                self.assumed.why("file_transfer.download", bus),
-            )
-            for bus in BUSES
-        )
-        return self.struct(
-            form,
-            part("packet_ids", struct("PerBus", *ids)),
-            part("hole_map", some(self.hole_map())),
-            *(
-                part(name, some(self.struct(getattr(form, name))))
-                for name in PROCEDURES
-            ),
-        )
-
-    def hole_map(self) -> Brackets | None:
-        messages = []
-        for field in self.description.map_pieces:
-            message = field.message.model
-            if message.telecommand_id is None or message.telemetry_id is None:
-                return None
-            ids = {"set_id": message.telecommand_id, "get_id": message.telemetry_id}
-            messages.append(
-                flat("MapMessage", **ids, length=message.length, piece=_span(field))
-            )
-        return self.struct(self.facts.hole_map, part("messages", rows(messages)))
-
 
 def _form(sent: SentMessage) -> Brackets:
     message = sent.message
@@ -289,11 +225,6 @@ def _can_types(types: dict[str, int]) -> Brackets:
     )
 
 
-def _span(field: FieldDescription) -> Brackets:
-    """Return the position of bytes."""
-    return flat("Span", at=field.model.at // 8, bytes=field.model.bits // 8)
-
-
 def _place(field: FieldDescription) -> Expression:
     """Return the position of a number."""
     return flat_rows(flat("Piece", **piece._asdict()) for piece in field.pieces)
@@ -309,28 +240,15 @@ def _polled(step: StepDescription | None) -> Brackets | None:
     )
 
 
-def _step(step: StepDescription | None, direction: str) -> Brackets | None:
-    """Return a step of a procedure; None if the node does not have the message in that
-    direction.
-    """
-    id = step and (
-        step.message.telecommand_id
-        if direction == "telecommand"
-        else step.message.telemetry_id
-    )
-    if step is None or id is None:
+def _identification(step: StepDescription | None) -> Brackets | None:
+    if step is None:
         return None
-    places, payload = [], None
-    for role, field in step.places:
-        if field.model.is_bytes:
-            payload = _span(field)
-        elif role not in _ONLY_POLLED and field.model.bits <= _NUMBER_BITS:
-            name = Item(f"link::Role::{variant(role)}")
-            places.append(Brackets("(", (name, Item(_place(field))), ")", True))
+    fields = {place.role: place.field for place in step.places}
     return struct(
-        "Step",
-        part("id", integer(id)),
-        part("fresh", flat_rows(map(str, step.initial_frame))),
-        part("places", rows(places)),
-        part("payload", some(payload)),
+        "Identification",
+        part("length", integer(step.message.length)),
+        *(
+            part(role, _place(fields[role]) if role in fields else "&[]")
+            for role in ("node_type", "interface_version")
+        ),
     )

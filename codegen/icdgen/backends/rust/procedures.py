@@ -297,6 +297,7 @@ class _Writer:
                 name=string(each.name),
                 most=each.most,
                 values=flat_rows(map(spelled, each.values)),
+                allowed=string(_allowed(each)),
                 is_optional=each.is_optional,
             )
             for each in procedure.inputs
@@ -320,6 +321,13 @@ class _Writer:
             part("steps", rows(map(_step, procedure.steps))),
         )
         return Brackets("procedure::Form { ", items, " }")
+
+
+def _allowed(each: model.Input) -> str:
+    """Return the allowed numbers of an input in words."""
+    if each.values:
+        return f"one of {', '.join(map(str, each.values))}"
+    return f"0 to {each.most}"
 
 
 def _angle(parameters: list[str]) -> str:

@@ -93,6 +93,12 @@ impl DerefMut for Upload<'_> {
     }
 }
 
+impl<'a> AsMut<procedure::Procedure<'a, ()>> for Upload<'a> {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'a, ()> {
+        &mut self.0
+    }
+}
+
 /// Memory in bytes for [`Upload`].
 pub const UPLOAD_MEMORY: usize = 128;
 
@@ -100,7 +106,7 @@ pub const UPLOAD_MEMORY: usize = 128;
 pub static UPLOAD: procedure::Form = procedure::Form {
     name: "upload",
     inputs: &[
-        procedure::Input { name: "destination", most: 255, values: &[3, 4, 5, 6, 7, 8, 9], is_optional: false },
+        procedure::Input { name: "destination", most: 255, values: &[3, 4, 5, 6, 7, 8, 9], allowed: "one of 3, 4, 5, 6, 7, 8, 9", is_optional: false },
     ],
     most_bytes: 524_288,
     outputs: &[],
@@ -194,11 +200,17 @@ impl DerefMut for ProgramInformation {
     }
 }
 
+impl AsMut<procedure::Procedure<'static, ()>> for ProgramInformation {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'static, ()> {
+        &mut self.0
+    }
+}
+
 /// The steps of [`ProgramInformation`].
 pub static PROGRAM_INFORMATION: procedure::Form = procedure::Form {
     name: "program_information",
     inputs: &[
-        procedure::Input { name: "program", most: 255, values: &[], is_optional: false },
+        procedure::Input { name: "program", most: 255, values: &[], allowed: "0 to 255", is_optional: false },
     ],
     most_bytes: 0,
     outputs: &[("size", 8), ("checksum", 9)],
@@ -261,11 +273,17 @@ impl DerefMut for ProgramCopy {
     }
 }
 
+impl AsMut<procedure::Procedure<'static, ()>> for ProgramCopy {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'static, ()> {
+        &mut self.0
+    }
+}
+
 /// The steps of [`ProgramCopy`].
 pub static PROGRAM_COPY: procedure::Form = procedure::Form {
     name: "program_copy",
     inputs: &[
-        procedure::Input { name: "program", most: 255, values: &[3, 4, 5, 6, 7, 8, 9], is_optional: false },
+        procedure::Input { name: "program", most: 255, values: &[3, 4, 5, 6, 7, 8, 9], allowed: "one of 3, 4, 5, 6, 7, 8, 9", is_optional: false },
     ],
     most_bytes: 0,
     outputs: &[],

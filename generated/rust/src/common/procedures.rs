@@ -63,6 +63,12 @@ impl<F> DerefMut for List<F> {
     }
 }
 
+impl<F> AsMut<procedure::Procedure<'static, procedure::Entries<crate::common::FileInformation, F>>> for List<F> {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'static, procedure::Entries<crate::common::FileInformation, F>> {
+        &mut self.0
+    }
+}
+
 /// The steps of [`List`].
 pub static LIST: procedure::Form = procedure::Form {
     name: "list",
@@ -165,6 +171,12 @@ impl<F> DerefMut for Download<'_, F> {
     }
 }
 
+impl<'a, F> AsMut<procedure::Procedure<'a, procedure::Received<F>>> for Download<'a, F> {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'a, procedure::Received<F>> {
+        &mut self.0
+    }
+}
+
 /// Memory in bytes for [`Download`].
 pub const DOWNLOAD_MEMORY: usize = 20_608;
 
@@ -172,9 +184,9 @@ pub const DOWNLOAD_MEMORY: usize = 20_608;
 pub static DOWNLOAD: procedure::Form = procedure::Form {
     name: "download",
     inputs: &[
-        procedure::Input { name: "type", most: 255, values: &[], is_optional: false },
-        procedure::Input { name: "counter", most: 255, values: &[], is_optional: false },
-        procedure::Input { name: "size", most: 16_777_216, values: &[], is_optional: true },
+        procedure::Input { name: "type", most: 255, values: &[], allowed: "0 to 255", is_optional: false },
+        procedure::Input { name: "counter", most: 255, values: &[], allowed: "0 to 255", is_optional: false },
+        procedure::Input { name: "size", most: 16_777_216, values: &[], allowed: "0 to 16777216", is_optional: true },
     ],
     most_bytes: 0,
     outputs: &[],
@@ -260,13 +272,19 @@ impl DerefMut for Erase {
     }
 }
 
+impl AsMut<procedure::Procedure<'static, ()>> for Erase {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'static, ()> {
+        &mut self.0
+    }
+}
+
 /// The steps of [`Erase`].
 pub static ERASE: procedure::Form = procedure::Form {
     name: "erase",
     inputs: &[
-        procedure::Input { name: "type", most: 255, values: &[], is_optional: false },
-        procedure::Input { name: "counter", most: 255, values: &[], is_optional: false },
-        procedure::Input { name: "all", most: 1, values: &[], is_optional: false },
+        procedure::Input { name: "type", most: 255, values: &[], allowed: "0 to 255", is_optional: false },
+        procedure::Input { name: "counter", most: 255, values: &[], allowed: "0 to 255", is_optional: false },
+        procedure::Input { name: "all", most: 1, values: &[], allowed: "0 to 1", is_optional: false },
     ],
     most_bytes: 0,
     outputs: &[],
@@ -320,6 +338,12 @@ impl Deref for Format {
 
 impl DerefMut for Format {
     fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
+
+impl AsMut<procedure::Procedure<'static, ()>> for Format {
+    fn as_mut(&mut self) -> &mut procedure::Procedure<'static, ()> {
         &mut self.0
     }
 }

@@ -2,8 +2,8 @@
 
 //! Blocking client over a port that implements `Read` and `Write`. Feature `std`.
 
-use super::files::{End, Procedure};
 use super::link::{Reason, Settings};
+use super::procedure::{End, Procedure, Sink};
 use super::{
     Client, Error, Event, Linked, NodeEvent, Refusals, Request, Started, TelecommandOf, TelemetryOf,
 };
@@ -251,12 +251,15 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// # Errors
     ///
     /// [`Failure`]
-    pub fn run(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
-        let ended = self.driven(procedure);
+    pub fn run<'p, S: Sink>(
+        &mut self,
+        procedure: &mut impl AsMut<Procedure<'p, S>>,
+    ) -> Result<(), Failure> {
+        let ended = self.driven(procedure.as_mut());
         self.cancelled(ended)
     }
 
-    fn driven(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
+    fn driven<S: Sink>(&mut self, procedure: &mut Procedure<'_, S>) -> Result<(), Failure> {
         loop {
             while self.client.advance(self.port.now(), procedure)? {
                 self.flush()?;

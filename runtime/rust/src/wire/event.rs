@@ -64,13 +64,6 @@ pub enum Event<'a> {
         /// The id.
         id: u32,
     },
-    /// A packet of a file.
-    Packet {
-        /// Number of the packet.
-        number: u32,
-        /// Content of the packet.
-        data: &'a [u8],
-    },
     /// Telemetry that the node sends without a request, such as a packet of a file.
     Arrived {
         /// Id of the telemetry.
@@ -133,11 +126,12 @@ impl<'a, T> NodeEvent<'a, T> {
         Self { event, node }
     }
 
-    /// Return the requested message; None if the event is not the reply to a request for `M`.
+    /// Return the requested or unsolicited message; None if the event contains no message `M`.
     #[must_use]
     pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
         match self.event {
             Event::Done { id, data, .. } if id == octet(M::TELEMETRY_ID) => M::read(data).ok(),
+            Event::Arrived { id, data } if id == M::TELEMETRY_ID => M::read(data).ok(),
             _ => None,
         }
     }

@@ -1,6 +1,6 @@
 //! Identification of the node.
 
-use super::link::{Link, Role};
+use super::link::{get, Link};
 use super::Error;
 
 /// Identity of a node.
@@ -31,13 +31,13 @@ pub struct Identity {
 /// }
 /// ```
 pub fn identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> {
-    let step = link.identification.as_ref().ok_or(Error::Unsupported)?;
-    let (expected, actual) = (step.fresh.len(), frame.len());
+    let form = link.identification.as_ref().ok_or(Error::Unsupported)?;
+    let (expected, actual) = (form.length, frame.len());
     if expected != actual {
         return Err(Error::Length { expected, actual });
     }
-    let node_type = step.get(Role::NodeType, frame).unwrap_or(0);
-    let interface_version = step.get(Role::InterfaceVersion, frame).unwrap_or(0);
+    let node_type = get(form.node_type, frame);
+    let interface_version = get(form.interface_version, frame);
     Ok(Identity {
         node_type,
         interface_version,

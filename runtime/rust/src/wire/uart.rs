@@ -1,7 +1,7 @@
 //! UART: framing of messages in a stream of bytes. Messages start with their id.
 
 use super::bits::part;
-use super::link::{Framing, Link};
+use super::link::{Form, Framing, Link};
 use super::Error;
 
 /// Return the size of the framed message in bytes.
@@ -294,7 +294,7 @@ pub enum Kind {
     Reply,
     /// The acknowledge of a telecommand.
     Acknowledge,
-    /// A packet of a file.
+    /// Unsolicited telemetry, such as a packet of a file.
     Packet,
     /// An unsolicited log.
     Log,
@@ -331,13 +331,17 @@ pub fn kind(link: &Link, message: &[u8]) -> Kind {
             return Kind::Acknowledge;
         }
     }
-    if let Some(files) = &link.files {
-        let length = 1 + files.counter_bytes + files.packet_bytes;
-        if Some(id) == files.packet_ids.uart && message.len() == length {
-            return Kind::Packet;
-        }
+    match unsolicited(link, id) {
+        Some(form) if message.len() == 1 + form.length => Kind::Packet,
+        _ => Kind::Other,
     }
-    Kind::Other
+}
+
+/// The unsolicited telemetry in a message that begins with this id.
+pub(crate) fn unsolicited(link: &Link, first: u8) -> Option<&'static Form> {
+    let mut rows = link.unsolicited.iter();
+    let (_, telemetry) = rows.find(|(id, _)| *id == first)?;
+    link.telemetry(*telemetry)
 }
 
 /// Id of the telecommand and error code of an acknowledge.

@@ -10,9 +10,9 @@ use self::machine::Machine;
 use super::bits::head;
 use super::can::{self, Joiner, Packet};
 use super::event::{Event, NodeEvent};
-use super::files::Procedure;
 use super::link::{Bus, Link, Settings};
 use super::message::{octet, Linked};
+use super::procedure::{Outcome, Procedure, Sink};
 use super::request::{Request, Started};
 use super::uart::{self, Decoder, Encoder};
 use super::{Error, TelecommandOf, TelemetryOf};
@@ -209,22 +209,27 @@ impl<T, const N: usize> Client<T, N> {
     /// # Errors
     ///
     /// See [`Client::start`].
-    pub fn advance(
+    pub fn advance<'p, S: Sink>(
         &mut self,
         now: u32,
-        procedure: &mut (impl Procedure + ?Sized),
+        procedure: &mut impl AsMut<Procedure<'p, S>>,
     ) -> Result<bool, Error> {
+        let procedure = procedure.as_mut();
         if self.machine.is_busy() {
             return Ok(false);
         }
+        procedure.set_bus(self.machine.bus);
         let request = match procedure.next(now) {
-            Some(request) => request,
+            Some(request) => Request {
+                direction: request.direction,
+                id: octet(request.id),
+                data: request.data,
+                repeat: request.repeat,
+            },
             None => return Ok(false),
         };
-        let (id, attempts, data) = (request.id, 1, &[]);
         if self.start(now, &request)? == Started::Done {
-            let done = Event::Done { id, attempts, data };
-            procedure.event(now, &done);
+            procedure.event(now, Outcome::Done(&[]));
         }
         Ok(true)
     }

@@ -8,17 +8,13 @@ mod can;
 mod logs;
 mod steps;
 mod stream;
-mod transfer;
 
 pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
-pub use self::steps::{Piece, Place, Role, Step};
+pub use self::steps::{Identification, Piece, Place};
 pub use self::stream::{
     CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole, Exchange,
     NumberPlace, PacketForm, RequestForm, Response, ResponseKind, Stream, StreamRow, Verdict,
-};
-pub use self::transfer::{
-    DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, OperationForm, UploadForm,
 };
 
 pub(crate) use self::steps::get;
@@ -74,14 +70,10 @@ pub struct Link {
     pub time: Option<TimeForm>,
     /// Entries of the index file.
     pub index: Option<IndexForm>,
-    /// File transfer.
-    pub files: Option<Files>,
-    /// Copying of a stored program to the memory from which it runs.
-    pub program_copy: Option<OperationForm>,
-    /// Reading of size and checksum of a stored program.
-    pub program_information: Option<OperationForm>,
+    /// UART: telemetry that the node sends unasked, by the id at the beginning of the message.
+    pub unsolicited: &'static [(u8, u8)],
     /// The frame that identifies the node.
-    pub identification: Option<Step>,
+    pub identification: Option<Identification>,
     /// Time in milliseconds that the bootloader waits before it starts the program.
     pub boot_ms: Option<u32>,
     /// Framing. If present, ids have up to 32 bits and the other parts are empty.

@@ -9,9 +9,82 @@ pub const LONGEST: usize = 28;
 
 /// The protocol of node `bootloader`. Facts that the manual omits are marked as assumed.
 ///
+/// Assumed (`file_transfer`, `first_packet`): Where the count begins is not said. Bit 0 of the hole
+/// map is the first packet.
+///
+/// Assumed (`file_transfer`, `fill`): The value is not defined. Erased flash memory reads 0xFF.
+///
+/// Assumed (`file_transfer.hole_map`, `beyond_end`): What the bits beyond the end of a short block
+/// are is not said. Marked as received, nothing is sent for them; from the node they are ignored.
+///
+/// Assumed (`file_transfer.download`, `message_length`): The field is not explained. Drivers in use
+/// send 20, the bytes of the file in a packet.
+///
+/// Assumed (`file_transfer.download`, `checksum_covers_fill`): Not said. The checksum comes with
+/// the length of the block, which does not count the fill.
+///
+/// Assumed (`file_transfer.download`, `index_counter`): Which counter goes with the index file is
+/// not said.
+///
+/// Assumed (`file_transfer.download`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.download`, `ready_timeout_ms`): No time is given.
+///
+/// Assumed (`file_transfer.download`, `silence_ms`): How a burst ends is not said. Packets follow
+/// one another in rapid succession.
+///
+/// Assumed (`file_transfer.download`, `rounds`): Nothing is said about giving up.
+///
+/// Assumed (`file_transfer.download`, `max_bytes`): No number is given. A file of unknown size has
+/// to end at some point.
+///
+/// Assumed (`file_transfer.download`, `i2c`): That the reads are headed by the id of the frame with
+/// the packet's format is not said.
+///
+/// Assumed (`file_transfer.download`, `can`): Download over CAN is not described. The packets are
+/// requested one by one as on I2C.
+///
+/// Assumed (`file_transfer.upload`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.upload`, `rounds`): Nothing is said about giving up.
+///
+/// Assumed (`file_transfer.upload`, `checksum_covers_fill`): Not said. The node learns the length
+/// of the block only when the block is committed, after the checksum.
+///
+/// Assumed (`file_transfer.upload`, `finalize`): The procedure ends with the checksum and does not
+/// name the telecommand that commits the block.
+///
+/// Assumed (`file_transfer.upload`, `finalize_timeout_ms`): No time is given.
+///
+/// Assumed (`file_transfer.list`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.list`, `max_entries`): No number is given. A list without a last file
+/// has to end at some point.
+///
+/// Assumed (`file_transfer.list`, `timeout_ms`): No time is given. The checksum of a large file has
+/// to be computed meanwhile.
+///
+/// Assumed (`file_transfer.erase`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.erase`, `timeout_ms`): No time is given.
+///
+/// Assumed (`file_transfer.format`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.format`, `timeout_ms`): No time is given.
+///
 /// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
 /// start is said to follow.
+///
+/// Assumed (`program_information`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`program_copy`, `programs`): A copy is described from external flash only. What the
+/// other programs of the enumeration would do is not said.
+///
+/// Assumed (`program_copy`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`program_copy`, `timeout_s`): No time is given. The same area is erased as for an
+/// upload, which takes up to 8 s, and then written.
 ///
 /// Assumed (`message Reset`, `acknowledge`): Whether the acknowledge comes before the restart is
 /// not said. None is waited for, and one that comes is accepted.
@@ -208,308 +281,11 @@ pub static LINK: NodeLink<crate::bootloader::Node> = NodeLink::new(link::Link {
         time: link::Span { at: 8, bytes: 4 },
         meta: link::Span { at: 12, bytes: 25 },
     }),
-    files: Some(link::Files {
-        packet_bytes: 20,
-        counter_bytes: 2,
-        // Assumed. Where the count begins is not said. Bit 0 of the hole map is the first packet.
-        first_packet: 0,
-        // Assumed. The value is not defined. Erased flash memory reads 0xFF.
-        fill: 0xff,
-        block_packets: 1_024,
-        block_bytes: 20_480,
-        packet_ids: link::PerBus {
-            uart: Some(119),
-            // Assumed. That the reads are headed by the id of the frame with the packet's format is
-            // not said.
-            i2c: Some(241),
-            // Assumed. Download over CAN is not described. The packets are requested one by one as
-            // on I2C.
-            can: Some(241),
-        },
-        hole_map: Some(link::HoleMapForm {
-            bytes: 128,
-            message_bytes: 16,
-            msb0: false,
-            received: true,
-            // Assumed. What the bits beyond the end of a short block are is not said. Marked as
-            // received, nothing is sent for them; from the node they are ignored.
-            beyond_end: true,
-            messages: &[
-                link::MapMessage { set_id: 120, get_id: 247, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 121, get_id: 248, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 122, get_id: 249, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 123, get_id: 250, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 124, get_id: 251, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 125, get_id: 252, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 126, get_id: 253, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-                link::MapMessage { set_id: 127, get_id: 254, length: 16, piece: link::Span { at: 0, bytes: 16 } },
-            ],
-        }),
-        list: Some(link::ListForm {
-            reset: link::Step {
-                id: 118,
-                fresh: &[],
-                places: &[],
-                payload: None,
-            },
-            advance: link::Step {
-                id: 113,
-                fresh: &[],
-                places: &[],
-                payload: None,
-            },
-            information: link::Step {
-                id: 243,
-                fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 4, bits: 1, at: 0 }]),
-                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 4, at: 0 }]),
-                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::Size, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                    (link::Role::Time, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 8, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 9, shift: 0, bits: 8, at: 24 }]),
-                    (link::Role::Checksum, &[link::Piece { byte: 10, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 11, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. No time is given.
-            poll_interval_ms: 50,
-            // Assumed. No time is given. The checksum of a large file has to be computed meanwhile.
-            timeout_ms: 10_000,
-            // Assumed. No number is given. A list without a last file has to end at some point.
-            max_entries: 1_024,
-        }),
-        download: Some(link::DownloadForm {
-            load: link::Step {
-                id: 112,
-                fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::Offset, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                    (link::Role::Length, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            ready: link::Step {
-                id: 242,
-                fresh: &[0, 0, 0, 0, 0],
-                places: &[
-                    (link::Role::Ready, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                    (link::Role::Checksum, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 2, shift: 0, bits: 8, at: 8 }]),
-                    (link::Role::Length, &[link::Piece { byte: 3, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            burst: link::Step {
-                id: 119,
-                fresh: &[0, 0],
-                places: &[
-                    (link::Role::Length, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::IgnoreHoleMap, &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. The field is not explained. Drivers in use send 20, the bytes of the file in
-            // a packet.
-            message_length: 20,
-            // Assumed. Not said. The checksum comes with the length of the block, which does not
-            // count the fill.
-            checksum_covers_fill: false,
-            // Assumed. Which counter goes with the index file is not said.
-            index_counter: 0,
-            // Assumed. No time is given.
-            poll_interval_ms: 50,
-            // Assumed. No time is given.
-            ready_timeout_ms: 10_000,
-            // Assumed. How a burst ends is not said. Packets follow one another in rapid
-            // succession.
-            silence_ms: 500,
-            // Assumed. Nothing is said about giving up.
-            rounds: 32,
-            // Assumed. No number is given. A file of unknown size has to end at some point.
-            max_bytes: 16_777_216,
-        }),
-        upload: Some(link::UploadForm {
-            initiate: link::Step {
-                id: 114,
-                fresh: &[0, 0],
-                places: &[
-                    (link::Role::Destination, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::BlockSize, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                ],
-                payload: None,
-            },
-            initiated: link::Step {
-                id: 244,
-                fresh: &[0],
-                places: &[
-                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            begin: link::Step {
-                id: 117,
-                fresh: &[],
-                places: &[],
-                payload: None,
-            },
-            packet: link::Step {
-                id: 115,
-                fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (link::Role::Number, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: Some(link::Span { at: 2, bytes: 20 }),
-            },
-            checksum: link::Step {
-                id: 246,
-                fresh: &[0, 0],
-                places: &[
-                    (link::Role::Checksum, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. The procedure ends with the checksum and does not name the telecommand that
-            // commits the block.
-            finalize: link::Step {
-                id: 116,
-                fresh: &[0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (link::Role::Destination, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::Offset, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 2, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 24 }]),
-                    (link::Role::Length, &[link::Piece { byte: 5, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 6, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            finalized: link::Step {
-                id: 245,
-                fresh: &[0],
-                places: &[
-                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            block_size: 0,
-            // Assumed. Not said. The node learns the length of the block only when the block is
-            // committed, after the checksum.
-            checksum_covers_fill: true,
-            // Assumed. No time is given.
-            poll_interval_ms: 50,
-            erase_timeout_ms: 8_000,
-            // Assumed. No time is given.
-            finalize_timeout_ms: 5_000,
-            // Assumed. Nothing is said about giving up.
-            rounds: 32,
-            destination_bytes: Some(524_288),
-            destinations: &[3, 4, 5, 6, 7, 8, 9],
-        }),
-        erase: Some(link::ErasureForm {
-            request: link::Step {
-                id: 108,
-                fresh: &[0, 0, 0],
-                places: &[
-                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (link::Role::All, &[link::Piece { byte: 2, shift: 0, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            progress: link::Step {
-                id: 234,
-                fresh: &[0],
-                places: &[
-                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. No time is given.
-            poll_interval_ms: 200,
-            // Assumed. No time is given.
-            timeout_ms: 60_000,
-        }),
-        format: Some(link::ErasureForm {
-            request: link::Step {
-                id: 33,
-                fresh: &[90],
-                places: &[],
-                payload: None,
-            },
-            progress: link::Step {
-                id: 234,
-                fresh: &[0],
-                places: &[
-                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. No time is given.
-            poll_interval_ms: 200,
-            // Assumed. No time is given.
-            timeout_ms: 60_000,
-        }),
-    }),
-    program_copy: Some(link::OperationForm {
-        request: link::Step {
-            id: 103,
-            fresh: &[0, 0],
-            places: &[
-                (link::Role::Program, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-            ],
-            payload: None,
-        },
-        progress: link::Step {
-            id: 233,
-            fresh: &[0],
-            places: &[
-                (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-            ],
-            payload: None,
-        },
-        // Assumed. No time is given.
-        poll_interval_ms: 50,
-        // Assumed. No time is given. The same area is erased as for an upload, which takes up to 8
-        // s, and then written.
-        timeout_ms: 10_000,
-        // Assumed. A copy is described from external flash only. What the other programs of the
-        // enumeration would do is not said.
-        programs: &[3, 4, 5, 6, 7, 8, 9],
-    }),
-    program_information: Some(link::OperationForm {
-        request: link::Step {
-            id: 102,
-            fresh: &[0],
-            places: &[
-                (link::Role::Program, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-            ],
-            payload: None,
-        },
-        progress: link::Step {
-            id: 232,
-            fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
-            places: &[
-                (link::Role::Program, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                (link::Role::Busy, &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
-                (link::Role::Size, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                (link::Role::Checksum, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
-            ],
-            payload: None,
-        },
-        // Assumed. No time is given.
-        poll_interval_ms: 50,
-        timeout_ms: 2_000,
-        programs: &[],
-    }),
-    identification: Some(link::Step {
-        id: 128,
-        fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
-        places: &[
-            (link::Role::NodeType, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-            (link::Role::InterfaceVersion, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-        ],
-        payload: None,
+    unsolicited: &[(119, 241)],
+    identification: Some(link::Identification {
+        length: 8,
+        node_type: &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
+        interface_version: &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }],
     }),
     boot_ms: Some(5_000),
     stream: None,

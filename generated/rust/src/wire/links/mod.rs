@@ -8,11 +8,7 @@ pub mod bootloader;
 
 pub mod cubeacp;
 
-/// Size in bytes of the longest message in a procedure of any node.
+/// Size in bytes of the longest telecommand of a procedure.
 pub(crate) const STEP_BYTES: usize = 22;
 /// Size in bytes of the longest entry of a list that a procedure reads.
 pub(crate) const ENTRY_BYTES: usize = 12;
-/// Size in bytes of the longest hole map.
-pub(crate) const MAP_BYTES: usize = 128;
-/// Largest number of packets of a block.
-pub(crate) const BLOCK_PACKETS: usize = 1024;

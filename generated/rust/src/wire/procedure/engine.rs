@@ -174,6 +174,13 @@ impl<S: Sink> Procedure<'_, S> {
     }
 }
 
+/// The types of generated procedures have this trait, too: clients take both.
+impl<'a, S> AsMut<Procedure<'a, S>> for Procedure<'a, S> {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
 /// What a procedure remembers.
 #[derive(Debug)]
 pub(super) struct Engine<'a> {

@@ -47,6 +47,8 @@ pub struct Input {
     pub most: u32,
     /// The supported numbers; empty: all.
     pub values: &'static [u32],
+    /// The allowed numbers in words.
+    pub allowed: &'static str,
     /// Whether it may be left out.
     pub is_optional: bool,
 }

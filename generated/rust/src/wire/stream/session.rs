@@ -5,6 +5,7 @@
 
 use super::{Client, Event, NodeEvent, Request, Values};
 use crate::wire::link::Settings;
+use crate::wire::procedure::{End, Procedure, Sink};
 use crate::wire::session::{Failure, Waiting};
 use crate::wire::{Error, Linked, TelecommandOf, TelemetryOf};
 use std::boxed::Box;
@@ -133,6 +134,40 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         Ok(self.outcome()?.1)
     }
 
+    /// Run a procedure to its end.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`]
+    pub fn run<'p, W: Sink>(
+        &mut self,
+        procedure: &mut impl AsMut<Procedure<'p, W>>,
+    ) -> Result<(), Failure> {
+        let ended = self.driven(procedure.as_mut());
+        if ended.is_err() {
+            self.client.cancel();
+        }
+        ended
+    }
+
+    fn driven<W: Sink>(&mut self, procedure: &mut Procedure<'_, W>) -> Result<(), Failure> {
+        loop {
+            let is_started = self.client.advance(self.port.now(), procedure)?;
+            match procedure.result() {
+                Some(End::Done) => return Ok(()),
+                Some(end) => return Err(Failure::Procedure(end)),
+                None => {}
+            }
+            if is_started {
+                self.flush()?;
+                // One to which nothing responds has ended now.
+                self.process(&[], |now, event| procedure.event(now, event));
+            } else {
+                self.wait(|now, event| procedure.event(now, event))?;
+            }
+        }
+    }
+
     /// Wait for the next telemetry `M`, unsolicited or not. Return None if none arrives within this
     /// number of milliseconds.
     ///
@@ -142,7 +177,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
     pub fn message<M: TelemetryOf<T>>(&mut self, milliseconds: u32) -> Result<Option<M>, Failure> {
         let (began, mut found) = (self.port.now(), None);
         while found.is_none() && self.port.now().wrapping_sub(began) < milliseconds {
-            self.wait(|event| found = found.take().or_else(|| event.message()))?;
+            self.wait(|_, event| found = found.take().or_else(|| event.message()))?;
         }
         Ok(found)
     }
@@ -153,7 +188,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
     ///
     /// [`Failure::Port`]
     pub fn listen(&mut self) -> Result<(), Failure> {
-        self.wait(|_| {})
+        self.wait(|_, _| {})
     }
 
     /// Wait until the request has ended. One that failed with its port must not be in the way of the
@@ -170,17 +205,17 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         let mut ending = Ending::default();
         self.flush()?;
         // One to which nothing responds has ended now.
-        self.process(&[], |event| ending.hear(event));
+        self.process(&[], |_, event| ending.hear(event));
         loop {
             if let Some(outcome) = ending.outcome.take() {
                 let (outcome, data) = outcome?;
                 return Ok((outcome, ending.reply.unwrap_or(data)));
             }
-            self.wait(|event| ending.hear(event))?;
+            self.wait(|_, event| ending.hear(event))?;
         }
     }
 
-    fn wait(&mut self, on_event: impl FnMut(&NodeEvent<'_, T>)) -> Result<(), Failure> {
+    fn wait(&mut self, on_event: impl FnMut(u32, &NodeEvent<'_, T>)) -> Result<(), Failure> {
         self.flush()?;
         let mut input = [0; 512];
         let bytes = self.port.read(&mut input)?;
@@ -188,10 +223,10 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         self.flush()
     }
 
-    fn process(&mut self, bytes: &[u8], mut on_event: impl FnMut(&NodeEvent<'_, T>)) {
+    fn process(&mut self, bytes: &[u8], mut on_event: impl FnMut(u32, &NodeEvent<'_, T>)) {
         let (now, told) = (self.port.now(), &mut self.on_event);
         let both = |event: NodeEvent<'_, T>| {
-            on_event(&event);
+            on_event(now, &event);
             told(&event);
         };
         if bytes.is_empty() {

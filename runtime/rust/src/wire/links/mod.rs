@@ -1,11 +1,7 @@
 //! A sample, so that the runtime is a crate of its own: the links of the nodes, and what the procedures
 //! need for any of them, are generated.
 
-/// Bytes of the longest message of a procedure.
+/// Bytes of the longest telecommand of a procedure.
 pub(crate) const STEP_BYTES: usize = 8;
-/// Bytes of the longest hole map.
-pub(crate) const MAP_BYTES: usize = 64;
-/// Most packets of a block.
-pub(crate) const BLOCK_PACKETS: usize = 512;
 /// Bytes of the longest entry of a list.
 pub(crate) const ENTRY_BYTES: usize = 8;

@@ -18,9 +18,12 @@ impl Input {
             [] => *number <= self.most,
             values => values.contains(number),
         };
+        let (field, allowed) = (self.name, self.allowed);
         match number {
             None if self.is_optional => Ok(UNKNOWN),
-            _ => number.filter(is_supported).ok_or(Error::range(self.name)),
+            _ => number
+                .filter(is_supported)
+                .ok_or(Error::Range { field, allowed }),
         }
     }
 }

@@ -165,11 +165,12 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     /// # Errors
     ///
     /// See [`Client::start`].
-    pub fn advance<W: Sink>(
+    pub fn advance<'p, W: Sink>(
         &mut self,
         now: u32,
-        procedure: &mut Procedure<'_, W>,
+        procedure: &mut impl AsMut<Procedure<'p, W>>,
     ) -> Result<bool, Error> {
+        let procedure = procedure.as_mut();
         if self.slots.is_full() {
             return Ok(false);
         }

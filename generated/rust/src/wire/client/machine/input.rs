@@ -2,7 +2,6 @@
 
 //! What a client does with what comes.
 
-use super::super::super::bits::{number, part};
 use super::super::super::{can, i2c, link, uart};
 use super::super::super::{Direction, Event};
 use super::super::State;
@@ -23,16 +22,10 @@ impl<const N: usize> Machine<N> {
         match uart::kind(self.link, message) {
             uart::Kind::Log => return on_event(Event::Log { message }),
             uart::Kind::Packet => {
-                let size = self
-                    .link
-                    .files
-                    .as_ref()
-                    .map_or(0, |files| files.counter_bytes);
-                let number = number(part(data, 0, size), self.link.little);
-                return on_event(Event::Packet {
-                    number: u32::try_from(number).unwrap_or(u32::MAX),
-                    data: data.get(size..).unwrap_or(&[]),
-                });
+                if let Some(form) = uart::unsolicited(self.link, id) {
+                    let id = form.id.into();
+                    return on_event(Event::Arrived { id, data });
+                }
             }
             uart::Kind::Reply if self.replied(id.into(), data, on_event) => return,
             uart::Kind::Acknowledge => {

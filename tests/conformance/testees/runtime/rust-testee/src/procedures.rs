@@ -35,8 +35,10 @@ pub fn procedure(node: usize, words: &mut Words) -> Answer {
         procedure.set_block(block);
     }
     let mut answer = String::new();
+    // Packets with header and trailer have a checksum: no refusal is damaged.
+    let has_stream = nodes::link(node).map_or(false, |link| link.stream.is_some());
     while words.more() {
-        step(&mut procedure, words, &mut answer);
+        step(&mut procedure, has_stream, words, &mut answer);
     }
     if form.blocks.map_or(false, |blocks| blocks.sends) {
         let (sent, _) = procedure.progress();
@@ -54,7 +56,12 @@ pub fn procedure(node: usize, words: &mut Words) -> Answer {
     Ok(answer + &delivered.0)
 }
 
-fn step<S: Sink>(procedure: &mut Procedure<'_, S>, words: &mut Words, answer: &mut String) {
+fn step<S: Sink>(
+    procedure: &mut Procedure<'_, S>,
+    has_stream: bool,
+    words: &mut Words,
+    answer: &mut String,
+) {
     let now = words.number();
     let data;
     let event = match words.word() {
@@ -71,7 +78,7 @@ fn step<S: Sink>(procedure: &mut Procedure<'_, S>, words: &mut Words, answer: &m
         "busy" => Outcome::Busy,
         "timeout" => Outcome::Timeout,
         name @ ("refused" | "damaged") => Outcome::Refused {
-            may_be_damaged: name == "damaged",
+            may_be_damaged: name == "damaged" && !has_stream,
         },
         _ => Outcome::Unrelated,
     };

@@ -1,14 +1,9 @@
-//! Scripts for the client and for the procedures: what happens at which time, and what they do then.
+//! Scripts for the client: what happens at which time, and what it does then.
 
 use crate::line::{hex, Answer, Refusal, Words};
 use crate::nodes::LONGEST;
 use crate::wire::{bus, explained, packet, shown_packet};
-use icd::wire::files::{
-    Download, End, Erase, Format, List, Procedure, ProgramCopy, ProgramInformation, Upload,
-};
-use icd::wire::{
-    Bus, Client, Direction, Error, Event, Link, NodeEvent, Reason, Request, Settings, Started,
-};
+use icd::wire::{Bus, Client, Error, Event, Link, NodeEvent, Reason, Request, Settings, Started};
 use std::fmt::Write;
 
 pub fn client(link: &'static Link, words: &mut Words) -> Answer {
@@ -135,7 +130,7 @@ fn shown(event: &Event<'_>) -> String {
             format!(" refused id={id} attempts={attempts}{code}{reason}{parameter}")
         }
         Event::Timeout { id, attempts } => format!(" timeout id={id} attempts={attempts}"),
-        Event::Packet { number, data } => format!(" packet number={number} bytes={}", hex(data)),
+        Event::Arrived { id, data } => format!(" arrived id={id} bytes={}", hex(data)),
         Event::Log { message } => format!(" log bytes={}", hex(message)),
         Event::Stray { id, data } => {
             let id = id.and_then(|id| u8::try_from(id).ok());
@@ -154,125 +149,5 @@ fn shown(event: &Event<'_>) -> String {
         Event::Busy { id } => of("busy", id),
         Event::UnknownType { id } => of("unknown_type", id),
         _ => " other".into(),
-    }
-}
-
-pub fn file(link: &'static Link, words: &mut Words) -> Answer {
-    match words.word() {
-        "list" => {
-            let mut entries = String::new();
-            let mut procedure = List::new(link, |one| {
-                let (kind, counter, size) = (one.kind, one.counter, one.size);
-                let (time, checksum) = (one.time, one.checksum);
-                let _ = write!(entries, " entry type={kind} counter={counter} size={size}");
-                let _ = write!(entries, " time={time} checksum={checksum}");
-            })?;
-            let steps = drive(&mut procedure, words);
-            Ok(steps + &entries)
-        }
-        "download" => {
-            let (bus, file) = (bus(words), (words.number(), words.number()));
-            let (size, block) = (words.maybe(), words.maybe().unwrap_or(u32::MAX));
-            let mut buffer = vec![0; link.files.map_or(0, |files| files.block_bytes)];
-            let mut blocks = String::new();
-            let on_block = |offset, block: &[u8]| {
-                let _ = write!(blocks, " block offset={offset} bytes={}", hex(block));
-            };
-            let download = Download::new(link, bus, file, size, &mut buffer, on_block)?;
-            let steps = drive(&mut download.with_block(block), words);
-            Ok(steps + &blocks)
-        }
-        "upload" => {
-            let (destination, block) = (words.number(), words.maybe().unwrap_or(u32::MAX));
-            let data = words.octets();
-            let mut upload = Upload::new(link, destination, &data)?.with_block(block);
-            let steps = drive(&mut upload, words);
-            let (sent, _) = upload.progress();
-            Ok(format!("{steps} ok sent={sent}"))
-        }
-        "erase" => {
-            let (file, all) = ((words.number(), words.number()), words.flag());
-            let mut erase = Erase::new(link, file.0, file.1, all)?;
-            Ok(drive(&mut erase, words))
-        }
-        "format" => Ok(drive(&mut Format::new(link)?, words)),
-        "program_copy" => {
-            let mut copy = ProgramCopy::new(link, words.number())?;
-            Ok(drive(&mut copy, words))
-        }
-        _ => {
-            let mut information = ProgramInformation::new(link, words.number())?;
-            let mut answer = drive(&mut information, words) + " ok";
-            for (key, told) in [
-                ("size", information.size()),
-                ("checksum", information.checksum()),
-            ] {
-                if let Some(number) = told {
-                    let _ = write!(answer, " {key}={number}");
-                }
-            }
-            Ok(answer)
-        }
-    }
-}
-
-fn drive(procedure: &mut dyn Procedure, words: &mut Words) -> String {
-    let mut answer = String::new();
-    while words.more() {
-        let now = words.number();
-        outcome(procedure, now, words);
-        answer += " step";
-        if let Some(request) = procedure.next(now) {
-            let (id, bytes) = (request.id, hex(request.data));
-            let repeat = u8::from(request.repeat);
-            let _ = match request.direction {
-                Direction::Telemetry => write!(answer, " telemetry={id}"),
-                Direction::Telecommand => {
-                    write!(answer, " telecommand={id} bytes={bytes} repeat={repeat}")
-                }
-            };
-        }
-        if let Some(deadline) = procedure.deadline() {
-            let _ = write!(answer, " deadline={deadline}");
-        }
-        answer += procedure.result().map_or("", |end| match end {
-            End::Done => " result=done",
-            End::Refused => " result=refused",
-            End::Timeout => " result=timeout",
-            End::Parameter => " result=parameter",
-            End::Length => " result=length",
-            End::Limit => " result=limit",
-            End::Rounds => " result=rounds",
-            End::Checksum => " result=checksum",
-            End::Error => " result=error",
-        });
-    }
-    answer
-}
-
-fn outcome(procedure: &mut dyn Procedure, now: u32, words: &mut Words) {
-    let (id, attempts) = (0, 1);
-    match words.word() {
-        "done" => {
-            let data = &words.octets();
-            let done = Event::Done { id, attempts, data };
-            procedure.event(now, &done);
-        }
-        "packet" => {
-            let (number, data) = (words.number(), &words.octets());
-            procedure.event(now, &Event::Packet { number, data });
-        }
-        "timeout" => procedure.event(now, &Event::Timeout { id, attempts }),
-        name @ ("refused" | "damaged") => {
-            let refused = Event::Refused {
-                id,
-                attempts,
-                code: (name == "damaged").then_some(255),
-                reason: None,
-                parameter: None,
-            };
-            procedure.event(now, &refused);
-        }
-        _ => {}
     }
 }

@@ -1,9 +1,9 @@
 //! Requests about how the messages travel.
 
-use crate::line::{counted, hex, list, ranged, Answer, Refusal, Words};
+use crate::line::{counted, hex, ranged, Answer, Refusal, Words};
 use crate::nodes::{link, LONGEST};
 use crate::{logs, procedures, scripts, stream};
-use icd::wire::files::{HoleMap, IndexEntries, IndexEntry};
+use icd::wire::files::{IndexEntries, IndexEntry};
 use icd::wire::uart::{Decoder, Kind};
 use icd::wire::{can, crc16, crc8, i2c, identify, uart, Bus, DosTime, Error, Link};
 use std::fmt::Write;
@@ -49,14 +49,11 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         "log_message_encode" => logs::log_message_encode,
         "dos_time_unpack" => dos_time_unpack,
         "dos_time_pack" => dos_time_pack,
-        "hole_map" => hole_map,
-        "hole_map_missing" => hole_map_missing,
         "index_decode" => index_decode,
         "index_encode" => index_encode,
         "identify" => identity,
         "link_data" => |link, _| Ok(link_data(link)),
         "client" => scripts::client,
-        "file" => scripts::file,
         "stream_encode" => stream::stream_encode,
         "stream_events" => stream::stream_events,
         "stream_client" => stream::stream_client,
@@ -76,13 +73,11 @@ pub fn bus(words: &mut Words) -> Bus {
 
 fn link_data(link: &'static Link) -> String {
     let text = |number: Option<u32>| number.map_or(String::new(), |known| known.to_string());
-    let download = link.files.and_then(|files| files.download);
     format!(
-        " boot_ms={} log_file_type={} index_file_type={} index_counter={}",
+        " boot_ms={} log_file_type={} index_file_type={}",
         text(link.boot_ms),
         text(link.log_file.and_then(|form| form.file_type).map(u32::from)),
         text(link.index.and_then(|form| form.file_type).map(u32::from)),
-        text(download.map(|form| u32::from(form.index_counter))),
     )
 }
 
@@ -237,29 +232,6 @@ fn dos_time_pack(link: &'static Link, words: &mut Words) -> Answer {
         second: words.number(),
     };
     Ok(format!(" value={}", time.pack(link)?))
-}
-
-fn missing(map: &HoleMap) -> String {
-    let numbers = list(map.missing().map(|number| number.to_string()));
-    format!(" missing={numbers}")
-}
-
-fn hole_map_missing(link: &'static Link, words: &mut Words) -> Answer {
-    let packets = words.number();
-    Ok(missing(&HoleMap::from_bytes(
-        link,
-        packets,
-        &words.octets(),
-    )?))
-}
-
-fn hole_map(link: &'static Link, words: &mut Words) -> Answer {
-    let mut map = HoleMap::new(link, words.number())?;
-    while words.more() {
-        map.set(words.number())?;
-    }
-    let (bytes, pieces) = (hex(map.as_bytes()), list(map.messages().map(hex)));
-    Ok(format!(" bytes={bytes} messages={pieces}{}", missing(&map)))
 }
 
 fn index_decode(link: &'static Link, words: &mut Words) -> Answer {
