@@ -34,21 +34,13 @@ from icdgen.protocol.procedures import (
 )
 from icdgen.protocol.sections import (
     Crc,
-    Download,
-    Erasure,
-    HoleMap,
-    Listing,
     LogFile,
     LogMessage,
     Step,
-    Upload,
 )
 
 # Types that have another name in generated code.
-_TYPES = {
-    Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
-    Listing: "ListForm", Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm",
-}  # fmt: skip
+_TYPES = {Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm"}
 
 
 def type_name(part: type) -> str:
@@ -146,10 +138,6 @@ class _LinkBuilder:
             "log_message": self.part(facts.log_message),
             "time": self.commented_rest(time or None, "msdos_time"),
             "index_file": self.index(),
-            "hole_map": self.hole_map(),
-            "files": self.files(),
-            "program_copy": self.part(facts.program_copy),
-            "program_information": self.part(facts.program_information),
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
@@ -254,32 +242,6 @@ class _LinkBuilder:
             else {}
         )
         return self.part(index, fields=fields)
-
-    def hole_map(self) -> object:
-        """Return the call for the map of missing packets."""
-        pieces = self.description.map_pieces
-        if not pieces:
-            return None
-        return self.part(
-            self.facts.hole_map,
-            telecommands=tuple(field.message.model.telecommand_id for field in pieces),
-            telemetry=tuple(field.message.model.telemetry_id for field in pieces),
-            attribute=pieces[0].name,
-        )
-
-    def files(self) -> object:
-        """Return the call for file transfers."""
-        files = self.facts.files
-        if files is None:
-            return None
-        return self.part(
-            files,
-            packet_ids={
-                bus: _explained(id, self.assumed.why("file_transfer.download", bus))
-                for bus, id in files.packet_ids.items()
-            },
-            **{name: self.part(part) for name, part in files.procedures.items()},
-        )
 
     def step(self, step: Step) -> Call:
         """Return the call for a step of a procedure."""

@@ -28,7 +28,7 @@ class Streams:
             self.can,
             self.log,
             *clients,
-            self.download,
+            self.procedure,
             self.envelopes,
         )
 
@@ -186,44 +186,45 @@ class Streams:
             client.packets()
         assert not client.busy and ends == 1
 
-    def download(self, link, size: int, data: bytes) -> None:
+    def procedure(self, link, size: int, data: bytes) -> None:
         """Outcomes and packets of any kind; the procedure ends, and delivers what it
         was given.
         """
-        download = self.wire.Download(
-            link, ("uart", "i2c", "can")[size % 3], 2, size, size or None
-        )
-        now, events = 0, iter(data)
+        if not link.procedures:
+            return
+        events = iter(data)
+        name = sorted(link.procedures)[size % len(link.procedures)]
+        form = link.procedures[name]
+        inputs = {
+            each.name: min(next(events, 0), each.most)
+            for each in form.inputs
+            if not each.is_bytes and not each.values and not each.is_optional
+        }
+        inputs |= {each.name: each.values[0] for each in form.inputs if each.values}
+        procedure = self.wire.Procedure(link, name, inputs, data[:64])
+        procedure.bus = ("uart", "i2c", "can")[size % 3]
+        now = 0
         for _ in range(STEPS):
-            request = download.next(now)
-            if download.result:
+            request = procedure.next(now)
+            if procedure.result:
                 break
             code = next(events, 0)
             now += code * 8
             if request is None:
-                now = max(now, download.deadline or 0)
-                count = link.files.packet_bytes
-                download.event(
-                    now,
-                    self.wire.Packet(
-                        next(events, 0), bytes(next(events, 0) for _ in range(count))
-                    ),
-                )
-            elif code & 15 == 1:
-                download.event(now, self.wire.Refused(request.id, 1))
-            elif code & 15 == 2:
-                download.event(now, self.wire.Timeout(request.id, 1))
+                now = max(now, procedure.deadline or 0)
+                for id in procedure._receives:
+                    piece = bytes(next(events, 0) for _ in range(link.frames[id]))
+                    procedure.event(now, self.wire.Arrived(id, piece, {}))
+            elif code & 15 < 3:
+                outcomes = (self.wire.Refused, self.wire.Timeout, self.wire.Busy)
+                procedure.event(now, outcomes[code & 15](request.id, 1))
             else:
-                length = (
-                    link.frames.get(request.id, 0) if request.kind == "telemetry" else 0
-                )
-                download.event(
-                    now,
-                    self.wire.Done(
-                        request.id, 1, bytes(next(events, 0) for _ in range(length))
-                    ),
-                )
-        assert sum(len(block) for _, block in download.blocks) == download.progress[0]
+                is_telemetry = request.kind == "telemetry"
+                length = link.frames.get(request.id, 0) if is_telemetry else 0
+                frame = bytes(next(events, 0) for _ in range(length))
+                procedure.event(now, self.wire.Done(request.id, 1, frame))
+        if form.blocks and not form.blocks.sends:
+            assert len(procedure.data) == procedure.progress[0]
 
 
 def pieces(data: bytes, size: int) -> list[bytes]:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from icdgen_runtime._errors import LengthError, RangeError, UnknownIdError
 from icdgen_runtime.wire.errors import ChecksumError
-from icdgen_runtime.wire.files import HoleMap, IndexEntry, read_index, write_index
+from icdgen_runtime.wire.files import IndexEntry, read_index, write_index
 from icdgen_runtime.wire.i2c import i2c_read_length, i2c_reply, i2c_write
 from icdgen_runtime.wire.logs import LogFrame, LogMessage, LogReader
 from icdgen_runtime.wire.times import DosTime, dos_time_pack, dos_time_unpack
@@ -118,30 +118,6 @@ def test_the_first_bad_part_of_a_time_is_named_from_the_year_on(link, date, name
     with pytest.raises(RangeError) as caught:
         dos_time_pack(link._replace(time=narrow), DosTime(*date))
     assert caught.value.field == named
-
-
-@quick
-@given(count=st.integers(0, 1024), seed=st.randoms(use_true_random=False))
-def test_a_hole_map_names_what_is_missing(link, count, seed):
-    received = {number for number in range(count) if seed.random() < 0.9}
-    made = HoleMap(link, count, received)
-    data = made.to_bytes()
-    lost = [i for i in range(1024) if (data[i >> 3] & (1 << (i & 7))) == 0]
-    assert lost == sorted(set(range(count)) - received) == made.missing()
-    assert made.count() == len(received)
-    assert HoleMap.from_bytes(link, count, data).missing() == lost
-    assert b"".join(made.messages()) == data and len(made.messages()) == 8
-
-
-def test_hole_maps_refuse_packets_that_the_block_does_not_have(link):
-    made = HoleMap(link, 3)
-    for number in (-1, 3):
-        with pytest.raises(RangeError):
-            made.set(number)
-    with pytest.raises(RangeError):
-        HoleMap(link, 1025)
-    with pytest.raises(LengthError):
-        HoleMap.from_bytes(link, 3, b"")
 
 
 @quick

@@ -23,8 +23,8 @@ suppress_warnings = ["ref.python"]  # attributes may be called like built-in typ
 """
 SHIPPED = (
     "_enumeration", "_errors", "_types", "_fields", "_base", "_codec", "_columns", "cubewheel", "wire.async_session",
-    "wire.can", "wire.client", "wire.events", "wire.files", "wire.link", "wire.logs", "wire.procedures", "wire.programs",
-    "wire.session", "wire.times", "wire.transfer", "wire.uart", "cubeacp._types.estimated_attitude_angles",
+    "wire.can", "wire.client", "wire.events", "wire.files", "wire.link", "wire.logs", "wire.procedures", "wire.procedure_forms",
+    "wire.session", "wire.times", "wire.uart", "cubeacp.procedures", "cubeacp._types.estimated_attitude_angles",
     "cubeacp._types.current_adcs_state", "cubeacp._types.con_mode_select",
     "cubewheel._types.wheel_speed",
 )  # fmt: skip

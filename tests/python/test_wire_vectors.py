@@ -20,6 +20,7 @@ OTHERWISE = {
     "escaped_in: [id, data]": "escaped_in: [data]",
     "other: error": "other: ignore",
     "first_packet: 0": "first_packet: 1",
+    " first: 0": " first: 1",
     "received: 1": "received: 0",
     "beyond_end: 1": "beyond_end: 0",
     "fill: 0x00": "fill: 0x5A",
@@ -58,12 +59,16 @@ def test_every_vector_is_answered_as_it_must_be(name, request):
     assert asked > 1000
 
 
+def first_packet(link) -> int:
+    return link.procedures["download"].blocks.first_packet
+
+
 def test_the_other_device_is_another_one(otherwise, shipped):
     there, here = otherwise.module("cubeacp").LINK, shipped.module("cubeacp").LINK
-    assert (there.order, there.framing.escapes_id, there.files.first_packet) == (
+    assert (there.order, there.framing.escapes_id, first_packet(there)) == (
         "big",
         False,
         1,
     )
-    for part in ("framing", "checksum", "mask", "hole_map", "files"):
+    for part in ("framing", "checksum", "mask", "procedures"):
         assert getattr(there, part) != getattr(here, part)

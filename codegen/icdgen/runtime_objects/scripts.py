@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, TypeVar, get_args
 
 from icdgen_runtime._errors import IcdError
@@ -48,8 +47,7 @@ def client(link: AnyLink, request: Row) -> Row:
         number(request, "address", 0, 255, 0),
         _settings(link, request),
     )
-    row_of = partial(_bus_row, link)
-    return _steps(request, tested_client, _bus_events, _bus_output, row_of)
+    return _steps(request, tested_client, _bus_events, _bus_output, _bus_row)
 
 
 def stream_client(link: AnyLink, request: Row) -> Row:
@@ -181,13 +179,10 @@ def _framed_output(tested_client: EnvelopeClient[Any], row: Row) -> list[object]
     return lines
 
 
-def _bus_row(link: AnyLink, event: events.Event) -> Row:
+def _bus_row(event: events.Event) -> Row:
     """Return an event on the UART, I2C or CAN as a mapping."""
-    if isinstance(event, events.Arrived) and link.files:
-        # An unsolicited packet of a download, as the vectors still have it.
-        counter = link.files.counter_bytes
-        number = int.from_bytes(event.data[:counter], link.order)
-        event = events.Packet(number, event.data[counter:])
+    if isinstance(event, events.Arrived):
+        return {"event": "arrived", "id": event.id, "bytes": event.data.hex()}
     row = _row(event)
     if isinstance(event, events.Refused):
         row |= {"reason": event.reason, "parameter": event.parameter}
@@ -204,8 +199,6 @@ def _row(event: events.Event) -> Row:
             return {"event": "message", "id": id, "bytes": data.hex(), **values}
         case events.Gap(id, missing):
             return {"event": "gap", "id": id, "missing": missing}
-        case events.Packet(number, data):
-            return {"event": "packet", "number": number, "bytes": data.hex()}
         case events.Log(data):
             row = {"bytes": data.hex()}
         case events.Malformed(id):

@@ -87,7 +87,5 @@ def _link(icd: Icd, node: Node) -> dict[str, Any]:
         "longest": known.longest,
         "around": around,
         "framing": [framing.escape, framing.end] if framing else None,
-        "counter": known.files.counter_bytes if known.files else None,
-        "order": "little" if known.little else "big",
         "procedures": [_procedure(each) for each in known.procedures],
     }

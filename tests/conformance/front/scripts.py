@@ -48,22 +48,9 @@ def client(to: Asking, request: Request) -> Answer:
     reply = to.ask(*start, *words)
     return {
         "steps": [
-            _client_step(
-                step, [_as_packet(to, *row) for row in rows], to.link["framing"]
-            )
-            for step, rows in _steps(reply)
+            _client_step(step, rows, to.link["framing"]) for step, rows in _steps(reply)
         ]
     }
-
-
-def _as_packet(to: Asking, kind: str, row: Facts) -> tuple[str, Facts]:
-    """Unsolicited telemetry as a packet of a download, as the vectors still have it."""
-    counter = to.link["counter"]
-    if kind != "arrived" or counter is None:
-        return kind, row
-    data = bytes.fromhex(row["bytes"])
-    number = int.from_bytes(data[:counter], to.link["order"])
-    return "packet", {"number": str(number), "bytes": data[counter:].hex()}
 
 
 BUS_SETTINGS = {

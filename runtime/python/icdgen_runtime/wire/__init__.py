@@ -1,4 +1,4 @@
-"""Wire layer: framing, checksums, CAN packets, clients, file transfer and logs.
+"""Wire layer: framing, checksums, CAN packets, clients, procedures and logs.
 
 The application passes in received bytes and the time, and takes out bytes to send and
 events. No object opens a port, sleeps or reads a clock, except `Session`, over a port
@@ -25,16 +25,10 @@ __all__ = [
     "DeviceBusyError",
     "Done",
     "DosTime",
-    "Download",
     "EnvelopeClient",
-    "Erase",
     "Event",
     "FailedError",
-    "FileEntry",
-    "FileList",
-    "Format",
     "Gap",
-    "HoleMap",
     "I2cTransfer",
     "Identity",
     "IndexEntry",
@@ -49,11 +43,8 @@ __all__ = [
     "LogWriter",
     "Malformed",
     "OutcomeOf",
-    "Packet",
     "PacketData",
     "Procedure",
-    "ProgramCopy",
-    "ProgramInformation",
     "Progress",
     "Refused",
     "RefusedError",
@@ -73,7 +64,6 @@ __all__ = [
     "UartDecoder",
     "UartEvent",
     "UnsupportedError",
-    "Upload",
     "can_split",
     "crc8",
     "crc16",
@@ -127,7 +117,6 @@ if TYPE_CHECKING:
     from .events import Log as Log
     from .events import Malformed as Malformed
     from .events import OutcomeOf as OutcomeOf
-    from .events import Packet as Packet
     from .events import Progress as Progress
     from .events import Refused as Refused
     from .events import Reply as Reply
@@ -138,7 +127,6 @@ if TYPE_CHECKING:
     from .failures import FailedError as FailedError
     from .failures import RefusedError as RefusedError
     from .failures import ReplyTimeoutError as ReplyTimeoutError
-    from .files import HoleMap as HoleMap
     from .files import IndexEntry as IndexEntry
     from .files import read_index as read_index
     from .files import write_index as write_index
@@ -158,8 +146,6 @@ if TYPE_CHECKING:
     from .ports import serial_port as serial_port
     from .ports import socket_port as socket_port
     from .procedures import Procedure as Procedure
-    from .programs import ProgramCopy as ProgramCopy
-    from .programs import ProgramInformation as ProgramInformation
     from .sender import Sender as Sender
     from .session import Session as Session
     from .stream import StreamDecoder as StreamDecoder
@@ -170,12 +156,6 @@ if TYPE_CHECKING:
     from .times import DosTime as DosTime
     from .times import dos_time_pack as dos_time_pack
     from .times import dos_time_unpack as dos_time_unpack
-    from .transfer import Download as Download
-    from .transfer import Erase as Erase
-    from .transfer import FileEntry as FileEntry
-    from .transfer import FileList as FileList
-    from .transfer import Format as Format
-    from .transfer import Upload as Upload
     from .uart import UartDecoder as UartDecoder
     from .uart import UartEvent as UartEvent
     from .uart import uart_encode as uart_encode
@@ -205,7 +185,6 @@ _HOMES = {
         "Log",
         "Malformed",
         "OutcomeOf",
-        "Packet",
         "Progress",
         "Refused",
         "Reply",
@@ -214,14 +193,13 @@ _HOMES = {
         "Timeout",
     ),
     "failures": ("DeviceBusyError", "FailedError", "RefusedError", "ReplyTimeoutError"),
-    "files": ("HoleMap", "IndexEntry", "read_index", "write_index"),
+    "files": ("IndexEntry", "read_index", "write_index"),
     "i2c": ("I2cTransfer", "i2c_read_length", "i2c_reply", "i2c_write"),
     "identity": ("Identity", "identify"),
     "link": ("Link", "Settings"),
     "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
     "ports": ("serial_port", "socket_port"),
     "procedures": ("Procedure",),
-    "programs": ("ProgramCopy", "ProgramInformation"),
     "sender": ("Sender",),
     "session": ("Session",),
     "stream": (
@@ -232,7 +210,6 @@ _HOMES = {
         "stream_encode_request",
     ),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),
-    "transfer": ("Download", "Erase", "FileEntry", "FileList", "Format", "Upload"),
     "uart": ("UartDecoder", "UartEvent", "uart_encode", "uart_kind"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}

@@ -18,7 +18,6 @@ from .events import (
     LineError,
     Log,
     Malformed,
-    Packet,
     Refused,
     Stray,
     Timeout,
@@ -392,14 +391,10 @@ class Client(Generic[N]):
         kind, id = uart_kind(link, message), message[0]
         if kind == "log":
             return [Log(message, LogMessage.decode(link, message))]
-        if kind == "packet" and id in link.unsolicited:
+        if kind == "packet":
             telemetry = link.unsolicited[id]
             type = link.TELEMETRY.which(telemetry, message[1:])
             return [Arrived(telemetry, message[1:], {}, type)]
-        if kind == "packet" and link.files:
-            start = 1 + link.files.counter_bytes
-            number = int.from_bytes(message[1:start], link.order)
-            return [Packet(number, message[start:])]
         if kind == "reply":
             return self._replied(now, id, message[1:]) or [Stray(message)]
         if kind == "acknowledge" and link.acknowledge:

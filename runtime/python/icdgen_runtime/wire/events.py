@@ -153,14 +153,6 @@ class Malformed:
 
 
 @dataclass(frozen=True)
-class Packet:
-    """A packet of a download arrived."""
-
-    number: int
-    data: bytes
-
-
-@dataclass(frozen=True)
 class Log:
     """The node sent an unsolicited log. ``data`` is the message with its id."""
 
@@ -230,7 +222,6 @@ Event = Union[
     Reply,
     Late,
     Malformed,
-    Packet,
     Log,
     Stray,
     LineError,

@@ -30,13 +30,12 @@ from .events import (
     Timeout,
 )
 from .failures import DeviceBusyError, FailedError, RefusedError, ReplyTimeoutError
-from .file_procedures import RoleProcedure
 from .link import Link, Settings
 from .message_ids import NodeMessage, NodeMessageClass
 from .procedures import Procedure
 
 AnyClient = Union[Client[N], EnvelopeClient[N]]
-P = TypeVar("P", bound=Union[Procedure, RoleProcedure])
+P = TypeVar("P", bound=Procedure)
 T = TypeVar("T")
 Step = Union[Literal["send"], float, None]
 Exchange = Generator[Step, list[Event], T]
@@ -190,7 +189,7 @@ class Exchanges(Generic[N]):
     ) -> Exchange[P]:
         """Run a procedure to its end. Raise `FailedError`."""
         client = self.client
-        if isinstance(procedure, Procedure) and isinstance(client, Client):
+        if isinstance(client, Client):
             procedure.bus = client.bus
         handles: list[int] = []
         try:

@@ -271,170 +271,12 @@ class Index(NamedTuple):
     """Type of the index file."""
 
 
-class HoleMapForm(NamedTuple):
-    """Map with one bit for each packet of a block.
-
-    Its messages have one id to set and one id to get.
-    """
-
-    bytes: int
-    """Length of the map."""
-    message_bytes: int
-    """Bytes of the map in each message."""
-    msb0: bool
-    """Whether bit 0 is the most significant bit of a byte."""
-    received: bool
-    """Value of the bit of a received packet."""
-    beyond_end: bool
-    """Value of the bits of packets beyond the end of the block."""
-    telecommands: tuple[int, ...]
-    telemetry: tuple[int, ...]
-    attribute: str
-
-
 class Step(NamedTuple):
-    """A message of a procedure, and its attributes by role."""
+    """A message, and its attributes by role."""
 
     fields: dict[str, str]
     telecommand: Optional[int] = None
     telemetry: Optional[int] = None
-
-
-class ListForm(NamedTuple):
-    """Procedure that lists all files, one at a time."""
-
-    reset: Step
-    """Returns to the first file."""
-    advance: Step
-    """Advances to the next file."""
-    information: Step
-    """Describes a file."""
-    poll_interval: int
-    """Time between two polls of the busy flag, in milliseconds."""
-    timeout: int
-    """Longest time that the busy flag is set, in milliseconds."""
-    max_entries: int
-    """Maximum number of files in the list."""
-
-
-class DownloadForm(NamedTuple):
-    """Procedure that downloads a file."""
-
-    load: Step
-    """Loads a block."""
-    ready: Step
-    """Reports that the block is loaded."""
-    burst: Step
-    """Starts the transfer of the block."""
-    message_length: int
-    """Value of the length in the burst telecommand."""
-    checksum_covers_fill: bool
-    """Whether the checksum of a block covers the padding of its last packet."""
-    index_counter: int
-    """Counter of the index file, in addition to its type."""
-    poll_interval: int
-    """Time between two polls of the ready flag, in milliseconds."""
-    ready_timeout: int
-    """Longest time to load a block, in milliseconds."""
-    silence: int
-    """Time without a new packet after which a burst has ended, in milliseconds."""
-    rounds: int
-    """Maximum number of bursts for one block."""
-    max_bytes: int
-    """Maximum number of bytes of a file."""
-
-
-class UploadForm(NamedTuple):
-    """Procedure that uploads a file."""
-
-    initiate: Step
-    """Erases the destination."""
-    initiated: Step
-    """Reports that the destination is erased."""
-    begin: Step
-    """Begins a block."""
-    packet: Step
-    """Contains a packet."""
-    checksum: Step
-    """Reports the checksum of the received block."""
-    finalize: Step
-    """Commits a block."""
-    finalized: Step
-    """Reports that the block is committed."""
-    block_size: int
-    """Value of the block size in `initiate`."""
-    checksum_covers_fill: bool
-    """Whether the checksum of a block covers the padding of its last packet."""
-    poll_interval: int
-    """Time between two polls of a busy flag, in milliseconds."""
-    erase_timeout: int
-    """Longest time to erase the destination, in milliseconds."""
-    finalize_timeout: int
-    """Longest time to commit a block, in milliseconds."""
-    rounds: int
-    """Maximum number of rounds of packets for one block."""
-    destination_bytes: Optional[int] = None
-    """Size of a destination in bytes, the maximum size of a file."""
-    destinations: tuple[int, ...] = ()
-    """Supported destinations; empty if all are supported."""
-
-
-class ErasureForm(NamedTuple):
-    """Procedure that deletes files or formats their medium."""
-
-    request: Step
-    """Starts the procedure."""
-    progress: Step
-    """Reports that it has ended."""
-    poll_interval: int
-    """Time between two polls of the busy flag, in milliseconds."""
-    timeout: int
-    """Longest duration, in milliseconds."""
-
-
-class Files(NamedTuple):
-    """File transfer. A procedure that the ICD does not describe completely is None."""
-
-    packet_bytes: int
-    """Bytes of the file in a packet."""
-    counter_bytes: int
-    """Bytes of the packet counter before them."""
-    first_packet: int
-    """Number of the first packet of a block."""
-    fill: int
-    """Value of the bytes of the last packet beyond the end of the file."""
-    block_packets: int
-    """Maximum number of packets of a block."""
-    block_bytes: int
-    """Maximum number of bytes of a block."""
-    packet_ids: dict[str, int]
-    list: Optional[ListForm] = None
-    download: Optional[DownloadForm] = None
-    upload: Optional[UploadForm] = None
-    erase: Optional[ErasureForm] = None
-    format: Optional[ErasureForm] = None
-
-    def packets_of(self, size: int) -> int:
-        """Return the number of packets of a block of ``size`` bytes."""
-        return -(-size // self.packet_bytes)
-
-
-class Operation(NamedTuple):
-    """Operation that a telecommand starts and a frame reports the end of.
-
-    Times are in milliseconds.
-    """
-
-    request: Step
-    """Starts the operation."""
-    progress: Step
-    """Reports that it has ended."""
-    poll_interval: int
-    """Time between two polls of that frame, in milliseconds."""
-    timeout: int
-    """Longest duration, in milliseconds."""
-    programs: tuple[int, ...] = ()
-    """Supported programs; empty if all are supported."""
 
 
 class Facts(NamedTuple):
@@ -473,10 +315,6 @@ class Facts(NamedTuple):
     log_message: Optional[LogMessageForm] = None
     time: Optional[dict[str, TimePart]] = None
     index_file: Optional[Index] = None
-    hole_map: Optional[HoleMapForm] = None
-    files: Optional[Files] = None
-    program_copy: Optional[Operation] = None
-    program_information: Optional[Operation] = None
     identification: Optional[Step] = None
     statistics: Optional[Step] = None
     boot_time: Optional[int] = None

@@ -53,7 +53,7 @@ def uart_encode(link: Link, message: Buffer) -> bytes:
 
 def uart_kind(link: Link, message: bytes) -> Kind:
     """Return the kind of a message from the node, by its id and length."""
-    id, log, files = message[0], link.log_message, link.files
+    id, log = message[0], link.log_message
     if log and link.mask and id == log.id:
         mask = message[log.mask_at : log.mask_at + link.mask.size]
         slots = link.mask.selected(mask.ljust(link.mask.size, b"\0"))
@@ -65,9 +65,6 @@ def uart_kind(link: Link, message: bytes) -> Kind:
         return "acknowledge"
     if id in link.unsolicited:
         length = 1 + link.frames[link.unsolicited[id]]
-        return "packet" if len(message) == length else "other"
-    if files and id == files.packet_ids.get("uart"):
-        length = 1 + files.counter_bytes + files.packet_bytes
         return "packet" if len(message) == length else "other"
     return "other"
 

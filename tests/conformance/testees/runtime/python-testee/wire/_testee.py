@@ -10,7 +10,6 @@ from .._testee_words import (
     Refusal,
     Words,
     counted,
-    listed,
     maybe,
     number,
     numbers,
@@ -23,7 +22,7 @@ from .can import CanEvent, CanJoiner, CanMessage, can_split
 from .crc import crc8, crc16
 from .envelope import CHOSEN_ROLES, Direction
 from .errors import ChecksumError, TooLongError, UnsupportedError
-from .files import HoleMap, IndexEntry, read_index, write_index
+from .files import IndexEntry, read_index, write_index
 from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
 from .link import CanKind, Link
@@ -178,21 +177,6 @@ def _dos_time_pack(link: Link, words: Words) -> str:
     return f" value={dos_time_pack(link, DosTime(*numbers(words)))}"
 
 
-def _hole_map(link: Link, words: Words) -> str:
-    made = HoleMap(link, number(words), numbers(words))
-    pieces = ",".join(piece.hex() for piece in made.messages())
-    return f" bytes={made.to_bytes().hex()} messages={pieces}" + _missing(made)
-
-
-def _hole_map_missing(link: Link, words: Words) -> str:
-    packets = number(words)
-    return _missing(HoleMap.from_bytes(link, packets, octets(words)))
-
-
-def _missing(found: HoleMap) -> str:
-    return f" missing={listed(found.missing())}"
-
-
 def _index_decode(link: Link, words: Words) -> str:
     entries, truncated = read_index(link, octets(words))
     said = "".join(row("entry", **one._asdict()) for one in entries)
@@ -215,13 +199,12 @@ def _identify(link: Link, words: Words) -> str:
 
 
 def _link_data(link: Link, words: Words) -> str:
-    log, index, files = link.log_file, link.index_file, link.files
+    log, index = link.log_file, link.index_file
     return row(
         "ok",
         boot_ms=link.boot_time,
         log_file_type=log and log.file_type,
         index_file_type=index and index.file_type,
-        index_counter=files and files.download and files.download.index_counter,
     )
 
 
@@ -275,8 +258,6 @@ _OPERATIONS = {
     "log_message_encode": _log_message_encode,
     "dos_time_unpack": _dos_time_unpack,
     "dos_time_pack": _dos_time_pack,
-    "hole_map": _hole_map,
-    "hole_map_missing": _hole_map_missing,
     "index_decode": _index_decode,
     "index_encode": _index_encode,
     "identify": _identify,
@@ -285,6 +266,5 @@ _OPERATIONS = {
     "stream_events": _stream_events,
     "stream_client": _testee_scripts.stream_client,
     "client": _testee_scripts.client,
-    "file": _testee_scripts.file,
     "procedure": _testee_scripts.procedure,
 }

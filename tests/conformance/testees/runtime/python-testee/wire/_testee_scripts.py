@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 from .._errors import LengthError, UnknownIdError
 from .._testee_words import Words, counted, listed, maybe, number, octets, row
@@ -17,17 +17,13 @@ from .events import (
     Done,
     Event,
     LineError,
-    Packet,
     Refused,
     Sent,
     Stray,
     Timeout,
 )
-from .file_procedures import RoleProcedure
 from .link import Bus, Link, Settings
 from .procedures import Procedure
-from .programs import ProgramCopy, ProgramInformation
-from .transfer import Download, Erase, FileList, Format, Upload
 
 _BUSES: tuple[Bus, ...] = ("uart", "i2c", "can")
 _BUS_SETTINGS = Settings._fields[:5]
@@ -50,7 +46,7 @@ def client(link: Link, words: Words) -> str:
         said.append(" step")
         try:
             events = _happened(tested, int(at), next(words), words)
-            said += [_shown(_as_packet(link, event)) for event in events]
+            said += map(_shown, events)
         except BusyError:
             said.append(" error error=busy")
         except UnknownIdError:
@@ -154,21 +150,12 @@ def _output(tested: Client) -> str:
     return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
 
 
-def _as_packet(link: Link, event: Event) -> Event:
-    """An unsolicited packet of a download, as the requests still expect it."""
-    if isinstance(event, Arrived) and link.files:
-        counter = link.files.counter_bytes
-        number = int.from_bytes(event.data[:counter], link.order)
-        return Packet(number, event.data[counter:])
-    return event
-
-
 def _shown(event: Event, is_of_stream: bool = False) -> str:
     if isinstance(event, LineError):
         return row(event.error, id=event.id)
-    if isinstance(event, Arrived):
+    if isinstance(event, Arrived) and is_of_stream:
         return row("message", id=event.id, bytes=event.data, **event.values)
-    hidden = ["type", "log", "handle"]
+    hidden = ["type", "log", "handle", "values"]
     if isinstance(event, (Refused, Busy)):
         hidden += ["reason", "parameter", "data"] if is_of_stream else ["data"]
     if isinstance(event, Stray) and not is_of_stream:
@@ -180,30 +167,6 @@ def _shown(event: Event, is_of_stream: bool = False) -> str:
 
 def packet(words: Words) -> CanPacket:
     return CanPacket(number(words), octets(words))
-
-
-def file(link: Link, words: Words) -> str:
-    """What a procedure does in a script."""
-    procedure = _procedure(link, next(words), words)
-    said = []
-    for at in words:
-        event = _told(next(words), words)
-        if event is not None:
-            procedure.event(int(at), event)
-        said.append(_step(procedure, int(at)))
-    if isinstance(procedure, Download):
-        blocks = procedure.blocks
-        said += [row("block", offset=at, bytes=data) for at, data in blocks]
-    elif isinstance(procedure, FileList):
-        known = procedure._form.information.fields
-        for entry in procedure.entries:
-            facts = entry._asdict().items()
-            said.append(row("entry", **{k: v for k, v in facts if k in known}))
-    elif isinstance(procedure, Upload):
-        said.append(row("ok", sent=procedure.sent))
-    elif isinstance(procedure, ProgramInformation):
-        said.append(row("ok", size=procedure.size, checksum=procedure.checksum))
-    return "".join(said)
 
 
 def procedure(link: Link, words: Words) -> str:
@@ -231,7 +194,7 @@ def procedure(link: Link, words: Words) -> str:
     return "".join(said)
 
 
-def _step(procedure: Union[Procedure, RoleProcedure], now: int) -> str:
+def _step(procedure: Procedure, now: int) -> str:
     facts: dict[str, object] = {}
     asked = procedure.next(now)
     if asked is not None:
@@ -249,26 +212,6 @@ def _told(name: str, words: Words) -> Optional[Event]:
         return Done(0, 1, octets(words))
     if name == "arrived":
         return Arrived(number(words), octets(words), {})
-    if name == "packet":
-        return Packet(number(words), octets(words))
     if name == "damaged":
         return Refused(0, 1, 255)
     return _OUTCOMES[name](0, 1) if name in _OUTCOMES else None
-
-
-def _procedure(link: Link, name: str, words: Words) -> RoleProcedure:
-    if name == "list":
-        return FileList(link)
-    if name == "format":
-        return Format(link)
-    if name == "program_copy":
-        return ProgramCopy(link, number(words))
-    if name == "program_information":
-        return ProgramInformation(link, number(words))
-    if name == "upload":
-        destination, block = number(words), maybe(words)
-        return Upload(link, destination, octets(words), block)
-    if name == "erase":
-        return Erase(link, number(words), number(words), number(words) == 1)
-    bus, type, counter = _bus(words), number(words), number(words)
-    return Download(link, bus, type, counter, maybe(words), maybe(words))
