@@ -23,6 +23,7 @@ from icdgen.describe.nodes import Description, NodeDescription
 from icdgen.describe.procedures import input_text, procedure_text
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Enum
+from icdgen.icd.procedures import FIXED_NAMES
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.procedures import (
     Blocks,
@@ -70,8 +71,8 @@ def procedure_sizes(links: Iterable[LinkDescription]) -> ProcedureSizes:
     """Return the longest message and the largest number of registers."""
     procedures = [each for link in links for each in link.facts.procedures]
     lengths = (message.length for each in procedures for message in each.messages)
-    registers = (each.registers for each in procedures)
-    return ProcedureSizes(max(lengths, default=1), max(registers, default=1))
+    registers = [each.registers for each in procedures] + [len(FIXED_NAMES)]
+    return ProcedureSizes(max(lengths, default=1), max(registers))
 
 
 class Function(NamedTuple):
