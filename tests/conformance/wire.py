@@ -84,8 +84,10 @@ def refused(cases: list[dict]) -> Iterator[dict]:
                     **request,
                     key: [None] if key == "settings" else {"no": "such value"},
                 }
-                if key not in optional and not (
-                    key == "value" and request["op"] == "dos_time"
+                if key not in optional and (request["op"], key) not in (
+                    ("dos_time", "value"),
+                    ("procedure", "bus"),
+                    ("procedure", "bytes"),
                 ):
                     yield {k: v for k, v in request.items() if k != key}
         if isinstance(request.get("bytes"), str):
