@@ -74,7 +74,7 @@ class RustBackend:
             link = links.get(node.name)
             shared = {**common, "origin": origin(node.model)}
             if link and link.facts.procedures:
-                procedures = NodeProcedures(link, description, known)
+                procedures = NodeProcedures(link, description, known, self.crate)
                 known[node.name] = procedures
                 yield folder / "procedures.rs", render(
                     "procedures.rs.j2", procedures=procedures, **shared

@@ -22,7 +22,7 @@ from icdgen.backends.rust.literals import (
 )
 from icdgen.backends.rust.names import RESERVED, constant_name, memory_constant
 from icdgen.backends.rust.symbols import RUST_NAMES, procedure_type
-from icdgen.backends.rust.text import doc, integer, prose, signature, string
+from icdgen.backends.rust.text import code, doc, integer, prose, signature, string
 from icdgen.backends.rust.types import reason_number
 from icdgen.describe import Description
 from icdgen.describe.comments import sentence
@@ -76,6 +76,14 @@ class ProcedureText:
     memory_bytes: str
     table: str
 
+    def is_code_of(self, other: ProcedureText) -> bool:
+        """Return whether the code is the same; examples name the node."""
+        return (self.new, self.outputs, self.table) == (
+            other.new,
+            other.outputs,
+            other.table,
+        )
+
 
 def sizes(links: Iterable[LinkDescription]) -> dict[str, int]:
     """Return the sizes of buffers for all procedures: of telecommands and of entries."""
@@ -103,17 +111,18 @@ class NodeProcedures:
         link: LinkDescription,
         description: Description,
         others: Mapping[str, NodeProcedures],
+        crate: str,
     ) -> None:
         self.node = link.facts.node.name
         self.own: list[ProcedureText] = []
         self.included: dict[str, list[ProcedureText]] = {}
         self.all: list[ProcedureText] = []
         for procedure in link.facts.procedures:
-            text = _Writer(procedure, link.facts, description).text()
+            text = _Writer(procedure, link.facts, description, crate).text()
             owners = (
                 name
                 for name in description.node(self.node).included
-                if name in others and text in others[name].own
+                if name in others and any(map(text.is_code_of, others[name].own))
             )
             owner = next(owners, None)
             self.all.append(text)
@@ -132,8 +141,13 @@ class _Writer:
     """Writes the code of a procedure."""
 
     def __init__(
-        self, procedure: model.Procedure, facts: Facts, description: Description
+        self,
+        procedure: model.Procedure,
+        facts: Facts,
+        description: Description,
+        crate: str,
     ) -> None:
+        self._crate = crate
         self._procedure, self._facts, self._description = procedure, facts, description
         self._type = procedure_type(procedure.name)
         self._constant = constant_name(procedure.name)
@@ -152,7 +166,7 @@ class _Writer:
         return ProcedureText(
             type=self._type,
             constant=self._constant,
-            about=doc(self._about()),
+            about=f"{doc(self._about())}\n{code(self._example())}",
             new=self._new(bound),
             lifetime="'a" if has_memory else "'static",
             generics=_angle(borrowed + functions),
@@ -196,6 +210,28 @@ class _Writer:
                 where = assumption.section.removeprefix(SECTION)
                 why = prose(sentence(assumption.why))
                 yield f"Assumed (`{where}`, `{assumption.key}`): {why}"
+
+    def _example(self) -> Iterator[str]:
+        """Yield the lines of an example, which is run."""
+        names, arguments = [self._type], list(map(_example, self._procedure.inputs))
+        if self._procedure.blocks:
+            names.append(self._memory)
+            arguments.append("&mut memory")
+        if self._receives:
+            arguments.append("|_offset, _bytes| {}")
+        elif self._procedure.entry:
+            arguments.append("|_entry| {}")
+        path = f"{self._crate}::{self._facts.node.name}::procedures"
+        listed = f"{{{', '.join(names)}}}" if len(names) > 1 else names[0]
+        yield "```"
+        yield f"use {path}::{listed};"
+        yield ""
+        if self._procedure.blocks:
+            yield f"let mut memory = [0; {self._memory}];"
+        yield f"let mut procedure = {self._type}::new({', '.join(arguments)})?;"
+        yield "assert!(procedure.next(0).is_some()); // `run` of a session does the rest"
+        yield f"# Ok::<(), {self._crate}::wire::Error>(())"
+        yield "```"
 
     def _new(self, bound: str) -> str:
         """Return the comment and the head of the constructor."""
@@ -321,6 +357,15 @@ class _Writer:
             part("steps", rows(map(_step, procedure.steps))),
         )
         return Brackets("procedure::Form { ", items, " }")
+
+
+def _example(each: model.Input) -> str:
+    """Return an allowed value of an input."""
+    if each.is_bytes:
+        return "&[1, 2, 3]"
+    value = "false" if each.is_flag else str(each.values[0] if each.values else 0)
+    value = f"{value}.into()" if each.enum else value
+    return "None" if each.is_optional else value
 
 
 def _allowed(each: model.Input) -> str:

@@ -54,6 +54,15 @@ pub const ALL: &[&procedure::Form] = &[
 /// Assumed (`upload.blocks.blocks.Upload Block Complete`, `every_ms`): No time is given.
 ///
 /// Assumed (`upload.blocks.blocks.Upload Block Complete`, `for_ms`): No time is given.
+///
+/// ```
+/// use icd::bootloader::procedures::{Upload, UPLOAD_MEMORY};
+///
+/// let mut memory = [0; UPLOAD_MEMORY];
+/// let mut procedure = Upload::new(3.into(), &[1, 2, 3], &mut memory)?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Upload<'a>(procedure::Procedure<'a, ()>);
 
@@ -156,6 +165,14 @@ pub static UPLOAD: procedure::Form = procedure::Form {
 /// Assumed (`program_information.limits`, `requests`): No number is given.
 ///
 /// Assumed (`program_information.Program Information`, `every_ms`): No time is given.
+///
+/// ```
+/// use icd::bootloader::procedures::ProgramInformation;
+///
+/// let mut procedure = ProgramInformation::new(0.into())?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct ProgramInformation(procedure::Procedure<'static, ()>);
 
@@ -241,6 +258,14 @@ pub static PROGRAM_INFORMATION: procedure::Form = procedure::Form {
 ///
 /// Assumed (`program_copy.Copy To Internal Flash Progress`, `for_ms`): No time is given. The same
 /// area is erased as for an upload, which takes up to 8 s, and then written.
+///
+/// ```
+/// use icd::bootloader::procedures::ProgramCopy;
+///
+/// let mut procedure = ProgramCopy::new(3.into())?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct ProgramCopy(procedure::Procedure<'static, ()>);
 

@@ -31,6 +31,14 @@ pub const ALL: &[&procedure::Form] = &[
 ///
 /// Assumed (`list.repeat.File Information`, `for_ms`): No time is given. The checksum of a large
 /// file has to be computed meanwhile.
+///
+/// ```
+/// use icd::common::procedures::List;
+///
+/// let mut procedure = List::new(|_entry| {})?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct List<F>(procedure::Procedure<'static, procedure::Entries<crate::common::FileInformation, F>>);
 
@@ -127,6 +135,15 @@ pub static LIST: procedure::Form = procedure::Form {
 ///
 /// Assumed (`download.blocks.blocks.verify`, `verify`): Whether the checksum covers the fill is not
 /// said. It comes with the length of the block, which does not count the fill.
+///
+/// ```
+/// use icd::common::procedures::{Download, DOWNLOAD_MEMORY};
+///
+/// let mut memory = [0; DOWNLOAD_MEMORY];
+/// let mut procedure = Download::new(0.into(), 0, None, &mut memory, |_offset, _bytes| {})?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Download<'a, F>(procedure::Procedure<'a, procedure::Received<F>>);
 
@@ -234,6 +251,14 @@ pub static DOWNLOAD: procedure::Form = procedure::Form {
 /// Assumed (`erase.SD card format/erase progress`, `every_ms`): No time is given.
 ///
 /// Assumed (`erase.SD card format/erase progress`, `for_ms`): No time is given.
+///
+/// ```
+/// use icd::common::procedures::Erase;
+///
+/// let mut procedure = Erase::new(0.into(), 0, false)?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Erase(procedure::Procedure<'static, ()>);
 
@@ -312,6 +337,14 @@ pub static ERASE: procedure::Form = procedure::Form {
 /// Assumed (`format.SD card format/erase progress`, `every_ms`): No time is given.
 ///
 /// Assumed (`format.SD card format/erase progress`, `for_ms`): No time is given.
+///
+/// ```
+/// use icd::common::procedures::Format;
+///
+/// let mut procedure = Format::new()?;
+/// assert!(procedure.next(0).is_some()); // `run` of a session does the rest
+/// # Ok::<(), icd::wire::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Format(procedure::Procedure<'static, ()>);
 
