@@ -144,7 +144,7 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
             and procedure._is_requested
             and asked is not None
             and asked.kind == "telemetry"
-            and len(event["bytes"]) != 2 * link.frames[asked.id]
+            and len(event["bytes"]) != 2 * link.TELEMETRY[asked.id].LENGTH
         ):
             return False
         if event:
