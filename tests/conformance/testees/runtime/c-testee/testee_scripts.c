@@ -148,7 +148,7 @@ static void client_script(void)
 
 /* ---- procedures ------------------------------------------------------------------------------------------------------- */
 
-static void on_entry(void *context, const uint8_t *data, size_t length)
+static void on_frame(void *context, const uint8_t *data, size_t length)
 {
     (void)context;
     put_row("entry");
@@ -192,7 +192,7 @@ static icd_status_t begin(icd_procedure_t *procedure, const testee_procedure_t *
     given.bytes = octets.data;
     given.byte_count = octets.length;
     given.on_block = on_block;
-    given.on_entry = on_entry;
+    given.on_entry = on_frame;
     if (form->blocks != NULL) {
         take_memory(&given, form->blocks);
     }
