@@ -231,6 +231,21 @@ def test_packets_count_only_from_the_first_round_of_their_block(link):
     assert (procedure.result, procedure.data) == ("done", bytes(range(8)))
 
 
+def test_a_packet_does_not_change_when_a_poll_asks_again(link):
+    takes, until = (Take(BYTE, OTHER),), (Condition(OTHER, Value(1, False)),)
+    poll, receive = Poll(128, takes, until, (), 50, 1000), Receive(241, BYTE, 1, 100)
+    steps = NextBlock(6), NextRound(5), poll, receive, Jump(1), Jump(0)
+    procedure = of(link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS)
+    procedure.next(0)
+    procedure.event(0, done("00"))
+    assert procedure.next(0) is None and procedure.deadline == 50
+    procedure.event(10, packet(0))
+    assert procedure.deadline == 50
+    assert procedure.next(50).id == 128
+    procedure.event(60, done("01"))
+    assert procedure.next(60) is None and procedure.deadline == 160
+
+
 def test_missing_packets_end_with_the_rounds(link):
     receive = Receive(241, BYTE, 1, 100)
     steps = NextBlock(5), NextRound(4), receive, Jump(1), Jump(0)

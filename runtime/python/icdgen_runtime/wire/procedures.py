@@ -471,7 +471,8 @@ class Procedure:
         self._contents[at : at + blocks.packet_bytes] = packet
         self._mark(position, True)
         self._last_packet = self._now
-        if self._wait is not None:
+        is_receiving = isinstance(self.form.steps[self._at], Receive)
+        if self._wait is not None and is_receiving:
             self._wait = self._now + (step.silence if self._missing else 0)
 
     def _receive(self, step: Receive) -> None:

@@ -267,9 +267,8 @@ impl Engine<'_> {
     pub(super) fn read_map(&mut self, message: usize, data: &[u8]) {
         if let Some(map) = &self.blocks.map {
             for (position, byte, mask) in map.bits(message) {
-                let bit = data
-                    .get(byte)
-                    .map_or(!map.received, |byte| byte & mask != 0);
+                // Bytes that a message does not have are 0, as in numbers.
+                let bit = data.get(byte).copied().unwrap_or(0) & mask != 0;
                 self.mark(position, bit == map.received);
             }
         }
