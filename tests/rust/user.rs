@@ -228,6 +228,9 @@ fn downloading() {
     };
     let too_large = Download::new(FileType::from(2), 1, Some(1 << 30), &mut [0; 99], |_, _| {}).err().unwrap();
     assert_eq!(too_large.to_string(), "`size` takes 0 to 16777216");
+    let mut little = [0; 50]; // two packets and their bits
+    let mut smaller = Download::new(FileType::from(2), 1, size, &mut little, |_, _| {}).unwrap();
+    assert_eq!(smaller.next(0).unwrap().data, [2, 1, 0, 0, 0, 0, 40, 0]);
     let mut download = Download::new(FileType::from(2), 1, size, &mut memory, on_block).unwrap();
     let mut now = 0_u32;
     while download.result().is_none() {

@@ -35,7 +35,7 @@
 //! of the NaN are kept.
 //!
 //! The module [`wire`] transports messages over UART, I2C and CAN. It has checksums, clients that send a
-//! request and report its outcome, file transfer and logs.
+//! request and report its outcome, procedures and logs.
 //!
 //! The crate never panics and never allocates memory, whatever bytes it decodes.
 //!

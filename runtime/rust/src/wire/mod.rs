@@ -1,4 +1,4 @@
-//! Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, file transfer and
+//! Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, procedures and
 //! logs.
 //!
 //! The functions perform no input or output: the application passes received bytes in, and takes

@@ -4,18 +4,18 @@
 
 mod can;
 mod logs;
-mod steps;
+mod places;
 mod stream;
 
 pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
-pub use self::steps::{Identification, Piece, Place};
+pub use self::places::{Identification, Piece, Place};
 pub use self::stream::{
     CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole, Exchange,
     NumberPlace, PacketForm, RequestForm, Response, ResponseKind, Stream, StreamRow, Verdict,
 };
 
-pub(crate) use self::steps::get;
+pub(crate) use self::places::get;
 
 /// Everything that differs between the nodes. Each node's is the constant `LINK` of its module.
 #[derive(Clone, Copy, Debug)]

@@ -154,7 +154,8 @@ impl Engine<'_> {
             }
             self.registers[BLOCK_OFFSET] = self.registers[BLOCK_OFFSET].wrapping_add(length);
             is_last = length < self.requested;
-            self.begin(0);
+            self.has_round = false;
+            self.resize(0);
         }
         self.is_begun = true;
         let offset = self.registers[BLOCK_OFFSET];
