@@ -2371,8 +2371,8 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 static inline void icdgen_client_forget(icd_client_t *client, uint32_t now)
 {
     const icd_client_settings_t *const settings = &client->settings;
-    const bool is_i2c = client->bus == ICD_BUS_I2C;
-    const uint32_t longest = (is_i2c ? settings->poll_timeout : settings->reply_timeout) + settings->late;
+    const bool polls = client->bus == ICD_BUS_I2C && settings->poll_timeout > settings->reply_timeout;
+    const uint32_t longest = (polls ? settings->poll_timeout : settings->reply_timeout) + settings->late;
     uint8_t kept = 0;
     for (uint8_t i = 0; i < client->late_count; ++i) {
         const icd_late_t late = client->late[i];
