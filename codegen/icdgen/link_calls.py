@@ -196,7 +196,7 @@ class _LinkBuilder:
         return _call(
             "Polled",
             telemetry=step.message.telemetry_id,
-            **{role: field.name for role, field in step.fields},
+            **{role: field.name for role, field in step.places},
         )
 
     def can(self) -> object:
@@ -248,7 +248,7 @@ class _LinkBuilder:
         message = step.message
         ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
         fields = {
-            role: field.name for role, field in self.description.step(step).fields
+            role: field.name for role, field in self.description.step(step).places
         }
         return _call(
             "Step",

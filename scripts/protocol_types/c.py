@@ -11,7 +11,6 @@ from icdgen.protocol.declared import BYTE, U16, Fact, Kind, facts_of
 
 _TYPES = {
     Kind.TIME: "uint32_t ", Kind.FLAG: "bool ", Kind.BUSES: "uint8_t ", Kind.SPAN: "icd_part_t ",
-    Kind.ALLOWED: "const uint8_t *", Kind.STEP: "icd_step_t ",
 }  # fmt: skip
 _MEMBER = re.compile(
     r"(?:    /\*\*(?:(?!\*/).|\n)*\*/\n)?    [\w ]+[ *](\w+)(?:\[\w+\])?(?:, \w+)*;.*\n"
@@ -49,8 +48,6 @@ def _members(fact: Fact) -> Iterator[tuple[str, str]]:
     if has_presence_flag(fact):
         yield f"has_{fact.name}", "bool "
     yield fact.name, _type(fact)
-    if fact.kind is Kind.ALLOWED:
-        yield f"{fact.name}_count", "uint16_t "
 
 
 def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
@@ -58,10 +55,6 @@ def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
         about = fact.meaning
         if name.startswith("has_"):
             about = f"whether `{fact.name}` is known"
-        elif name.endswith("_count") and name != fact.name:
-            about = "their number"
-        elif fact.kind is Kind.ALLOWED:
-            about = about.replace("none: all", "NULL: all")
         elif fact.kind is Kind.BUSES:
             about += "; bit n: on bus n of icd_bus_t"
         elif fact.is_optional and not has_presence_flag(fact):

@@ -12,7 +12,6 @@ from icdgen.protocol.sections import Settings
 
 _TYPES = {
     Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
-    Kind.ALLOWED: "tuple[int, ...]", Kind.STEP: "Step",
 }  # fmt: skip
 
 

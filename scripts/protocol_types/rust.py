@@ -11,7 +11,6 @@ from icdgen.protocol.places import PLACES
 
 _TYPES = {
     Kind.SIZE: "usize", Kind.TIME: "u32", Kind.FLAG: "bool", Kind.BUSES: "PerBus<bool>", Kind.SPAN: "Span",
-    Kind.ALLOWED: "&'static [u8]", Kind.STEP: "Step",
 }  # fmt: skip
 _FIELD = re.compile(r"(?:    ///.*\n)*    pub (\w+): .*,\n")
 

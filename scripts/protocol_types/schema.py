@@ -17,7 +17,7 @@ def written(text: str) -> str:
     schema = json.loads(text)
     for path, part in PLACES:
         for fact in facts_of(part):
-            if fact.key and fact.kind not in (Kind.STEP, Kind.BUSES):
+            if fact.key and fact.kind is not Kind.BUSES:
                 *sections, key = f"{path}.{fact.key}".split(".")
                 _put(
                     _section(schema["$defs"]["protocol"], sections), key, fragment(fact)
@@ -49,20 +49,6 @@ def fragment(fact: Fact) -> Schema:
     about = fact.key_about or fact.about
     if fact.kind is Kind.OCTET:
         return {"$ref": "#/$defs/byte", "description": about}
-    if fact.kind is Kind.ALLOWED:
-        value = {
-            "type": "integer",
-            "minimum": 0,
-            "maximum": 255,
-            "description": "value of the enumeration",
-        }
-        return {
-            "type": "array",
-            "items": value,
-            "minItems": 1,
-            "uniqueItems": True,
-            "description": about,
-        }
     if fact.listed:
         entry = {"enum": sorted(fact.words, key=lambda word: word != fact.listed)}
         return {
@@ -80,7 +66,7 @@ def fragment(fact: Fact) -> Schema:
             else {"enum": [*fact.words], "description": about}
         )
     if fact.kind is Kind.TIME:
-        about += ", in milliseconds" if fact.factor == 1 else ", in seconds"
+        about += ", in milliseconds"
     limits = {"minimum": fact.least} | (
         {} if fact.most is None else {"maximum": fact.most}
     )

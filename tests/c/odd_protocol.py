@@ -36,11 +36,6 @@ def _changed(node: Node) -> Node:
             "reflect_out": True,
             "xor_out": 0xFFFF,
         }
-        files = protocol["file_transfer"]
-        files |= {"first_packet": 1, "fill": 0x5A}
-        files["hole_map"] |= {"bit_order": "msb0", "received": 0, "beyond_end": 0}
-        files["download"]["checksum_covers_fill"] = True
-        files["upload"]["checksum_covers_fill"] = False
         for procedure in protocol["procedures"].values():
             _change_steps(procedure["steps"])
     for part in protocol.get("msdos_time", {}).get("parts", ()):

@@ -65,7 +65,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         identification=plans[known.identification.message.name],
         restarted=starters[0],
         start=stem(start).upper(),
-        running=icd.protocol_of(boot)["program_copy"]["destination"],
+        running=icd.protocol_of(boot)["procedures"]["program_copy"]["effect"]["to"][0],
     )
 
 

@@ -22,12 +22,9 @@ PARTS = {
     "statistics_reset": [],
     "boot_status": [],
     "program_start": [],
-    "program_copy": [],
-    "program_information": [],
     "uart": ["framing", "acknowledge", "unsolicited"],
     "i2c": ["polled"],
     "can": ["can"],
-    "file_transfer": [],
     "procedures": [],
     "crc16": ["crc16"],
     "index_file": ["index"],
@@ -53,7 +50,6 @@ def icd() -> Icd:
     whole = copy.deepcopy(
         {**shipped.protocol_of(bootloader), **shipped.protocol_of(acp)}
     )
-    del whole["file_transfer"]["upload"]["nodes"]  # any of these nodes can
     whole["procedures"] |= bootloader.protocol["procedures"]
     for procedure in whole["procedures"].values():
         procedure.pop("nodes", None)

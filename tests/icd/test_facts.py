@@ -7,6 +7,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.loading import load
+from icdgen.protocol import facts
 from icdgen.values.text import to_text
 from tests.conftest import ROOT
 from tests.values.decoding import decode
@@ -105,24 +106,23 @@ def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
 def test_flash_sizes_are_numbers(icd):
     """Section 3.1: halves of 512 kB, of which each of seven areas holds one."""
     boot = icd.node("common").protocol["boot"]
-    internal, upload = (
-        boot["internal_flash"],
-        icd.node("common").protocol["file_transfer"]["upload"],
-    )
+    internal = boot["internal_flash"]
+    upload = icd.node("common").protocol["procedures"]["upload"]
     assert (
         internal["size_bytes"]
         == internal["bootloader_bytes"] + internal["application_bytes"]
         == 1 << 20
     )
-    assert upload["destination_bytes"] == internal["application_bytes"]
+    assert upload["inputs"]["data"]["most"] == internal["application_bytes"]
 
 
 def test_what_is_assumed_of_boot_attempts_and_reads_on_i2c_says_so(icd):
-    protocol = icd.node("common").protocol
-    assert "attempts" in protocol["boot"]["assumptions"]  # section 3 counts in two ways
-    assert (
-        "i2c" in protocol["file_transfer"]["download"]["assumptions"]
-    )  # section 7.2.3 names no id for the reads
+    assumptions = facts.of(icd, icd.node("common")).assumptions
+    places = {(assumption.section, assumption.key) for assumption in assumptions}
+    assert ("boot", "attempts") in places  # section 3 counts in two ways
+    # Section 7.2.3 names no id for the reads.
+    packets = "File Download Buffer with File Contents"
+    assert (f"procedures.download.blocks.missing.{packets}", "requested_on") in places
 
 
 def test_only_error_flags_are_called_latched(icd):

@@ -80,7 +80,7 @@ def test_the_table_names_only_features_that_there_are():
         ),
         (
             {"type": "bool", "bits": 1},
-            roles.PROTOCOL["type"],
+            roles.PROTOCOL["parameter"],
             ["has 1 bit, but needs 2 at least"],
         ),
         (

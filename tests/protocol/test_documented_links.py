@@ -107,3 +107,14 @@ def test_an_example_is_checked_generated_and_run(name, tmp_path):
 def known(table, kind):
     """The messages that a direction has under the id of one."""
     return table.of(kind.IDS[-1]) if kind.IDS[-1] in table else ()
+
+
+def test_the_documented_procedure_is_that_of_the_bootloader():
+    shown = re.search(
+        r"```yaml\n(protocol:\n.*?)```", documents.text("guides/procedures"), re.S
+    )
+    assert shown
+    path = ROOT / "examples" / "links" / "bootloader.yaml"
+    whole = yaml.safe_load(path.read_text(encoding="utf-8"))
+    procedures = yaml.safe_load(shown[1])["protocol"]["procedures"]
+    assert procedures == whole["protocol"]["procedures"]

@@ -11,11 +11,12 @@ from icdgen_runtime.wire.uart import uart_kind
 
 from icdgen.loading import load
 from icdgen.protocol import facts
+from icdgen.protocol.procedures import Poll, Send, Value
 from tests import links
 
 
 def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
-    assert known.framing and known.can and known.files and known.checksum and known.mask
+    assert known.framing and known.can and known.checksum and known.mask
     bootloader = facts.of(icd, icd.node("bootloader"))
     assert bootloader.framing and asdict(bootloader.framing) == asdict(known.framing)
     assert bootloader.checksum is None and bootloader.mask is None
@@ -23,10 +24,10 @@ def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
 
 def test_a_node_without_a_protocol_has_none(icd):
     alone = facts.of(icd, icd.node("cubemag"))
-    assert (alone.framing, alone.can, alone.files, alone.assumptions) == (
+    assert (alone.framing, alone.can, alone.procedures, alone.assumptions) == (
         None,
         None,
-        None,
+        (),
         (),
     )
     with pytest.raises(facts.Unsupported, match="uart"):
@@ -83,36 +84,48 @@ def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
     )
 
 
-def test_uploads_belong_to_the_nodes_that_the_icd_names(icd, known):
-    boot = facts.of(icd, icd.node("bootloader"))
-    assert known.files.upload is None and not any(
-        path.startswith("upload.") for path in known.files.steps
-    )
-    upload = boot.files.upload
-    assert (
-        upload.finalize.fields["offset"] == "Offset"
-        and boot.files.steps["upload.finalize"] is upload.finalize
-    )
-    assert (upload.destinations, upload.destination_bytes) == (
+def procedure(icd, node, name):
+    """The procedure of a node; None if the node has no such procedure."""
+    procedures = facts.of(icd, icd.node(node)).procedures
+    return next((each for each in procedures if each.name == name), None)
+
+
+def test_procedures_are_those_of_the_node_and_of_what_it_includes(icd):
+    """Section 7.4: the bootloader takes uploads, and only it has programs to copy."""
+    names = {
+        node: {each.name for each in facts.of(icd, icd.node(node)).procedures}
+        for node in ("common", "cubeacp", "bootloader", "cubemag")
+    }
+    assert names["cubeacp"] == {"list", "download", "erase", "format"}
+    assert names["common"] == names["cubeacp"]
+    assert names["bootloader"] == names["cubeacp"] | {
+        "upload",
+        "program_copy",
+        "program_information",
+    }
+    assert names["cubemag"] == set()
+
+
+def test_inputs_have_the_values_that_the_manual_supports(icd):
+    destination, data = procedure(icd, "bootloader", "upload").inputs
+    assert destination.values == (3, 4, 5, 6, 7, 8, 9)
+    assert (data.is_bytes, data.most) == (True, 524_288)
+    (program,) = procedure(icd, "bootloader", "program_copy").inputs
+    assert (program.enum.name, program.values) == (
+        "ProgramsList",
         (3, 4, 5, 6, 7, 8, 9),
-        524_288,
     )
 
 
-def test_operations_on_programs_are_those_of_the_node(icd, known):
-    boot = facts.of(icd, icd.node("bootloader"))
-    assert (boot.program_information.timeout, boot.program_copy.programs) == (
-        2000,
-        (3, 4, 5, 6, 7, 8, 9),
+def test_times_are_milliseconds_and_constants_are_those_of_the_steps(icd, known):
+    upload = procedure(icd, "bootloader", "upload")
+    polls = [step for step in upload.steps if isinstance(step, Poll)]
+    assert [(poll.interval, poll.timeout) for poll in polls] == [(50, 8000), (50, 5000)]
+    download = procedure(icd, "cubeacp", "download")
+    burst = next(
+        step
+        for step in download.steps
+        if isinstance(step, Send) and step.message.name == "Initiate Download Burst"
     )
-    assert (known.program_copy, known.program_information) == (None, None)
-
-
-def test_procedures_have_their_numbers_and_times_are_milliseconds(icd, known):
-    assert known.files.download.message_length == 20
-    section = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"]
-    assert (
-        facts.of(icd, icd.node("bootloader")).files.upload.erase_timeout
-        == section["erase_timeout_s"] * 1000
-    )
+    assert burst.puts[0].value == Value(20, False)
     assert known.boot_ms == 5000

@@ -115,14 +115,7 @@ def test_what_is_assumed_has_its_reason_in_a_comment(shipped, node):
         "unsolicited_log.configured_by",
         "boot",
     }  # no part of the link: of a message, of the device alone
-    # The procedures are those of `procedures`; another program takes uploads.
-    parts = ("file_transfer", "program_")
-    parts += () if "upload" in link.procedures else ("procedures.upload",)
-    rest = [
-        one
-        for one in link.assumptions
-        if one.section not in elsewhere and not one.section.startswith(parts)
-    ]
+    rest = [one for one in link.assumptions if one.section not in elsewhere]
     assert [one for one in rest if " ".join(one.why.split()) not in told] == []
 
 

@@ -19,7 +19,6 @@ OTHERWISE = {
     "tables: [216]\n    printed: {bit_order: lsb0}": "tables: [216]\n    printed: {bit_order: msb0}",
     "escaped_in: [id, data]": "escaped_in: [data]",
     "other: error": "other: ignore",
-    "first_packet: 0": "first_packet: 1",
     " first: 0": " first: 1",
     "received: 1": "received: 0",
     "beyond_end: 1": "beyond_end: 0",

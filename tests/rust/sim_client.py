@@ -88,7 +88,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         log=log and _type(rows[log]),
         restarted=starters[0],
         start=_start(icd, boot),
-        running=icd.protocol_of(boot)["program_copy"]["destination"],
+        running=icd.protocol_of(boot)["procedures"]["program_copy"]["effect"]["to"][0],
     )
 
 

@@ -20,12 +20,6 @@ from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Crc, Index, Step, TimePart
 
-ROLES = frozenset(
-    "all block_size busy bytes checksum counter destination error id ignore_hole_map interface_version length node_type number "
-    "offset parameter processed program ready size time type".split()
-)
-"""Roles of fields in procedures that the runtimes support."""
-
 REASONS = ("none", "unknown_id", "length", "parameter", "checksum")
 """Meanings of error codes that the runtimes support."""
 
@@ -35,7 +29,7 @@ INDEX_PARTS = ("type", "counter", "checksum", "size", "time", "meta")
 
 
 class Place(NamedTuple):
-    """Field with a role in a procedure."""
+    """Field with a role in telemetry that a link reads."""
 
     role: str
     field: FieldDescription
@@ -43,18 +37,12 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StepDescription:
-    """Message that is a step of a procedure, and its fields with a role there, in the
-    order of the ICD.
+    """Telemetry that a link reads, and its fields with a role there, in the order of the
+    ICD.
     """
 
     message: Message
-    fields: tuple[Place, ...]
-    initial_frame: bytes  # frame before values are put into it
-
-    @property
-    def places(self) -> list[Place]:
-        """Fields with a role that the runtimes support."""
-        return [place for place in self.fields if place.role in ROLES]
+    places: tuple[Place, ...]
 
 
 class SentMessage(NamedTuple):
@@ -256,21 +244,6 @@ class LinkDescription:
         return index if index and set(INDEX_PARTS) <= set(index.fields) else None
 
     @property
-    def map_pieces(self) -> list[FieldDescription]:
-        """Fields that carry the pieces of the hole map, each in a message of its own."""
-        form = self.facts.hole_map
-        fields = (
-            [
-                field
-                for message in form.messages
-                for field in self._describe(message).fields
-            ]
-            if form
-            else []
-        )
-        return [field for field in fields if form and field.model.name == form.field]
-
-    @property
     def polled(self) -> StepDescription | None:
         """Frame with the result of the last telecommand.
 
@@ -294,7 +267,7 @@ class LinkDescription:
         )
 
     def step(self, step: Step) -> StepDescription:
-        """Return the description of a step of a procedure."""
+        """Return the description of telemetry that the link reads."""
         message = self._describe(step.message)
         fields = {field.model.name: field for field in message.fields}
         places = tuple(
@@ -302,7 +275,7 @@ class LinkDescription:
             for role, name in step.fields.items()
             if name in fields
         )
-        return StepDescription(step.message, places, step.frame(message.node))
+        return StepDescription(step.message, places)
 
     @property
     def joined_bytes(self) -> int:
@@ -321,11 +294,6 @@ class LinkDescription:
         """Bytes of the longest entry of a log file; 0 without log files."""
         file, mask = self.facts.log_file, self.facts.mask
         return file.frames_at + mask.size * 8 * mask.slot_bytes if file and mask else 0
-
-    @property
-    def longest_step(self) -> int:
-        """Bytes of the longest message of a procedure."""
-        return max((message.length for message in self.in_procedures), default=0)
 
     def name_of(self, message: Message) -> str:
         """Return the name of a message in snake case."""

@@ -78,22 +78,12 @@ EXPONENT = Role(("uint", "int"), ("scaled",), most_bits=16)
 # Field with `bitfields`.
 SPLIT = Role(("uint",), ("array",), most_bits=64)
 
-# Roles in procedures of the protocol section, by the key that names the field. Other
+# Roles in the protocol section, by the key that names the field. Other
 # keys allow any integer.
-_BYTES = Role(("bytes", "text"))
 PROTOCOL: dict[str, Role] = {
-    "bytes": _BYTES,
-    "mask": _BYTES,
+    "mask": Role(("bytes", "text")),
     "id": Role(INTEGERS, least_bits=8),
     "parameter": Role(INTEGERS, least_bits=2),
-    "type": Role(INTEGERS, least_bits=2),
-    "counter": Role(INTEGERS, least_bits=8),
-    "offset": Role(INTEGERS, least_bits=16),
-    "length": Role(INTEGERS, least_bits=8),
-    "size": Role(INTEGERS, least_bits=16),
-    "number": Role(INTEGERS, least_bits=8),
-    "checksum": Role(INTEGERS, least_bits=16),
-    "time": Role(INTEGERS, least_bits=32),
     "period": Role(INTEGERS, least_bits=8),
 }
 

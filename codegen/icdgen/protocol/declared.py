@@ -10,7 +10,7 @@ scripts.protocol_facts` to write the schema and `runtime/`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import field, fields
 from enum import Enum, auto
 from functools import cache
@@ -36,8 +36,6 @@ class Kind(Enum):
     FLAG = auto()
     BUSES = auto()  # some of UART, I2C and CAN
     SPAN = auto()  # (byte position, number of bytes)
-    ALLOWED = auto()  # selectable bytes; empty: all
-    STEP = auto()  # message and its fields by role
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -56,13 +54,10 @@ class Fact:
     most: int | None = None
     holds: int = U32
     default: object = REQUIRED
-    # ICD value to value of the fact, for example seconds to milliseconds
-    factor: int = 1
     # Of a flag: values in the ICD for false and for true
     words: tuple[object, ...] = ()
     listed: str = ""  # of a flag: entry of the ICD's list that sets it
     key_about: str = ""  # meaning of the key, if it differs from `about`
-    direction: str = ""  # of a step: "telecommand" or "telemetry"
 
     @property
     def is_optional(self) -> bool:
@@ -96,9 +91,7 @@ class Fact:
             return self.default(preceding) if callable(self.default) else self.default
         if self.kind is Kind.FLAG:
             return self.listed in value if self.listed else value == self.words[1]  # type: ignore[operator]
-        if self.kind is Kind.ALLOWED:
-            return tuple(value)  # type: ignore[arg-type]
-        return value * self.factor  # type: ignore[operator]
+        return value
 
 
 # a value, None for an optional fact, or a function of the preceding facts
@@ -157,15 +150,7 @@ def octets(
 
 
 def time(key: str, about: str, default: Default = REQUIRED, least: int = 1) -> Any:
-    """Declare a time.
-
-    The suffix of the key, ``_ms`` or ``_s``, is its unit in the ICD; the fact is in
-    milliseconds.
-    """
-    if key.endswith("_s"):
-        return _declare(
-            Kind.TIME, key, about, default, least=0, most=MOST_MS // 1000, factor=1000
-        )
+    """Declare a time in milliseconds."""
     return _declare(Kind.TIME, key, about, default, least=least, most=MOST_MS)
 
 
@@ -197,11 +182,6 @@ def flag(
     )
 
 
-def allowed(key: str, about: str, key_about: str) -> Any:
-    """Declare selectable bytes; an empty tuple allows all."""
-    return _declare(Kind.ALLOWED, key, about, (), key_about=key_about)
-
-
 def buses(key: str, about: str) -> Any:
     """Declare a set of buses out of UART, I2C and CAN.
 
@@ -213,16 +193,6 @@ def buses(key: str, about: str) -> Any:
 def span(about: str) -> Any:
     """Declare a byte position and a number of bytes."""
     return _declare(Kind.SPAN, "", about)
-
-
-def telecommand(key: str, about: str) -> Any:
-    """Declare a telecommand of a procedure."""
-    return _declare(Kind.STEP, key, about, direction="telecommand")
-
-
-def telemetry(key: str, about: str) -> Any:
-    """Declare a telemetry frame of a procedure."""
-    return _declare(Kind.STEP, key, about, direction="telemetry")
 
 
 def facts_of(part: Any) -> tuple[Fact, ...]:
@@ -251,25 +221,19 @@ def _facts(part: Hashable) -> tuple[Fact, ...]:
 def read(
     part: type[Any],
     section: Mapping[str, Any],
-    step: Callable[[Fact], object] | None = None,
     **computed: object,
 ) -> Any:
     """Read a part from its section; None if a key without a default is missing.
 
-    ``step`` resolves the message of a step. ``computed``: values that follow from other
-    keys.
+    ``computed``: values that follow from other keys.
     """
     # Facts are read in the order of declaration: defaults may use the preceding ones.
     values = dict(computed)
     for fact in facts_of(part):
         if fact.name in values:
             continue
-        value = (
-            step(fact)
-            if fact.kind is Kind.STEP and step
-            else fact.read(section, values)
-        )
-        if value is REQUIRED or (value is None and fact.kind is Kind.STEP):
+        value = fact.read(section, values)
+        if value is REQUIRED:
             return None
         values[fact.name] = value
     return part(**values)

@@ -7,7 +7,6 @@ in bytes.
 
 from __future__ import annotations
 
-from math import ceil
 from typing import TypeVar
 
 from icdgen.frozen import dataclass
@@ -22,14 +21,11 @@ from icdgen.protocol.sections import (
     Checksum,
     Crc,
     Direction,
-    Files,
     Framing,
-    HoleMap,
     Index,
     LogFile,
     LogMask,
     LogMessage,
-    Operation,
     Polled,
     Settings,
     Step,
@@ -67,10 +63,6 @@ class Facts:
     log_message: LogMessage | None
     time: dict[str, TimePart]
     index: Index | None
-    hole_map: HoleMap | None
-    files: Files | None
-    program_copy: Operation | None
-    program_information: Operation | None
     identification: Step | None
     statistics: Step | None
     boot_ms: int | None
@@ -88,9 +80,7 @@ class Facts:
             "client": self.client, "uart.framing": self.framing, "uart.acknowledge": self.acknowledge, "can": self.can,
             "can.extended": self.can and self.can.extended, "crc8": self.checksum, "crc16": self.crc16,
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
-            "index_file": self.index, "file_transfer": self.files, "file_transfer.hole_map": self.hole_map,
-            **{f"file_transfer.{name}": part for name, part in (self.files.procedures if self.files else {}).items()},
-            "program_copy": self.program_copy, "program_information": self.program_information,
+            "index_file": self.index,
         }  # fmt: skip
         return {section: part for section, part in parts.items() if part is not None}
 
@@ -126,8 +116,6 @@ class Facts:
             sizes.append(
                 self.log_message.frames_at + self.mask.size * 8 * self.mask.slot_bytes
             )
-        if self.files:
-            sizes.append(1 + self.files.counter_bytes + self.files.packet_bytes)
         return max(sizes, default=1)
 
     @property
@@ -153,10 +141,6 @@ class Facts:
         Raises `OverflowError` if it does not fit.
         """
         return number.to_bytes(size, "little" if self.little else "big")
-
-    def packets_of(self, size: int) -> int:
-        """Return the number of packets of a file block of ``size`` bytes."""
-        return ceil(size / need(self.files, "file_transfer").packet_bytes)
 
 
 def need(part: T | None, name: str) -> T:
@@ -199,10 +183,6 @@ def of(icd: Icd, node: Node) -> Facts:
         log_message=reader.log_message(),
         time=reader.time(),
         index=reader.index(),
-        hole_map=reader.hole_map(),
-        files=reader.files(),
-        program_copy=reader.part("program_copy", Operation),
-        program_information=reader.part("program_information", Operation),
         identification=reader.step(reader.section("identification")),
         statistics=reader.step(reader.section("statistics")),
         boot_ms=None if boot is None else boot * 1000,

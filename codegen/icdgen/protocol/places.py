@@ -19,11 +19,6 @@ PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("telemetry_log", sections.LogFile),
     ("unsolicited_log", sections.LogMessage),
     ("index_file", sections.Index),
-    ("file_transfer", sections.Files),
-    ("file_transfer.hole_map", sections.HoleMap),
-    *((f"file_transfer.{name}", part) for name, part in sections.PROCEDURES.items()),
-    ("program_copy", sections.Operation),
-    ("program_information", sections.Operation),
     ("checksums.*", sections.Crc),
     *((path, sections.CheckValue) for path in ("crc8", "crc16", "checksums.*")),
 )

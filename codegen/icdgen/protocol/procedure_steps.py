@@ -72,19 +72,20 @@ Name = tuple[str, str]  # of a register: its owner ("" for inputs) and its own n
 class ProcedureReader:
     """Reader of one procedure of a node.
 
-    ``section``: the procedure in the ICD. ``messages``, ``enums`` and ``checksums``:
-    those that the node may name.
+    ``section``: the procedure in the ICD. ``nodes``: the node
+    and those that it includes. ``messages``, ``enums`` and ``checksums``: those that
+    it may name.
     """
 
     def __init__(
         self,
         section: Section,
-        node: Node,
+        nodes: Mapping[str, Node],
         messages: Mapping[str, Message],
         enums: Mapping[str, Enum],
         checksums: Mapping[str, Crc],
     ) -> None:
-        self._section, self._node, self._messages = section, node, messages
+        self._section, self._nodes, self._messages = section, nodes, messages
         self._inputs: Section = section.get("inputs", {})
         self._limits: Section = section["limits"]
         self._enums, self._checksums = enums, checksums
@@ -190,7 +191,7 @@ class ProcedureReader:
         return field
 
     def _place(self, message: Message, name: str) -> NumberPlace:
-        place = place_of(self._node, self._field(message, name))
+        place = place_of(self._nodes[message.node], self._field(message, name))
         assert place is not None, "rule ICD191 checks the places of numbers"
         return place
 
@@ -272,9 +273,8 @@ class ProcedureReader:
             if value in self._inputs:
                 self._bits[value] = min(self._bits.get(value, 32), place.bits)
             puts.append(Put(place, self._value(value)))
-        data = codec.encode(
-            self._node, message, codec.initial_values(self._node, message)
-        )
+        node = self._nodes[message.node]
+        data = codec.encode(node, message, codec.initial_values(node, message))
         return Send(
             message=message,
             data=data,

@@ -13,14 +13,13 @@ from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
-from icdgen.protocol.declared import Fact, read
+from icdgen.protocol.declared import read
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.enveloping import stream_of
 from icdgen.protocol.procedure_steps import ProcedureReader
 from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.sections import (
     BUSES,
-    PROCEDURES,
     Acknowledge,
     Can,
     CanPart,
@@ -28,8 +27,6 @@ from icdgen.protocol.sections import (
     Crc,
     Direction,
     Extended,
-    Files,
-    HoleMap,
     Index,
     IndexField,
     LogBit,
@@ -83,20 +80,7 @@ class Reader:
         ``computed``: values that follow from other keys.
         """
         section = self.section(*path.split("."))
-
-        def step(fact: Fact) -> Step | None:
-            resolved = self.step(section.get(fact.key, {}))
-            ids = resolved and (
-                resolved.message.telecommand_id,
-                resolved.message.telemetry_id,
-            )
-            return (
-                resolved
-                if ids and ids[fact.direction == "telemetry"] is not None
-                else None
-            )
-
-        result: T | None = read(part, section, step, **computed) if section else None
+        result: T | None = read(part, section, **computed) if section else None
         return result
 
     def telemetry_ids(self) -> Direction:
@@ -270,52 +254,28 @@ class Reader:
         }
         return self.part("index_file", Index, fields=fields)
 
-    def hole_map(self) -> HoleMap | None:
-        given = self.section("file_transfer", "hole_map")
-        names = given.get("names", ())
-        if not names or "field" not in given:
-            return None
-        messages = tuple(self.messages[name] for name in names)
-        return self.part(
-            "file_transfer.hole_map", HoleMap, messages=messages, field=given["field"]
-        )
-
-    def files(self) -> Files | None:
-        packet_ids, procedures = {}, {}
-        for name, part in PROCEDURES.items():
-            nodes = self.section("file_transfer", name).get("nodes", [self.node.name])
-            procedures[name] = (
-                self.part(f"file_transfer.{name}", part)
-                if self.node.name in nodes
-                else None
-            )
-        for bus in BUSES:
-            message = self.messages.get(
-                self.section("file_transfer", "download", bus).get("id_of", "")
-            )
-            if message:
-                packet_ids[bus] = message.ids[0]
-        return self.part("file_transfer", Files, packet_ids=packet_ids, **procedures)
-
     def procedures(self) -> Iterator[Procedure]:
         """Yield the procedures of the node."""
-        enums = {
-            enum.name: enum
-            for node in (*self.icd.included(self.node), self.node)
-            for enum in node.enums
-        }
+        owners = (*self.icd.included(self.node), self.node)
+        nodes = {node.name: node for node in owners}
+        enums = {enum.name: enum for node in owners for enum in node.enums}
         names = [f"checksums.{name}" for name in self.section("checksums")]
         checksums = {
             path.removeprefix("checksums."): crc
             for path in ("crc8", "crc16", *names)
             if (crc := self.part(path, Crc))
         }
-        for name, section in self.section("procedures").items():
-            if self.node.name in section.get("nodes", [self.node.name]):
-                reader = ProcedureReader(
-                    section, self.node, self.messages, enums, checksums
-                )
-                yield reader.read(name)
+        for name, section in self._procedures().items():
+            reader = ProcedureReader(section, nodes, self.messages, enums, checksums)
+            yield reader.read(name)
+
+    def _procedures(self) -> dict[str, dict[str, Any]]:
+        """Return the sections of the procedures that the node has, by name."""
+        return {
+            name: section
+            for name, section in self.section("procedures").items()
+            if self.node.name in section.get("nodes", [self.node.name])
+        }
 
     def unsolicited(self) -> dict[int, int]:
         """Return the telemetry that the node sends unasked on the UART: the id that
@@ -331,7 +291,8 @@ class Reader:
         return Step(message, dict(given.get("fields", {}))) if message else None
 
     def assumptions(self) -> Iterator[Assumption]:
-        yield from assumptions_of(self.protocol, ())
+        protocol = {**self.protocol, "procedures": self._procedures()}
+        yield from assumptions_of(protocol, ())
         for message in self.messages.values():
             for key, why in message.assumptions:
                 yield Assumption(
@@ -359,7 +320,7 @@ def assumptions_of(
     section: dict[str, Any], path: tuple[str, ...]
 ) -> Iterator[Assumption]:
     """Return the assumptions of a section, of its subsections, and of the steps in
-    lists, which have the message or the kind of the step as name.
+    lists, which have their message as name.
     """
     for key, why in section.get("assumptions", {}).items():
         yield Assumption(".".join(path), key, section.get(key), why)
@@ -368,9 +329,9 @@ def assumptions_of(
             yield from assumptions_of(value, (*path, key))
         for row in value if isinstance(value, list) else ():
             if isinstance(row, dict):
-                step, what = next(iter(row.items()))
-                name = what if isinstance(what, str) else step
-                yield from assumptions_of(row, (*path, name))
+                _, message = next(iter(row.items()))
+                named = (*path, message) if isinstance(message, str) else path
+                yield from assumptions_of(row, named)
 
 
 def by_role(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, Any]]:

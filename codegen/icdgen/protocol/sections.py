@@ -7,29 +7,20 @@ milliseconds, sizes bytes.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import field
-from typing import Any
 
-from icdgen import codec
 from icdgen.frozen import dataclass
-from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
+from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message
 from icdgen.protocol.declared import (
     BYTE,
-    U16,
     U32,
-    Kind,
-    allowed,
     buses,
     code,
-    facts_of,
     flag,
     number,
     octet,
     octets,
     span,
-    telecommand,
-    telemetry,
     time,
 )
 
@@ -321,226 +312,12 @@ class Index:
     fields: dict[str, IndexField]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class HoleMap:
-    """Hole map: a bit for each packet of a block."""
-
-    bytes: int = octets("bytes", "length of the map")
-    message_bytes: int = octets(
-        "message_bytes",
-        "bytes of the map in each message",
-        default=lambda preceding: preceding["bytes"] // len(preceding["messages"]),
-    )
-    msb0: bool = flag(
-        "bit_order",
-        _MSB0,
-        False,
-        _BITS,
-        key_about="bit of byte 0 that represents packet 0",
-    )
-    received: bool = flag(
-        "received", "value of the bit of a received packet", True, (0, 1)
-    )
-    beyond_end: bool = flag(
-        "beyond_end",
-        "value of the bits of packets beyond the end of the block",
-        lambda preceding: preceding["received"],
-        (0, 1),
-    )
-    messages: tuple[Message, ...]
-    field: str
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Step:
-    """Message that is a step of a procedure, and its fields by role."""
+    """Telemetry that a link reads, and its fields by role."""
 
     message: Message
     fields: dict[str, str] = field(default_factory=dict)
-
-    def frame(
-        self, node: Node, values: Mapping[str, int | bytes] | None = None
-    ) -> bytes:
-        """Return the bytes of the message.
-
-        ``values``: values by role; other fields have their initial values.
-        """
-        given = {self.fields[role]: value for role, value in (values or {}).items()}
-        return codec.encode(
-            node, self.message, codec.initial_values(node, self.message) | given
-        )
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Listing:
-    """Procedure that reads the list of files."""
-
-    reset: Step = telecommand("reset", "returns to the first file")
-    advance: Step = telecommand("advance", "advances to the next file")
-    information: Step = telemetry("information", "describes a file")
-    poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
-    timeout: int = time("timeout_ms", "longest time that the busy flag is set")
-    max_entries: int = number(
-        "max_entries", "maximum number of files in the list", 1, U32
-    )
-
-
-_COVERS_FILL = "whether the checksum of a block covers the padding of its last packet"
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Download:
-    """Procedure that downloads a file."""
-
-    load: Step = telecommand("load", "loads a block")
-    ready: Step = telemetry("ready", "reports that the block is loaded")
-    burst: Step = telecommand("burst", "starts the transfer of the block")
-    message_length: int = number(
-        "message_length", "value of the length in the burst telecommand", 0, U32
-    )
-    checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
-    index_counter: int = number(
-        "index_counter",
-        "counter of the index file, in addition to its type",
-        0,
-        BYTE,
-        0,
-    )
-    poll_interval: int = time("poll_interval_ms", f"{_POLL}the ready flag")
-    ready_timeout: int = time("ready_timeout_ms", "longest time to load a block")
-    silence: int = time(
-        "silence_ms", "time without a new packet after which a burst has ended"
-    )
-    rounds: int = number("rounds", "maximum number of bursts for one block", 1, U32)
-    # One less than 32 bits hold: C stores the unknown size as 0xFFFFFFFF.
-    max_bytes: int = number(
-        "max_bytes",
-        "maximum number of bytes of a file",
-        1,
-        U32 - 1,
-        holds=U32,
-    )
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Upload:
-    """Procedure that uploads a file."""
-
-    initiate: Step = telecommand("initiate", "erases the destination")
-    initiated: Step = telemetry("initiated", "reports that the destination is erased")
-    begin: Step = telecommand("begin", "begins a block")
-    packet: Step = telecommand("packet", "contains a packet")
-    checksum: Step = telemetry("checksum", "reports the checksum of the received block")
-    finalize: Step = telecommand("finalize", "commits a block")
-    finalized: Step = telemetry("finalized", "reports that the block is committed")
-    block_size: int = number(
-        "block_size", "value of the block size in `initiate`", 0, U32
-    )
-    checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
-    poll_interval: int = time("poll_interval_ms", f"{_POLL}a busy flag")
-    erase_timeout: int = time(
-        "erase_timeout_s", "longest time to erase the destination"
-    )
-    finalize_timeout: int = time(
-        "finalize_timeout_ms", "longest time to commit a block"
-    )
-    rounds: int = number(
-        "rounds", "maximum number of rounds of packets for one block", 1, U32
-    )
-    destination_bytes: int | None = octets(
-        "destination_bytes",
-        "size of a destination in bytes, the maximum size of a file",
-        1,
-        U32,
-        None,
-    )
-    destinations: tuple[int, ...] = allowed(
-        "destinations",
-        "supported destinations; empty if all are supported",
-        "the destinations that are supported",
-    )
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Erasure:
-    """Procedure that deletes files or formats their medium."""
-
-    request: Step = telecommand("request", "starts the procedure")
-    progress: Step = telemetry("progress", "reports that it has ended")
-    poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
-    timeout: int = time("timeout_ms", "longest duration")
-
-
-PROCEDURES: dict[str, type[Any]] = {
-    "list": Listing, "download": Download, "upload": Upload, "erase": Erasure, "format": Erasure,
-}  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Files:
-    """File transfer.
-
-    None stands for a procedure that the ICD describes incompletely.
-    """
-
-    packet_bytes: int = octets("packet_bytes", "bytes of the file in a packet")
-    counter_bytes: int = octets(
-        "packet_counter_bytes", "bytes of the packet counter before them", 0, 4
-    )
-    first_packet: int = number(
-        "first_packet", "number of the first packet of a block", 0, U16, 0
-    )
-    fill: int = octet(
-        "fill", "value of the bytes of the last packet beyond the end of the file", 0
-    )
-    block_packets: int = octets(
-        "block_packets", "maximum number of packets of a block", 1, U16 + 1
-    )
-    block_bytes: int = octets(
-        "block_bytes", "maximum number of bytes of a block", 1, U32
-    )
-    packet_ids: dict[str, int]  # bus -> id that heads a download packet there
-    list: Listing | None
-    download: Download | None
-    upload: Upload | None
-    erase: Erasure | None
-    format: Erasure | None
-
-    @property
-    def procedures(self) -> dict[str, Any]:
-        """Described procedures by name."""
-        return {name: getattr(self, name) for name in PROCEDURES if getattr(self, name)}
-
-    @property
-    def steps(self) -> dict[str, Step]:
-        """Messages of the procedures by path: ``list.reset``, ``download.load``,
-        ``upload.packet``, ``erase.request`` ...
-        """
-        return {
-            f"{name}.{fact.name}": getattr(procedure, fact.name)
-            for name, procedure in self.procedures.items()
-            for fact in facts_of(procedure)
-            if fact.kind is Kind.STEP
-        }
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Operation:
-    """Operation on a program.
-
-    A telecommand starts it. Its frame reports the end: ``busy`` is clear, or ``ready``
-    is set.
-    """
-
-    request: Step = telecommand("request", "starts the operation")
-    progress: Step = telemetry("progress", "reports that it has ended")
-    poll_interval: int = time("poll_interval_ms", f"{_POLL}that frame")
-    timeout: int = time("timeout_s", "longest duration")
-    programs: tuple[int, ...] = allowed(
-        "programs",
-        "supported programs; empty if all are supported",
-        "the programs for which this is supported, if not all",
-    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

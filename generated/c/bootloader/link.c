@@ -440,30 +440,9 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed first_packet:
-     * Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed fill: The value is not
-     * defined. Erased flash memory reads 0xFF. Assumed beyond_end: What the bits beyond the end of a short block are is
-     * not said. Marked as received, nothing is sent for them; from the node they are ignored. Assumed message_length:
-     * The field is not explained. Drivers in use send 20, the bytes of the file in a packet. Assumed
-     * checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the fill.
-     * Assumed index_counter: Which counter goes with the index file is not said. Assumed poll_interval_ms: No time is
-     * given. Assumed ready_timeout_ms: No time is given. Assumed silence_ms: How a burst ends is not said. Packets
-     * follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed max_bytes: No
-     * number is given. A file of unknown size has to end at some point. Assumed i2c: That the reads are headed by the
-     * id of the frame with the packet's format is not said. Assumed can: Download over CAN is not described. The
-     * packets are requested one by one as on I2C. Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing
-     * is said about giving up. Assumed checksum_covers_fill: Not said. The node learns the length of the block only
-     * when the block is committed, after the checksum. Assumed finalize: The procedure ends with the checksum and does
-     * not name the telecommand that commits the block. Assumed finalize_timeout_ms: No time is given. Assumed
-     * poll_interval_ms: No time is given. Assumed max_entries: No number is given. A list without a last file has to
-     * end at some point. Assumed timeout_ms: No time is given. The checksum of a large file has to be computed
-     * meanwhile. Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. Assumed
-     * poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. Assumed attempts: One attempt and two
-     * more are announced. But the status is raised before each start, so it reads 3 Failed boot attempts before the
-     * third, and at that value no start is said to follow. Assumed poll_interval_ms: No time is given. Assumed
-     * programs: A copy is described from external flash only. What the other programs of the enumeration would do is
-     * not said. Assumed poll_interval_ms: No time is given. Assumed timeout_s: No time is given. The same area is
-     * erased as for an upload, which takes up to 8 s, and then written.
+     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One
+     * attempt and two more are announced. But the status is raised before each start, so it reads 3 Failed boot
+     * attempts before the third, and at that value no start is said to follow.
      */
     static const icd_link_t link = {
         nodes, /* whose messages */
@@ -533,9 +512,9 @@ ICDGEN_API const icd_procedure_form_t *bootloader_list_form(void)
     };
     /**
      * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed limits entries: No
-     * number is given. A list without a last file has to end at some point. Assumed repeat.File Information every_ms:
-     * No time is given. Assumed repeat.File Information for_ms: No time is given. The checksum of a large file has to
-     * be computed meanwhile.
+     * number is given. A list without a last file has to end at some point. Assumed File Information every_ms: No time
+     * is given. Assumed File Information for_ms: No time is given. The checksum of a large file has to be computed
+     * meanwhile.
      */
     static const icd_procedure_form_t form = {
         steps, 6u, /* steps */
@@ -640,19 +619,17 @@ ICDGEN_API const icd_procedure_form_t *bootloader_download_form(void)
     };
     /**
      * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed limits bytes: No
-     * number is given. A file of unknown size has to end at some point. Assumed blocks.blocks rounds: Nothing is said
-     * about giving up. Assumed blocks.blocks.Download Block Ready every_ms: No time is given. Assumed
-     * blocks.blocks.Download Block Ready for_ms: No time is given. Assumed blocks.blocks.missing.missing first: Where
-     * the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
-     * blocks.blocks.missing.missing.send beyond_end: What the bits beyond the end of a short block are is not said.
-     * Marked as received, nothing is sent for them. Assumed blocks.blocks.missing.missing.Initiate Download Burst with:
+     * number is given. A file of unknown size has to end at some point. Assumed blocks rounds: Nothing is said about
+     * giving up. Assumed blocks.Download Block Ready every_ms: No time is given. Assumed blocks.Download Block Ready
+     * for_ms: No time is given. Assumed blocks.missing first: Where the count begins is not said. Bit 0 of the hole map
+     * is the first packet. Assumed blocks.missing.send beyond_end: What the bits beyond the end of a short block are is
+     * not said. Marked as received, nothing is sent for them. Assumed blocks.missing.Initiate Download Burst with:
      * Message Length is not explained. Drivers in use send 20, the bytes of the file in a packet. Assumed
-     * blocks.blocks.missing.missing.File Download Buffer with File Contents silence_ms: How a burst ends is not said.
-     * Packets follow one another in rapid succession. Assumed blocks.blocks.missing.missing.File Download Buffer with
-     * File Contents requested_on: That the reads on I2C are headed by the id of the frame with the packet's format is
-     * not said. Download over CAN is not described; the packets are requested one by one as on I2C. Assumed
-     * blocks.blocks.verify verify: Whether the checksum covers the fill is not said. It comes with the length of the
-     * block, which does not count the fill.
+     * blocks.missing.File Download Buffer with File Contents silence_ms: How a burst ends is not said. Packets follow
+     * one another in rapid succession. Assumed blocks.missing.File Download Buffer with File Contents requested_on:
+     * That the reads on I2C are headed by the id of the frame with the packet's format is not said. Download over CAN
+     * is not described; the packets are requested one by one as on I2C. Assumed blocks verify: Whether the checksum
+     * covers the fill is not said. It comes with the length of the block, which does not count the fill.
      */
     static const icd_procedure_form_t form = {
         steps, 12u, /* steps */
@@ -776,14 +753,13 @@ ICDGEN_API const icd_procedure_form_t *bootloader_upload_form(void)
     };
     /**
      * Assumed limits time_s: No time is given. Assumed limits requests: No number is given. Assumed Initialize Upload
-     * Complete every_ms: No time is given. Assumed blocks.blocks rounds: Nothing is said about giving up. Assumed
-     * blocks.blocks.missing.missing first: Where the count begins is not said. Bit 0 of the hole map is the first
-     * packet. Assumed blocks.blocks.missing.missing fill: The value is not defined. Erased flash memory reads 0xFF.
-     * Assumed blocks.blocks.verify verify: Whether the checksum covers the fill is not said. The node learns the length
-     * of the block only when the block is committed, after the checksum. Assumed blocks.blocks.Finalize Upload Block
-     * send: The procedure ends with the checksum and does not name the telecommand that commits the block. Assumed
-     * blocks.blocks.Upload Block Complete every_ms: No time is given. Assumed blocks.blocks.Upload Block Complete
-     * for_ms: No time is given.
+     * Complete every_ms: No time is given. Assumed blocks rounds: Nothing is said about giving up. Assumed
+     * blocks.missing first: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
+     * blocks.missing fill: The value is not defined. Erased flash memory reads 0xFF. Assumed blocks verify: Whether the
+     * checksum covers the fill is not said. The node learns the length of the block only when the block is committed,
+     * after the checksum. Assumed blocks.Finalize Upload Block send: The procedure ends with the checksum and does not
+     * name the telecommand that commits the block. Assumed blocks.Upload Block Complete every_ms: No time is given.
+     * Assumed blocks.Upload Block Complete for_ms: No time is given.
      */
     static const icd_procedure_form_t form = {
         steps, 16u, /* steps */

@@ -24,7 +24,7 @@ from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
-from icdgen.icd.trees import mappings
+from icdgen.icd.trees import mappings, named
 from icdgen.wording import count, listing, quote
 
 MOST_REGISTERS = 24  # numbers that a procedure keeps
@@ -69,7 +69,7 @@ def _map(owner: Mapping[str, Any], key: str) -> Map:
 class Names(NamedTuple):
     """What the steps of a procedure can name."""
 
-    node: Node
+    nodes: Mapping[str, Node]  # the node and those that it includes
     procedure: Map
     messages: Mapping[str, Message]
     checksums: frozenset[str]
@@ -115,19 +115,21 @@ def _procedures(ctx: Context) -> Iterator[Names]:
     """Yield the procedures of all nodes, each once."""
     for node in ctx.icd.nodes:
         messages = {message.name: message for message in ctx.messages_of(node)}
+        nodes = {owner.name: owner for owner in ctx.scope(node)}
         protocol = ctx.protocol_of(node)
-        named = protocol.get("checksums")  # a copy, without places, if nodes include it
-        names = {*named} if isinstance(named, Mapping) else set()
-        checksums = frozenset({*names, *({"crc8", "crc16"} & {*protocol})})
+        # Without places: it is a copy if several nodes have checksums.
+        declared = protocol.get("checksums")
+        own = {*declared} if isinstance(declared, Mapping) else set()
+        checksums = frozenset({*own, *({"crc8", "crc16"} & {*protocol})})
         for procedure in (section_of(node, "procedures") or unread()).values():
             if not isinstance(procedure, Map):
                 continue  # the schema check reports it
             frames = {
                 str(step.get("as", step.get(kind))): messages[step[kind]]
                 for step, kind, *_ in _steps(procedure.get("steps"))
-                if kind in ("get", "poll") and step.get(kind) in messages
+                if kind in ("get", "poll") and named(messages, step[kind]) is not None
             }
-            yield Names(node, procedure, messages, checksums, frames)
+            yield Names(nodes, procedure, messages, checksums, frames)
 
 
 @rule("ICD190")
@@ -144,8 +146,10 @@ def _keys(step: Map, kind: str) -> Iterator[Fault]:
     """Yield the faults of a step that does nothing or several things, lacks a key, or
     has one of another step.
     """
-    first = next(iter(step))
     if not kind:
+        first = next(iter(step), None)
+        if first is None:
+            return  # the schema check reports it
         text = "a step says what it does, and this one does not"
         kinds = listing(f"`{kind}`" for kind in STEPS)
         yield Fault.at_key(step, first, text, f"write one of {kinds}")
@@ -193,7 +197,7 @@ def _comparison(verify: Map) -> Iterator[Fault]:
     is_field = (
         "field" in verify and not {"checksum", "of", "covers_fill"} & verify.keys()
     )
-    if not is_checksum and not is_field:
+    if verify and not is_checksum and not is_field:
         text = "`verify` compares a checksum (`checksum`, `of`), or a field (`field`)"
         yield Fault.at_key(verify, next(iter(verify)), text, "write one of the two")
 
@@ -233,7 +237,7 @@ def _messages(names: Names, placed: Placed) -> Iterator[Fault]:
             yield Fault.at(step, kind, text, f"name {what}")
     listed = step.get("messages") if kind == "map" else None
     for name, place in listed.placed() if isinstance(listed, Seq) else ():
-        message = names.messages.get(name)
+        message = named(names.messages, name)
         if message is None:
             remedy = suggestion(str(name), names.messages, VERBATIM)
             text = f"there is no message {quote(str(name))}"
@@ -254,11 +258,11 @@ def _unknown(owner: Map, key: str, what: str, known: Mapping[str, Any]) -> Fault
 
 def _own_message(names: Names, placed: Placed) -> Message | None:
     """Return the message whose fields the keys of a step name."""
-    named = placed.step.get(placed.kind)
+    name = placed.step.get(placed.kind)
     if placed.kind == "map":
         listed = placed.step.get("messages")
-        named = listed[0] if isinstance(listed, Seq) and listed else None
-    return names.messages.get(named) if isinstance(named, str) else None
+        name = listed[0] if isinstance(listed, Seq) and listed else None
+    return named(names.messages, name)
 
 
 def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
@@ -270,13 +274,13 @@ def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
         return
     step = placed.step
     keyed = [(step, key) for key in ("number", "data", "field") if key in step]
-    named = [
+    in_mappings = [
         (owner, name)
         for key in ("with", "until", "fail")
         if isinstance(owner := step.get(key), Map)
         for name in owner
     ]
-    for owner, key in (*keyed, *named):
+    for owner, key in (*keyed, *in_mappings):
         name = owner[key] if owner is step else key
         if not isinstance(name, str):
             continue
@@ -289,7 +293,7 @@ def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
             yield Fault.of_place(owner, place, text, *remedy)
             continue
         is_bytes = key in ("data", "field") or owner.get(key) == PACKET_DATA
-        reason = _reason_against(names.node, field, is_bytes)
+        reason = _reason_against(names.nodes[message.node], field, is_bytes)
         if reason:
             place = owner.at(key) if owner is step else owner.key_at(key)
             text = f"{quote(name)} {reason}"
@@ -336,7 +340,8 @@ def _values(names: Names, placed: Placed) -> Iterator[Fault]:
     yield from _value(names, placed, verify, "equals")
     if "field" in verify:
         yield from _reference(names, verify, "field", False)
-    if "checksum" in verify and verify["checksum"] not in names.checksums:
+    checksum = verify.get("checksum")
+    if isinstance(checksum, str) and checksum not in names.checksums:
         known = {name: name for name in names.checksums}
         yield _unknown(verify, "checksum", "checksum", known)
     covered = verify.get("of")
@@ -404,7 +409,7 @@ def _reference(
             for each in message.fields
         }
         yield _unknown(owner, key, "field", known)
-    elif reason := _reason_against(names.node, field, False):
+    elif reason := _reason_against(names.nodes[names.frames[frame].node], field, False):
         yield Fault.at(owner, key, f"{quote(value)} {reason}", "name another field")
 
 
@@ -486,7 +491,7 @@ def _limits(limits: Map, steps: list[Placed]) -> Iterator[Fault]:
         ("bytes", receives, "receives bytes"),
         ("entries", collects, "collects entries"),
     ):
-        if is_needed and key not in limits:
+        if is_needed and limits and key not in limits:
             text = f"the procedure {what}, and a device could send them for ever"
             yield Fault.at_key(limits, next(iter(limits)), text, f"add `{key}`")
         elif key in limits and not is_needed:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import product
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.roles import INTEGERS, PROTOCOL, Role, reasons_against
@@ -14,27 +13,15 @@ from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_occur_once
 from icdgen.icd.rules.protocol_names import FIELDS
-from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.trees import at_path, mappings, named
-from icdgen.wording import count, quote
+from icdgen.icd.trees import mappings, named
+from icdgen.wording import quote
 
 BUSES = ("uart", "i2c", "can")
 INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")
 ROWS = (("uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
     ("unsolicited_log", "message"))  # fmt: skip
 ROWS_AS_BYTES = ("mask", "meta")
-STEPS = (
-    "reset",
-    "advance",
-    "load",
-    "burst",
-    "initiate",
-    "begin",
-    "packet",
-    "finalize",
-    "request",
-)
 
 
 @rule("ICD115")
@@ -104,7 +91,6 @@ def fields_can_have_their_roles(ctx: Context) -> Iterator[Fault]:
                 fields = section.get("fields")
                 owner, keys = (section, FIELDS) if fields is None else (fields, fields)
                 yield from _fields(owner, keys, scalars_in(message.layout))
-        yield from _telecommands_once(node)
 
 
 def _fields(
@@ -130,46 +116,6 @@ def _fields(
         ):
             text = f"{quote(field.name)} cannot be `{key}`: it {reasons[0]}"
             yield Fault.at(owner, key, text, "name another field")
-
-
-def _telecommands_once(node: Node) -> Iterator[Fault]:
-    """Yield a fault for each telecommand of two steps of a file transfer, which a
-    receiver cannot distinguish.
-    """
-    files = section_of(node, "file_transfer") or unread()
-    seen: dict[str, str] = {}
-    for procedure, key in product(files, STEPS):
-        name, step = at_path(files, (procedure, key, "message")), f"{procedure}.{key}"
-        if name is not None and seen.setdefault(name, step) != step:
-            message = f"{quote(name)} is the telecommand of `{seen[name]}` already"
-            yield Fault.at(
-                files[procedure][key], "message", message, "name that of each step"
-            )
-
-
-@rule("ICD117", needs_complete=True)
-def packets_match_their_message(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        sizes = numbers(
-            section_of(node, "file_transfer"), "packet_bytes", "packet_counter_bytes"
-        )
-        if sizes is None:
-            continue
-        messages = {message.name: message for message in ctx.messages_of(node)}
-        for bus in BUSES:
-            section = section_of(node, "file_transfer", "download", bus)
-            if section is None:
-                continue
-            for key in ("packet", "id_of"):
-                message = named(messages, section.get(key))
-                if message is None or (key == "id_of" and bus == "uart"):
-                    continue  # on the UART, packets can have any id
-                if message.telemetry_id is None or message.length != sum(sizes):
-                    size = count(sum(sizes), "byte")
-                    parts = f"{sizes[1]} for its counter and {sizes[0]} for data of the file"
-                    text = f"a packet of a download has {size} ({parts}), and {quote(message.name)} is no telemetry of {size}"
-                    help = "name the telemetry that carries a packet"
-                    yield Fault.at(section, key, text, help)
 
 
 @rule("ICD118")

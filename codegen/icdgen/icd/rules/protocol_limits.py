@@ -11,28 +11,16 @@ from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, Node
-from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context, own_fact, section_of
-from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
+from icdgen.icd.rules.protocol_sizes import of_one_number
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, of_wide_value
-from icdgen.icd.trees import at_path, mappings, named
+from icdgen.icd.trees import at_path, mappings
 from icdgen.wording import count, listing, quote
 
 BYTE = 255
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifier
-# Steps of a file transfer, roles of their fields, and keys of the largest values there
-LARGEST = (
-    ("download.load", "offset", "download.max_bytes"),
-    ("download.load", "length", "block_bytes"),
-    ("download.burst", "length", "download.message_length"),
-    ("upload.initiate", "block_size", "upload.block_size"),
-    ("upload.packet", "number", "block_packets"),
-    ("upload.finalize", "offset", "upload.destination_bytes"),
-    ("upload.finalize", "length", "block_bytes"),
-)
-WITHOUT_LIMIT = 1 << 32  # bytes of an upload to a destination of unknown size
 
 
 def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
@@ -108,8 +96,6 @@ def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
     for name in ("crc8", "crc16"):
         for crc in ctx.sections(name):
             yield from _checksum(crc)
-    for files in ctx.sections("file_transfer"):
-        yield from _counter(files)
 
 
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
@@ -176,27 +162,6 @@ def _checksum(crc: Map) -> Iterator[Fault]:
             )
 
 
-def _counter(files: Map) -> Iterator[Fault]:
-    """Yield a fault if the packet counter of a file transfer cannot number all packets
-    of a block.
-    """
-    sizes, first = numbers(files, "packet_counter_bytes", "block_packets"), files.get(
-        "first_packet", 0
-    )
-    if sizes is None or not isinstance(first, int):
-        return
-    size, packets = sizes
-    if first + packets > 256**size:
-        last = f"the last packet of a block has number {first + packets - 1}"
-        message = f"{last}, which does not fit {count(size, 'byte')}"
-        yield Fault.at(
-            files,
-            "packet_counter_bytes",
-            message,
-            "correct it, `block_packets` or `first_packet`",
-        )
-
-
 def roles_occur_once(
     section: Map,
     key: str,
@@ -252,47 +217,3 @@ def packed_time_has_all_parts(ctx: Context) -> Iterator[Fault]:
         yield from roles_occur_once(
             time, "parts", TIME_PARTS, "the packed time lacks", help
         )
-
-
-@rule("ICD189", needs_complete=True)
-def limits_of_files_fit_their_fields(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        files = section_of(node, "file_transfer")
-        messages = {message.name: message for message in ctx.messages_of(node)}
-        for step, role, key in LARGEST:
-            section = at_path(files, step.split("."))
-            if files is None or not isinstance(section, Map):
-                continue
-            message = named(messages, section.get("message"))
-            name = at_path(section, ("fields", role))
-            for field in scalars_in(message.layout) if message else ():
-                if field.name == name and not field.is_read_only:
-                    most = (1 << field.bits - (field.scalar.type == "int")) - 1
-                    yield from _limit(files, section, role, key, most)
-
-
-def _limit(files: Map, step: Map, role: str, key: str, most: int) -> Iterator[Fault]:
-    """Yield a fault if a field of a step, which holds up to ``most``, cannot hold the
-    largest value that a key allows.
-    """
-    *path, last = key.split(".")
-    owner = at_path(files, path)
-    assert isinstance(owner, Map)
-    value = owner.get(last, WITHOUT_LIMIT if last == "destination_bytes" else None)
-    if not isinstance(value, int):
-        return
-    # The offset of a block is less than the size of its destination, and the number of
-    # a packet depends on the first one. The end of a file is an offset of its own.
-    largest = value - 1 if last in ("destination_bytes", "block_packets") else value
-    first = files.get("first_packet", 0) if last == "block_packets" else 0
-    if not isinstance(first, int) or largest + first <= most:
-        return
-    field = f"`{role}` of {quote(str(step.get('message')))} holds 0 to {most}"
-    if last not in owner:
-        text = f"{field}, and an upload can be longer"
-        help = f"add `{last}`, at most {most + 1}"
-        yield Fault.at(step["fields"], role, text, help)
-        return
-    room = most - largest - first + value
-    text = f"{field}, but `{last}` is {value}"
-    yield Fault.at(owner, last, text, f"correct `{last}`, at most {room}, or the field")

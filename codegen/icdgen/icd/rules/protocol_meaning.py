@@ -11,12 +11,11 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
 from icdgen.icd.rules.context import Context, own_fact, section_of
-from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_occur_once, section_in_effect
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
-from icdgen.icd.trees import at_path, mappings
+from icdgen.icd.trees import mappings
 from icdgen.wording import count, quote
 
 ACKNOWLEDGE_ROLES = ("id", "error")
@@ -159,17 +158,6 @@ def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
                 text = f"{quote(message.name)} has {count(message.length, 'byte')}, but a packet has up to {room}"
                 help = "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
                 yield Fault.at(message.source, "length", text, help)
-
-
-@rule("ICD110")
-def progress_has_a_field_for_the_end(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        for section in sections(node):
-            fields = at_path(section, ("progress", "fields"))
-            if isinstance(fields, Map) and not {"busy", "ready"} & fields.keys():
-                message = "no field reports when the operation is done"
-                help = "name the field that is set during the operation (`busy`) or after it (`ready`)"
-                yield Fault.at(section["progress"], "fields", message, help)
 
 
 def _is_short(can: Map, direction: str) -> bool:

@@ -15,7 +15,7 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.protocol import sections, sections_in
+from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
@@ -27,11 +27,9 @@ T = TypeVar("T")
 # Keys that name messages.
 MESSAGES = (
     "message",
-    "packet",
     "id_of",
     "stop_request",
     "set_by",
-    "names",
     "reset_by",
     "if_not_started",
 )
@@ -43,6 +41,7 @@ MEMBERS = (
         "enum",
         (
             "value",
+            "values",
             "none",
             "unknown_id",
             "length",
@@ -54,8 +53,6 @@ MEMBERS = (
         ),
     ),
     ("failure_enum", ("failure",)),
-    ("destination_enum", ("destinations",)),
-    ("program_enum", ("programs", "destination")),
 )
 # Keys of `can.telecommand` and `can.telemetry` that name message types.
 TYPES = (
@@ -73,12 +70,8 @@ def named_messages_and_members_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         messages = {message.name for message in ctx.messages_of(node)}
         enums = {enum.name: enum for owner in ctx.scope(node) for enum in owner.enums}
-        # In the section `stream`, `packet` names a packet format (rule ICD184).
-        framed = {id(section) for section in sections_in(node.source, "stream")}
         for section in sections(node):
             for key in MESSAGES:
-                if key == "packet" and id(section) in framed:
-                    continue
                 for name, place in _values(section, key, str):
                     if name not in messages:
                         help, fix = suggestion(name, messages, VERBATIM)
@@ -121,8 +114,6 @@ def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
         ]
         if isinstance(fields := section.get("fields"), Map):
             references += [(fields, key, section.get("message")) for key in fields]
-        if isinstance(names := section.get("names"), Seq) and "field" in section:
-            references += [(section, "field", name) for name in names]
         for owner, key, name in references:
             message = named(messages, name)
             if message is not None and isinstance(owner[key], str):

@@ -61,12 +61,6 @@ def sizes_agree(ctx: Context) -> Iterator[Fault]:
         if isinstance(extended, Map):
             yield from _product(extended, "max_bytes", "max_packets", "data_bytes")
             yield from _packets_left(can, extended)
-    for files in ctx.sections("file_transfer"):
-        yield from _product(files, "block_bytes", "block_packets", "packet_bytes")
-        hole_map = files.get("hole_map")
-        if isinstance(hole_map, Map):
-            yield from _product(hole_map, "bytes", "messages", "message_bytes")
-            yield from _hole_map(files, hole_map)
     for node in ctx.icd.nodes:
         yield from _log_mask(ctx, node)
 
@@ -136,22 +130,6 @@ def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
                     f"the mask has {counted(given, 'byte')} here, {size} by `log_mask`"
                 )
                 yield Fault.at(row, "bytes", message, "correct one of them")
-
-
-def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
-    """Yield the faults of a hole map that has too few bits or names."""
-    size, packets = hole_map.get("bytes"), files.get("block_packets")
-    if isinstance(size, int) and isinstance(packets, int) and packets > size * 8:
-        message = (
-            f"a hole map of {size} bytes has {size * 8} bits, a block {packets} packets"
-        )
-        yield Fault.at(hole_map, "bytes", message, "correct `bytes` or `block_packets`")
-    count, names = hole_map.get("messages"), hole_map.get("names")
-    if isinstance(count, int) and isinstance(names, Seq) and len(names) != count:
-        message = (
-            f"`names` has {counted(len(names), 'message')}, `messages` says {count}"
-        )
-        yield Fault.at(hole_map, "names", message, "correct `names` or `messages`")
 
 
 @rule("ICD098")

@@ -9,9 +9,10 @@ from typing import Any
 
 from icdgen_runtime.wire.i2c import i2c_write
 
+from icdgen import codec
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import CAN, I2C, UART, Step
+from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 
@@ -53,12 +54,11 @@ def _polls(
 ) -> Iterator[dict[str, Any]]:
     """Yield a telecommand that is not processed within its time limit."""
     assert facts.polled
-    data = Step(facts.polled.message, {"id": facts.polled.id}).frame(
-        facts.node, {"id": sent.telecommand_id or 0}
-    )
-    state = i2c_write(link, facts.polled.message.telemetry_id or 0, data, False)[
-        1:
-    ].hex()
+    polled, node = facts.polled.message, facts.node
+    values = codec.initial_values(node, polled)
+    values[facts.polled.id] = sent.telecommand_id or 0
+    data = codec.encode(node, polled, values)
+    state = i2c_write(link, polled.telemetry_id or 0, data, False)[1:].hex()
     yield {
         "at": 0,
         "telecommand": sent.telecommand_id,

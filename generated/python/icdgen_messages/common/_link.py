@@ -221,9 +221,9 @@ LINK: link.Link[_Node] = link.Link(
         # Assumed, limits requests: No number is given.
         # Assumed, limits entries: No number is given. A list without a last file has
         #   to end at some point.
-        # Assumed, repeat.File Information every_ms: No time is given.
-        # Assumed, repeat.File Information for_ms: No time is given. The checksum of a
-        #   large file has to be computed meanwhile.
+        # Assumed, File Information every_ms: No time is given.
+        # Assumed, File Information for_ms: No time is given. The checksum of a large
+        #   file has to be computed meanwhile.
         "list": link.ProcedureForm(
             inputs=(),
             outputs=(),
@@ -256,27 +256,24 @@ LINK: link.Link[_Node] = link.Link(
         # Assumed, limits requests: No number is given.
         # Assumed, limits bytes: No number is given. A file of unknown size has to end
         #   at some point.
-        # Assumed, blocks.blocks rounds: Nothing is said about giving up.
-        # Assumed, blocks.blocks.Download Block Ready every_ms: No time is given.
-        # Assumed, blocks.blocks.Download Block Ready for_ms: No time is given.
-        # Assumed, blocks.blocks.missing.missing first: Where the count begins is not
-        #   said. Bit 0 of the hole map is the first packet.
-        # Assumed, blocks.blocks.missing.missing.send beyond_end: What the bits beyond
-        #   the end of a short block are is not said. Marked as received, nothing is
-        #   sent for them.
-        # Assumed, blocks.blocks.missing.missing.Initiate Download Burst with: Message
-        #   Length is not explained. Drivers in use send 20, the bytes of the file in a
-        #   packet.
-        # Assumed, blocks.blocks.missing.missing.File Download Buffer with File
-        #   Contents silence_ms: How a burst ends is not said. Packets follow one
-        #   another in rapid succession.
-        # Assumed, blocks.blocks.missing.missing.File Download Buffer with File
-        #   Contents requested_on: That the reads on I2C are headed by the id of the
-        #   frame with the packet's format is not said. Download over CAN is not
-        #   described; the packets are requested one by one as on I2C.
-        # Assumed, blocks.blocks.verify verify: Whether the checksum covers the fill
-        #   is not said. It comes with the length of the block, which does not count the
-        #   fill.
+        # Assumed, blocks rounds: Nothing is said about giving up.
+        # Assumed, blocks.Download Block Ready every_ms: No time is given.
+        # Assumed, blocks.Download Block Ready for_ms: No time is given.
+        # Assumed, blocks.missing first: Where the count begins is not said. Bit 0 of
+        #   the hole map is the first packet.
+        # Assumed, blocks.missing.send beyond_end: What the bits beyond the end of a
+        #   short block are is not said. Marked as received, nothing is sent for them.
+        # Assumed, blocks.missing.Initiate Download Burst with: Message Length is not
+        #   explained. Drivers in use send 20, the bytes of the file in a packet.
+        # Assumed, blocks.missing.File Download Buffer with File Contents silence_ms:
+        #   How a burst ends is not said. Packets follow one another in rapid
+        #   succession.
+        # Assumed, blocks.missing.File Download Buffer with File Contents
+        #   requested_on: That the reads on I2C are headed by the id of the frame with
+        #   the packet's format is not said. Download over CAN is not described; the
+        #   packets are requested one by one as on I2C.
+        # Assumed, blocks verify: Whether the checksum covers the fill is not said. It
+        #   comes with the length of the block, which does not count the fill.
         "download": link.ProcedureForm(
             inputs=(
                 link.Input("type", most=255),
@@ -505,169 +502,6 @@ LINK: link.Link[_Node] = link.Link(
             why="No time-out between packets is given.",
         ),
         link.Assumption(
-            section="file_transfer",
-            key="first_packet",
-            value=0,
-            why="Where the count begins is not said. Bit 0 of the hole map is the first packet.",
-        ),
-        link.Assumption(
-            section="file_transfer",
-            key="fill",
-            value=255,
-            why="The value is not defined. Erased flash memory reads 0xFF.",
-        ),
-        link.Assumption(
-            section="file_transfer.hole_map",
-            key="beyond_end",
-            value=1,
-            why="What the bits beyond the end of a short block are is not said. Marked as received, nothing is sent for them; from the node they are ignored.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="message_length",
-            value=20,
-            why="The field is not explained. Drivers in use send 20, the bytes of the file in a packet.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="checksum_covers_fill",
-            value=False,
-            why="Not said. The checksum comes with the length of the block, which does not count the fill.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="index_counter",
-            value=0,
-            why="Which counter goes with the index file is not said.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="poll_interval_ms",
-            value=50,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="ready_timeout_ms",
-            value=10000,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="silence_ms",
-            value=500,
-            why="How a burst ends is not said. Packets follow one another in rapid succession.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="rounds",
-            value=32,
-            why="Nothing is said about giving up.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="max_bytes",
-            value=16777216,
-            why="No number is given. A file of unknown size has to end at some point.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="i2c",
-            value={
-                "packet": "File Download Buffer with File Contents",
-                "id_of": "File Download Buffer with File Contents",
-            },
-            why="That the reads are headed by the id of the frame with the packet's format is not said.",
-        ),
-        link.Assumption(
-            section="file_transfer.download",
-            key="can",
-            value={
-                "packet": "File Download Buffer with File Contents",
-                "id_of": "File Download Buffer with File Contents",
-            },
-            why="Download over CAN is not described. The packets are requested one by one as on I2C.",
-        ),
-        link.Assumption(
-            section="file_transfer.upload",
-            key="poll_interval_ms",
-            value=50,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.upload",
-            key="rounds",
-            value=32,
-            why="Nothing is said about giving up.",
-        ),
-        link.Assumption(
-            section="file_transfer.upload",
-            key="checksum_covers_fill",
-            value=True,
-            why="Not said. The node learns the length of the block only when the block is committed, after the checksum.",
-        ),
-        link.Assumption(
-            section="file_transfer.upload",
-            key="finalize",
-            value={
-                "message": "Finalize Upload Block",
-                "fields": {
-                    "destination": "Destination",
-                    "offset": "Offset",
-                    "length": "Block Length",
-                },
-            },
-            why="The procedure ends with the checksum and does not name the telecommand that commits the block.",
-        ),
-        link.Assumption(
-            section="file_transfer.upload",
-            key="finalize_timeout_ms",
-            value=5000,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.list",
-            key="poll_interval_ms",
-            value=50,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.list",
-            key="max_entries",
-            value=1024,
-            why="No number is given. A list without a last file has to end at some point.",
-        ),
-        link.Assumption(
-            section="file_transfer.list",
-            key="timeout_ms",
-            value=10000,
-            why="No time is given. The checksum of a large file has to be computed meanwhile.",
-        ),
-        link.Assumption(
-            section="file_transfer.erase",
-            key="poll_interval_ms",
-            value=200,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.erase",
-            key="timeout_ms",
-            value=60000,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.format",
-            key="poll_interval_ms",
-            value=200,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="file_transfer.format",
-            key="timeout_ms",
-            value=60000,
-            why="No time is given.",
-        ),
-        link.Assumption(
             section="boot",
             key="attempts",
             value=3,
@@ -692,13 +526,13 @@ LINK: link.Link[_Node] = link.Link(
             why="No number is given. A list without a last file has to end at some point.",
         ),
         link.Assumption(
-            section="procedures.list.repeat.File Information",
+            section="procedures.list.File Information",
             key="every_ms",
             value=50,
             why="No time is given.",
         ),
         link.Assumption(
-            section="procedures.list.repeat.File Information",
+            section="procedures.list.File Information",
             key="for_ms",
             value=10000,
             why="No time is given. The checksum of a large file has to be computed meanwhile.",
@@ -722,37 +556,37 @@ LINK: link.Link[_Node] = link.Link(
             why="No number is given. A file of unknown size has to end at some point.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks",
+            section="procedures.download.blocks",
             key="rounds",
             value=32,
             why="Nothing is said about giving up.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.Download Block Ready",
+            section="procedures.download.blocks.Download Block Ready",
             key="every_ms",
             value=50,
             why="No time is given.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.Download Block Ready",
+            section="procedures.download.blocks.Download Block Ready",
             key="for_ms",
             value=10000,
             why="No time is given.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.missing.missing",
+            section="procedures.download.blocks.missing",
             key="first",
             value=0,
             why="Where the count begins is not said. Bit 0 of the hole map is the first packet.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.missing.missing.send",
+            section="procedures.download.blocks.missing.send",
             key="beyond_end",
             value=1,
             why="What the bits beyond the end of a short block are is not said. Marked as received, nothing is sent for them.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.missing.missing.Initiate Download Burst",
+            section="procedures.download.blocks.missing.Initiate Download Burst",
             key="with",
             value={
                 "Message Length": 20,
@@ -761,19 +595,19 @@ LINK: link.Link[_Node] = link.Link(
             why="Message Length is not explained. Drivers in use send 20, the bytes of the file in a packet.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.missing.missing.File Download Buffer with File Contents",
+            section="procedures.download.blocks.missing.File Download Buffer with File Contents",
             key="silence_ms",
             value=500,
             why="How a burst ends is not said. Packets follow one another in rapid succession.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.missing.missing.File Download Buffer with File Contents",
+            section="procedures.download.blocks.missing.File Download Buffer with File Contents",
             key="requested_on",
             value=("i2c", "can"),
             why="That the reads on I2C are headed by the id of the frame with the packet's format is not said. Download over CAN is not described; the packets are requested one by one as on I2C.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.blocks.verify",
+            section="procedures.download.blocks",
             key="verify",
             value={
                 "checksum": "crc16",
@@ -782,71 +616,6 @@ LINK: link.Link[_Node] = link.Link(
                 "equals": "ready.Block CRC16 Checksum",
             },
             why="Whether the checksum covers the fill is not said. It comes with the length of the block, which does not count the fill.",
-        ),
-        link.Assumption(
-            section="procedures.upload.limits",
-            key="time_s",
-            value=86400,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="procedures.upload.limits",
-            key="requests",
-            value=100000000,
-            why="No number is given.",
-        ),
-        link.Assumption(
-            section="procedures.upload.Initialize Upload Complete",
-            key="every_ms",
-            value=50,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks",
-            key="rounds",
-            value=32,
-            why="Nothing is said about giving up.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks.missing.missing",
-            key="first",
-            value=0,
-            why="Where the count begins is not said. Bit 0 of the hole map is the first packet.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks.missing.missing",
-            key="fill",
-            value=255,
-            why="The value is not defined. Erased flash memory reads 0xFF.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks.verify",
-            key="verify",
-            value={
-                "checksum": "crc16",
-                "of": "block",
-                "covers_fill": True,
-                "equals": "sum.Checksum",
-            },
-            why="Whether the checksum covers the fill is not said. The node learns the length of the block only when the block is committed, after the checksum.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks.Finalize Upload Block",
-            key="send",
-            value="Finalize Upload Block",
-            why="The procedure ends with the checksum and does not name the telecommand that commits the block.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks.Upload Block Complete",
-            key="every_ms",
-            value=50,
-            why="No time is given.",
-        ),
-        link.Assumption(
-            section="procedures.upload.blocks.blocks.Upload Block Complete",
-            key="for_ms",
-            value=5000,
-            why="No time is given.",
         ),
         link.Assumption(
             section="procedures.erase.limits",

@@ -36,24 +36,23 @@ pub const ALL: &[&procedure::Form] = &[
 ///
 /// Assumed (`upload.Initialize Upload Complete`, `every_ms`): No time is given.
 ///
-/// Assumed (`upload.blocks.blocks`, `rounds`): Nothing is said about giving up.
+/// Assumed (`upload.blocks`, `rounds`): Nothing is said about giving up.
 ///
-/// Assumed (`upload.blocks.blocks.missing.missing`, `first`): Where the count begins is not said.
-/// Bit 0 of the hole map is the first packet.
+/// Assumed (`upload.blocks.missing`, `first`): Where the count begins is not said. Bit 0 of the
+/// hole map is the first packet.
 ///
-/// Assumed (`upload.blocks.blocks.missing.missing`, `fill`): The value is not defined. Erased flash
-/// memory reads 0xFF.
+/// Assumed (`upload.blocks.missing`, `fill`): The value is not defined. Erased flash memory reads
+/// 0xFF.
 ///
-/// Assumed (`upload.blocks.blocks.verify`, `verify`): Whether the checksum covers the fill is not
-/// said. The node learns the length of the block only when the block is committed, after the
-/// checksum.
+/// Assumed (`upload.blocks`, `verify`): Whether the checksum covers the fill is not said. The node
+/// learns the length of the block only when the block is committed, after the checksum.
 ///
-/// Assumed (`upload.blocks.blocks.Finalize Upload Block`, `send`): The procedure ends with the
-/// checksum and does not name the telecommand that commits the block.
+/// Assumed (`upload.blocks.Finalize Upload Block`, `send`): The procedure ends with the checksum
+/// and does not name the telecommand that commits the block.
 ///
-/// Assumed (`upload.blocks.blocks.Upload Block Complete`, `every_ms`): No time is given.
+/// Assumed (`upload.blocks.Upload Block Complete`, `every_ms`): No time is given.
 ///
-/// Assumed (`upload.blocks.blocks.Upload Block Complete`, `for_ms`): No time is given.
+/// Assumed (`upload.blocks.Upload Block Complete`, `for_ms`): No time is given.
 ///
 /// ```
 /// use icd::bootloader::procedures::{Upload, UPLOAD_MEMORY};

@@ -27,10 +27,10 @@ pub const ALL: &[&procedure::Form] = &[
 /// Assumed (`list.limits`, `entries`): No number is given. A list without a last file has to end at
 /// some point.
 ///
-/// Assumed (`list.repeat.File Information`, `every_ms`): No time is given.
+/// Assumed (`list.File Information`, `every_ms`): No time is given.
 ///
-/// Assumed (`list.repeat.File Information`, `for_ms`): No time is given. The checksum of a large
-/// file has to be computed meanwhile.
+/// Assumed (`list.File Information`, `for_ms`): No time is given. The checksum of a large file has
+/// to be computed meanwhile.
 ///
 /// ```
 /// use icd::common::procedures::List;
@@ -110,31 +110,30 @@ pub static LIST: procedure::Form = procedure::Form {
 /// Assumed (`download.limits`, `bytes`): No number is given. A file of unknown size has to end at
 /// some point.
 ///
-/// Assumed (`download.blocks.blocks`, `rounds`): Nothing is said about giving up.
+/// Assumed (`download.blocks`, `rounds`): Nothing is said about giving up.
 ///
-/// Assumed (`download.blocks.blocks.Download Block Ready`, `every_ms`): No time is given.
+/// Assumed (`download.blocks.Download Block Ready`, `every_ms`): No time is given.
 ///
-/// Assumed (`download.blocks.blocks.Download Block Ready`, `for_ms`): No time is given.
+/// Assumed (`download.blocks.Download Block Ready`, `for_ms`): No time is given.
 ///
-/// Assumed (`download.blocks.blocks.missing.missing`, `first`): Where the count begins is not said.
-/// Bit 0 of the hole map is the first packet.
+/// Assumed (`download.blocks.missing`, `first`): Where the count begins is not said. Bit 0 of the
+/// hole map is the first packet.
 ///
-/// Assumed (`download.blocks.blocks.missing.missing.send`, `beyond_end`): What the bits beyond the
-/// end of a short block are is not said. Marked as received, nothing is sent for them.
+/// Assumed (`download.blocks.missing.send`, `beyond_end`): What the bits beyond the end of a short
+/// block are is not said. Marked as received, nothing is sent for them.
 ///
-/// Assumed (`download.blocks.blocks.missing.missing.Initiate Download Burst`, `with`): Message
-/// Length is not explained. Drivers in use send 20, the bytes of the file in a packet.
+/// Assumed (`download.blocks.missing.Initiate Download Burst`, `with`): Message Length is not
+/// explained. Drivers in use send 20, the bytes of the file in a packet.
 ///
-/// Assumed (`download.blocks.blocks.missing.missing.File Download Buffer with File Contents`,
-/// `silence_ms`): How a burst ends is not said. Packets follow one another in rapid succession.
+/// Assumed (`download.blocks.missing.File Download Buffer with File Contents`, `silence_ms`): How a
+/// burst ends is not said. Packets follow one another in rapid succession.
 ///
-/// Assumed (`download.blocks.blocks.missing.missing.File Download Buffer with File Contents`,
-/// `requested_on`): That the reads on I2C are headed by the id of the frame with the packet's
-/// format is not said. Download over CAN is not described; the packets are requested one by one as
-/// on I2C.
+/// Assumed (`download.blocks.missing.File Download Buffer with File Contents`, `requested_on`):
+/// That the reads on I2C are headed by the id of the frame with the packet's format is not said.
+/// Download over CAN is not described; the packets are requested one by one as on I2C.
 ///
-/// Assumed (`download.blocks.blocks.verify`, `verify`): Whether the checksum covers the fill is not
-/// said. It comes with the length of the block, which does not count the fill.
+/// Assumed (`download.blocks`, `verify`): Whether the checksum covers the fill is not said. It
+/// comes with the length of the block, which does not count the fill.
 ///
 /// ```
 /// use icd::common::procedures::{Download, DOWNLOAD_MEMORY};

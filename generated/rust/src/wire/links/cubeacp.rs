@@ -9,69 +9,6 @@ pub const LONGEST: usize = 506;
 
 /// The protocol of node `cubeacp`. Facts that the manual omits are marked as assumed.
 ///
-/// Assumed (`file_transfer`, `first_packet`): Where the count begins is not said. Bit 0 of the hole
-/// map is the first packet.
-///
-/// Assumed (`file_transfer`, `fill`): The value is not defined. Erased flash memory reads 0xFF.
-///
-/// Assumed (`file_transfer.hole_map`, `beyond_end`): What the bits beyond the end of a short block
-/// are is not said. Marked as received, nothing is sent for them; from the node they are ignored.
-///
-/// Assumed (`file_transfer.download`, `message_length`): The field is not explained. Drivers in use
-/// send 20, the bytes of the file in a packet.
-///
-/// Assumed (`file_transfer.download`, `checksum_covers_fill`): Not said. The checksum comes with
-/// the length of the block, which does not count the fill.
-///
-/// Assumed (`file_transfer.download`, `index_counter`): Which counter goes with the index file is
-/// not said.
-///
-/// Assumed (`file_transfer.download`, `poll_interval_ms`): No time is given.
-///
-/// Assumed (`file_transfer.download`, `ready_timeout_ms`): No time is given.
-///
-/// Assumed (`file_transfer.download`, `silence_ms`): How a burst ends is not said. Packets follow
-/// one another in rapid succession.
-///
-/// Assumed (`file_transfer.download`, `rounds`): Nothing is said about giving up.
-///
-/// Assumed (`file_transfer.download`, `max_bytes`): No number is given. A file of unknown size has
-/// to end at some point.
-///
-/// Assumed (`file_transfer.download`, `i2c`): That the reads are headed by the id of the frame with
-/// the packet's format is not said.
-///
-/// Assumed (`file_transfer.download`, `can`): Download over CAN is not described. The packets are
-/// requested one by one as on I2C.
-///
-/// Assumed (`file_transfer.upload`, `poll_interval_ms`): No time is given.
-///
-/// Assumed (`file_transfer.upload`, `rounds`): Nothing is said about giving up.
-///
-/// Assumed (`file_transfer.upload`, `checksum_covers_fill`): Not said. The node learns the length
-/// of the block only when the block is committed, after the checksum.
-///
-/// Assumed (`file_transfer.upload`, `finalize`): The procedure ends with the checksum and does not
-/// name the telecommand that commits the block.
-///
-/// Assumed (`file_transfer.upload`, `finalize_timeout_ms`): No time is given.
-///
-/// Assumed (`file_transfer.list`, `poll_interval_ms`): No time is given.
-///
-/// Assumed (`file_transfer.list`, `max_entries`): No number is given. A list without a last file
-/// has to end at some point.
-///
-/// Assumed (`file_transfer.list`, `timeout_ms`): No time is given. The checksum of a large file has
-/// to be computed meanwhile.
-///
-/// Assumed (`file_transfer.erase`, `poll_interval_ms`): No time is given.
-///
-/// Assumed (`file_transfer.erase`, `timeout_ms`): No time is given.
-///
-/// Assumed (`file_transfer.format`, `poll_interval_ms`): No time is given.
-///
-/// Assumed (`file_transfer.format`, `timeout_ms`): No time is given.
-///
 /// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
 /// start is said to follow.
