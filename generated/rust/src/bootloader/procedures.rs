@@ -16,7 +16,7 @@ pub use crate::common::procedures::{
 };
 
 /// The steps of all procedures, in the order of the ICD.
-pub const ALL: &[&procedure::Form] = &[
+pub static ALL: &[&procedure::Form] = &[
     &LIST,
     &DOWNLOAD,
     &UPLOAD,

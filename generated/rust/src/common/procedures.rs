@@ -9,7 +9,7 @@ use crate::wire::{link, procedure, Error};
 use core::ops::{Deref, DerefMut};
 
 /// The steps of all procedures, in the order of the ICD.
-pub const ALL: &[&procedure::Form] = &[
+pub static ALL: &[&procedure::Form] = &[
     &LIST,
     &DOWNLOAD,
     &ERASE,
