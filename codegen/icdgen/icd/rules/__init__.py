@@ -32,6 +32,7 @@ from icdgen.icd.rules import (  # noqa: F401
     loggable,
     packets,
     procedure_effects,
+    procedure_requests,
     procedures,
     protocol,
     protocol_effects,

@@ -89,7 +89,7 @@ class Names(NamedTuple):
         return field_of(message, name) if message else None
 
 
-def _steps(rows: object, outer: Placed | None = None) -> Iterator[Placed]:
+def steps_in(rows: object, outer: Placed | None = None) -> Iterator[Placed]:
     """Yield the steps of a list, and the steps in them."""
     inside = outer.inside if outer else ()
     blocks, missing = (outer.blocks, outer.missing) if outer else (unread(), unread())
@@ -99,16 +99,16 @@ def _steps(rows: object, outer: Placed | None = None) -> Iterator[Placed]:
         yield placed
         content = step.get(kind)
         if kind == "repeat":
-            yield from _steps(content, placed._replace(inside=(*inside, _REPEAT)))
+            yield from steps_in(content, placed._replace(inside=(*inside, _REPEAT)))
         if not isinstance(content, Map):
             continue
         if kind == "blocks":
             within = placed._replace(inside=(*inside, _BLOCKS), blocks=content)
-            yield from _steps(content.get("steps"), within)
+            yield from steps_in(content.get("steps"), within)
         if kind == "missing":
             for key, loop in (("each", _EACH), ("steps", _ROUND)):
                 within = placed._replace(inside=(*inside, loop), missing=content)
-                yield from _steps(content.get(key), within)
+                yield from steps_in(content.get(key), within)
 
 
 def _procedures(ctx: Context) -> Iterator[Names]:
@@ -126,7 +126,7 @@ def _procedures(ctx: Context) -> Iterator[Names]:
                 continue  # the schema check reports it
             frames = {
                 str(step.get("as", step.get(kind))): messages[step[kind]]
-                for step, kind, *_ in _steps(procedure.get("steps"))
+                for step, kind, *_ in steps_in(procedure.get("steps"))
                 if kind in ("get", "poll") and named(messages, step[kind]) is not None
             }
             yield Names(nodes, procedure, messages, checksums, frames)
@@ -135,7 +135,7 @@ def _procedures(ctx: Context) -> Iterator[Names]:
 @rule("ICD190")
 def steps_have_their_keys(ctx: Context) -> Iterator[Fault]:
     for names in _procedures(ctx):
-        for placed in _steps(names.procedure.get("steps")):
+        for placed in steps_in(names.procedure.get("steps")):
             yield from _keys(placed.step, placed.kind)
             yield from _where(placed)
             if placed.kind == "verify" and isinstance(placed.step["verify"], Map):
@@ -205,7 +205,7 @@ def _comparison(verify: Map) -> Iterator[Fault]:
 @rule("ICD191", needs_complete=True)
 def what_steps_name_exists(ctx: Context) -> Iterator[Fault]:
     for names in _procedures(ctx):
-        steps = [*_steps(names.procedure.get("steps"))]
+        steps = [*steps_in(names.procedure.get("steps"))]
         for placed in steps:
             yield from _messages(names, placed)
             yield from _fields(names, placed)
@@ -461,7 +461,7 @@ def _inputs(names: Names, steps: list[Placed]) -> Iterator[Fault]:
 @rule("ICD192")
 def procedures_have_limits(ctx: Context) -> Iterator[Fault]:
     for names in _procedures(ctx):
-        steps = [*_steps(names.procedure.get("steps"))]
+        steps = [*steps_in(names.procedure.get("steps"))]
         limits = names.procedure.get("limits")
         if isinstance(limits, Map):
             yield from _limits(limits, steps)
@@ -518,14 +518,14 @@ def _transfer(names: Names, blocks: Map) -> Iterator[Fault]:
 
 def _rounds(step: Map, missing: Map) -> Iterator[Fault]:
     """Yield a fault unless something tells which packets are no longer missing."""
-    kinds = {placed.kind for placed in _steps(missing.get("steps"))}
+    kinds = {placed.kind for placed in steps_in(missing.get("steps"))}
     if "each" not in missing and "receive" not in kinds:
         text = "nothing in `missing` transfers packets"
         help = "add `each`, to send them, or a step with `receive`"
         yield Fault.at_key(step, "missing", text, help)
     maps = {
         placed.step["map"]: placed.step
-        for placed in _steps(missing.get("steps"))
+        for placed in steps_in(missing.get("steps"))
         if placed.kind == "map"
     }
     if "each" in missing and "steps" in missing and "get" not in maps:
@@ -543,7 +543,7 @@ def _rounds(step: Map, missing: Map) -> Iterator[Fault]:
 
 def _repetition(step: Map) -> Iterator[Fault]:
     """Yield a fault if nothing ends a repetition."""
-    kinds = {placed.kind for placed in _steps(step["repeat"])}
+    kinds = {placed.kind for placed in steps_in(step["repeat"])}
     if "end_if_zeros" not in kinds:
         text = "no step ends the repetition"
         yield Fault.at_key(step, "repeat", text, "add a step with `end_if_zeros`")
@@ -571,7 +571,7 @@ def _optional_inputs(names: Names, transfers: list[Map]) -> Iterator[Fault]:
 @rule("ICD193", needs_complete=True)
 def sizes_of_procedures_fit(ctx: Context) -> Iterator[Fault]:
     for names in _procedures(ctx):
-        steps = [*_steps(names.procedure.get("steps"))]
+        steps = [*steps_in(names.procedure.get("steps"))]
         for placed in steps:
             if placed.kind in ("map", "receive", "send"):
                 yield from _sizes(names, placed)

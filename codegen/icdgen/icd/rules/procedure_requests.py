@@ -1,0 +1,56 @@
+"""Telemetry that procedures request on framed links."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diagnostics import Place
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.model import TELECOMMAND
+from icdgen.icd.packets import is_requested
+from icdgen.icd.responses import REPLY, declared_responses
+from icdgen.icd.rules.context import Context, section_of
+from icdgen.icd.rules.envelopes import Link, ids_of, links
+from icdgen.icd.rules.procedures import steps_in
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.trees import named
+from icdgen.wording import quote
+
+
+@rule("ICD195", needs_complete=True)
+def telemetry_of_steps_can_be_requested(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        messages = {message.name: message for message in ctx.messages_of(link.node)}
+        telecommands = ids_of(ctx, link.node, TELECOMMAND)
+        commands = link.section.get("commands")
+        replies = {
+            row.get("message")
+            for _, message in telecommands
+            for kind, row in declared_responses(
+                commands if isinstance(commands, Map) else unread(), message
+            ).items()
+            if kind == REPLY
+        }
+        for step, name, place in _requests(ctx, link):
+            message = named(messages, name)
+            if message is None or name in replies:
+                continue
+            ids = [id for id, _ in telecommands]
+            if not is_requested(link.declared, message, ids, ()):
+                text = f"nothing requests {quote(message.name)}: no telecommand has it as `reply`, and no packet requests it"
+                help = "add `response: {reply: ...}` to the telecommand, or `requests` to the link"
+                yield Fault(step, place, text, help)
+
+
+def _requests(ctx: Context, link: Link) -> Iterator[tuple[Map, object, Place]]:
+    """Yield each step that requests telemetry, with the name of the telemetry."""
+    for owner in ctx.scope(link.node):
+        for procedure in (section_of(owner, "procedures") or unread()).values():
+            rows = procedure.get("steps") if isinstance(procedure, Map) else None
+            for step, kind, *_ in steps_in(rows):
+                if kind in ("get", "poll"):
+                    yield step, step[kind], step.at(kind)
+                listed = step.get("messages")
+                if step.get("map") == "get" and isinstance(listed, Seq):
+                    yield from ((step, name, place) for name, place in listed.placed())
