@@ -5,6 +5,7 @@ of their manuals.
 from __future__ import annotations
 
 import pytest
+from icdgen_runtime._errors import RangeError
 from icdgen_runtime.wire.client import Request
 from icdgen_runtime.wire.device import PacketData, response_to
 from icdgen_runtime.wire.envelope_client import EnvelopeClient
@@ -72,6 +73,23 @@ def test_a_jbd_battery_is_requested_and_answers_or_refuses():
     assert isinstance(stray, Stray)
     (refused,) = client.received(31, refusal)
     assert isinstance(refused, Refused) and refused.reason == "Error"
+
+
+def test_only_packets_without_a_message_that_the_device_sends_are_encoded_alone():
+    link, refusal = link_to(JBD), 3
+    for packet in (-1, 0, 2, 99):
+        with pytest.raises(RangeError, match="packet takes one of 3"):
+            stream_encode_packet(link, packet, CELLS)
+    with pytest.raises(RangeError):
+        stream_encode_packet(link, refusal, CELLS, "telecommand")
+
+
+def test_the_values_of_a_packet_take_precedence_over_those_of_its_sender():
+    sender = Sender(link_to(JBD), "telemetry", {"reason": 0x81})
+    assert sender.encode_packet(3, CELLS, {"reason": 0x80}).hex(" ") == (
+        "dd 04 80 00 ff 80 77"
+    )
+    assert sender.encode_packet(3, CELLS, {}).hex(" ")[6:8] == "81"
 
 
 def test_a_jbd_battery_confirms_a_telecommand_without_data():

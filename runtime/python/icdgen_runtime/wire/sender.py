@@ -70,11 +70,18 @@ class Sender:
         return self._numbered(request.packet if request else 0, None, encoded)
 
     def encode_packet(self, packet: int, id: int, values: Mapping[str, int]) -> bytes:
-        """Encode a packet without a message. Raise as `stream_encode_packet`."""
+        """Encode a packet without a message. Raise as `stream_encode_packet`.
+
+        ``values`` take precedence over those of the sender, except for the sequence
+        number.
+        """
 
         def encoded(own: Mapping[str, int]) -> bytes:
+            chosen = {**own, **values}
+            if "sequence" in own:
+                chosen["sequence"] = own["sequence"]
             return stream_encode_packet(
-                self._link, packet, id, self._direction, **{**values, **own}
+                self._link, packet, id, self._direction, **chosen
             )
 
         return self._numbered(packet, None, encoded)

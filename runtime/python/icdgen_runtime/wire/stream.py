@@ -137,10 +137,17 @@ def stream_encode_packet(
     """Encode a packet without a message, given by its index in `Stream.packets`.
 
     ``id`` is the value of its field ``id``. ``values``: see `stream_encode`. Raise
-    `RangeError`.
+    `RangeError`, also for a packet with a message or of the other direction.
     """
     form = need(link.stream, "stream")
     _check_roles("stream_encode_packet", values)
+    sent = [
+        index
+        for index, each in enumerate(form.packets)
+        if each.content == "none" and direction in each.directions
+    ]
+    if packet not in sent:
+        raise RangeError("packet", f"one of {', '.join(map(str, sent))}", packet)
     packet_form = form.packets[packet]
     data = bytes(packet_form.reserved)
     return _encoded(form, packet_form, direction, id, data, values, None)
