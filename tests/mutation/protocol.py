@@ -21,7 +21,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd, Message, Node, protocol_of_all
 from icdgen.loading import load
 from icdgen.protocol import facts
 from tests.conformance.build import build
@@ -144,11 +144,14 @@ def grown(
             ):
                 continue
             own = icd.node(mutant.owner).protocol
-            merged: dict[str, Any] = {}
-            for one in (*icd.included(node), node):
-                merged |= (
-                    mutant.changed(own) if one.name == mutant.owner else one.protocol
+            merged = protocol_of_all(
+                (
+                    replace(one, protocol=mutant.changed(own))
+                    if one.name == mutant.owner
+                    else one
                 )
+                for one in (*icd.included(node), node)
+            )
             name = f"mutant{number}{node.name}"
             merged = _renamed(merged, node.name, name)
             thin = replace(

@@ -194,8 +194,21 @@ def _seeded(protocol: Tree, messages: list[str]) -> Tree:
     checksums = {
         name: {**checksum, **seeds} if "seeds" in checksum else checksum
         for name, checksum in protocol.get("checksums", {}).items()
+        if name in _checksums_in(protocol.get("stream"))
     }
     return {**protocol, "checksums": checksums} if checksums else protocol
+
+
+def _checksums_in(tree: object) -> set[str]:
+    """Return the names of the checksums that the fields of a link have. Others are those
+    of procedures, which are not copied.
+    """
+    if isinstance(tree, list):
+        return set().union(*map(_checksums_in, tree))
+    if not isinstance(tree, dict):
+        return set()
+    own = {tree["checksum"]} if isinstance(tree.get("checksum"), str) else set()
+    return own.union(*map(_checksums_in, tree.values()))
 
 
 def _renumber(messages: list[Child], style: Style) -> None:

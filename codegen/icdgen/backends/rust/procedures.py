@@ -186,7 +186,9 @@ class _Writer:
         )
 
     def _sink(self) -> tuple[str, str, str]:
-        """Return the type of the sink, its expression, and the bound of its function."""
+        """Return the type of the sink, its expression ("" if there is nothing to store), and
+        the bound of its function.
+        """
         entry = self._procedure.entry
         if self._receives:
             sink = "procedure::Received"
@@ -196,7 +198,7 @@ class _Writer:
             path = f"crate::{message.node.name}::{RUST_NAMES.symbol(message, 'type')}"
             sink = "procedure::Entries"
             return f"{sink}<{path}, F>", f"{sink}::new(on_entry)", f"FnMut({path})"
-        return "()", "()", ""
+        return "()", "", ""
 
     def _about(self) -> Iterator[str]:
         procedure = self._procedure

@@ -82,8 +82,7 @@ impl<'a> Upload<'a> {
         memory: &'a mut [u8],
     ) -> Result<Self, Error> {
         let inputs = [Some(u32::from(destination.raw()))];
-        let sink = ();
-        procedure::Procedure::new(&UPLOAD, &inputs, data, memory, sink).map(Self)
+        procedure::Procedure::new(&UPLOAD, &inputs, data, memory, ()).map(Self)
     }
 }
 
@@ -185,8 +184,7 @@ impl ProgramInformation {
     /// [`Error::Range`] if an input has a value that the ICD does not allow.
     pub fn new(program: crate::bootloader::enums::ProgramsList) -> Result<Self, Error> {
         let inputs = [Some(u32::from(program.raw()))];
-        let sink = ();
-        procedure::Procedure::new(&PROGRAM_INFORMATION, &inputs, &[], &mut [], sink).map(Self)
+        procedure::Procedure::new(&PROGRAM_INFORMATION, &inputs, &[], &mut [], ()).map(Self)
     }
 
     /// Return the size; None until the procedure succeeded.
@@ -278,8 +276,7 @@ impl ProgramCopy {
     /// [`Error::Range`] if an input has a value that the ICD does not allow.
     pub fn new(program: crate::bootloader::enums::ProgramsList) -> Result<Self, Error> {
         let inputs = [Some(u32::from(program.raw()))];
-        let sink = ();
-        procedure::Procedure::new(&PROGRAM_COPY, &inputs, &[], &mut [], sink).map(Self)
+        procedure::Procedure::new(&PROGRAM_COPY, &inputs, &[], &mut [], ()).map(Self)
     }
 }
 

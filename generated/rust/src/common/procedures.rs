@@ -277,8 +277,7 @@ impl Erase {
         all: bool,
     ) -> Result<Self, Error> {
         let inputs = [Some(u32::from(r#type.raw())), Some(u32::from(counter)), Some(u32::from(all))];
-        let sink = ();
-        procedure::Procedure::new(&ERASE, &inputs, &[], &mut [], sink).map(Self)
+        procedure::Procedure::new(&ERASE, &inputs, &[], &mut [], ()).map(Self)
     }
 }
 
@@ -355,8 +354,7 @@ impl Format {
     /// None: it has no inputs.
     pub fn new() -> Result<Self, Error> {
         let inputs = [];
-        let sink = ();
-        procedure::Procedure::new(&FORMAT, &inputs, &[], &mut [], sink).map(Self)
+        procedure::Procedure::new(&FORMAT, &inputs, &[], &mut [], ()).map(Self)
     }
 }
 
