@@ -36,7 +36,7 @@ from icdgen.protocol.sections import (
     Crc,
     LogFile,
     LogMessage,
-    Step,
+    Report,
 )
 
 # Types that have another name in generated code.
@@ -138,8 +138,9 @@ class _LinkBuilder:
             "log_message": self.part(facts.log_message),
             "time": self.commented_rest(time or None, "msdos_time"),
             "index_file": self.index(),
-            "identification": facts.identification and self.step(facts.identification),
-            "statistics": facts.statistics and self.step(facts.statistics),
+            "identification": facts.identification
+            and self.report(facts.identification),
+            "statistics": facts.statistics and self.report(facts.statistics),
             "boot_time": facts.boot_ms,
             "stream": self.commented_rest(
                 facts.stream and _stream(facts.stream), "stream"
@@ -182,21 +183,19 @@ class _LinkBuilder:
         values: dict[str, object] = {}
         for fact in facts_of(part):
             value = getattr(part, fact.name)
-            if isinstance(value, Step):
-                value = self.step(value)
             if value is not None:
                 values[fact.name] = _explained(value, self.assumed.why_fact(part, fact))
         return values
 
     def polled(self) -> Call | None:
         """Return the call for the acknowledge that a client polls on I2C."""
-        step = self.description.polled
-        if step is None:
+        report = self.description.polled
+        if report is None:
             return None
         return _call(
             "Polled",
-            telemetry=step.message.telemetry_id,
-            **{role: field.name for role, field in step.places},
+            telemetry=report.message.telemetry_id,
+            **{role: field.name for role, field in report.places},
         )
 
     def can(self) -> object:
@@ -243,15 +242,15 @@ class _LinkBuilder:
         )
         return self.part(index, fields=fields)
 
-    def step(self, step: Step) -> Call:
-        """Return the call for a step of a procedure."""
-        message = step.message
+    def report(self, report: Report) -> Call:
+        """Return the call for telemetry that the link reads."""
+        message = report.message
         ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
         fields = {
-            role: field.name for role, field in self.description.step(step).places
+            role: field.name for role, field in self.description.report(report).places
         }
         return _call(
-            "Step",
+            "Report",
             **{key: id for key, id in ids.items() if id is not None},
             fields=fields,
         )

@@ -70,20 +70,21 @@ static inline icd_status_t icdgen_put_number(const icd_link_t *link, uint8_t *by
     return number == 0u ? ICD_OK : ICD_ERROR_RANGE;
 }
 
-static inline const icd_place_t *icdgen_place(const icd_step_t *step, icd_role_t role)
+static inline const icd_place_t *icdgen_place(const icd_report_t *report, icd_role_t role)
 {
-    for (size_t i = 0; i < step->place_count; ++i) {
-        if (step->places[i].role == role) {
-            return &step->places[i];
+    for (size_t i = 0; i < report->place_count; ++i) {
+        if (report->places[i].role == role) {
+            return &report->places[i];
         }
     }
     return NULL;
 }
 
 /* Return the raw value of the field with a role; 0 if the frame has no such field. */
-static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step, const uint8_t *frame, icd_role_t role)
+static inline uint32_t icdgen_get(
+    const icd_link_t *link, const icd_report_t *report, const uint8_t *frame, icd_role_t role)
 {
-    const icd_place_t *const place = icdgen_place(step, role);
+    const icd_place_t *const place = icdgen_place(report, role);
     uint32_t value = 0;
     unsigned below = 0;
     unsigned at = place != NULL ? place->at : 0u;
@@ -103,15 +104,15 @@ static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step
 ICDGEN_API icd_status_t
 icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_identity_t *identity)
 {
-    const icd_step_t *const step = link->identification;
-    if (step == NULL) {
+    const icd_report_t *const report = link->identification;
+    if (report == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (length != step->length) {
+    if (length != report->length) {
         return ICD_ERROR_LENGTH;
     }
-    identity->node_type = icdgen_get(link, step, frame, ICD_ROLE_NODE_TYPE);
-    identity->interface_version = icdgen_get(link, step, frame, ICD_ROLE_INTERFACE_VERSION);
+    identity->node_type = icdgen_get(link, report, frame, ICD_ROLE_NODE_TYPE);
+    identity->interface_version = icdgen_get(link, report, frame, ICD_ROLE_INTERFACE_VERSION);
     identity->matches = (link->node_type < 0 || ICDGEN_U32(link->node_type) == identity->node_type) &&
         (link->interface_version < 0 || ICDGEN_U32(link->interface_version) == identity->interface_version);
     return ICD_OK;
@@ -2914,7 +2915,7 @@ static inline void icdgen_client_polled(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     const icd_link_t *const link = client->link;
-    const icd_step_t *const step = link->polled;
+    const icd_report_t *const report = link->polled;
     size_t length = 0;
     uint32_t code;
     if (icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length) != ICD_OK) {
@@ -2922,16 +2923,17 @@ static inline void icdgen_client_polled(
         icdgen_client_again(client, now, on_event, context);
         return;
     }
-    if (icdgen_get(link, step, bytes, ICD_ROLE_ID) != client->message->id ||
-        icdgen_get(link, step, bytes, ICD_ROLE_PROCESSED) == 0u) {
+    if (icdgen_get(link, report, bytes, ICD_ROLE_ID) != client->message->id ||
+        icdgen_get(link, report, bytes, ICD_ROLE_PROCESSED) == 0u) {
         icdgen_client_again(client, now, on_event, context);
         return;
     }
-    code = icdgen_get(link, step, bytes, ICD_ROLE_ERROR);
+    code = icdgen_get(link, report, bytes, ICD_ROLE_ERROR);
     if (code == link->no_error) {
         icdgen_client_done(client, NULL, 0, on_event, context);
     } else {
-        icdgen_client_refused(client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
+        icdgen_client_refused(
+            client, now, code, icdgen_get(link, report, bytes, ICD_ROLE_PARAMETER), on_event, context);
     }
 }
 

@@ -307,7 +307,7 @@ typedef struct {
     uint16_t length;
     uint8_t place_count;
     const icd_place_t *places;
-} icd_step_t;
+} icd_report_t;
 
 /* ---- framing of a link: header and trailer fields with roles ----------------------------------------------------- */
 
@@ -717,10 +717,10 @@ typedef struct {
     const icd_acknowledge_t *acknowledge;
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
     uint8_t unsolicited_count;
-    int16_t i2c_address;      /**< 7-bit address, -1 if the ICD has none. */
-    bool i2c_repeated_start;  /**< Whether a read may follow its write without a stop. */
-    int32_t boot_ms;          /**< Waiting time of the boot program in ms, -1 if unknown. */
-    const icd_step_t *polled; /**< Frame that reports the result of a telecommand. */
+    int16_t i2c_address;        /**< 7-bit address, -1 if the ICD has none. */
+    bool i2c_repeated_start;    /**< Whether a read may follow its write without a stop. */
+    int32_t boot_ms;            /**< Waiting time of the boot program in ms, -1 if unknown. */
+    const icd_report_t *polled; /**< Frame that reports the result of a telecommand. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
     const icd_crc_form_t *crc16;
@@ -729,7 +729,7 @@ typedef struct {
     const icd_log_message_form_t *log_message;
     const icd_time_form_t *time;
     const icd_index_form_t *index;
-    const icd_step_t *identification;
+    const icd_report_t *identification;
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 

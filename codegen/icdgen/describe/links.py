@@ -18,7 +18,7 @@ from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Can, Crc, Index, Step, TimePart
+from icdgen.protocol.sections import Can, Crc, Index, Report, TimePart
 
 REASONS = ("none", "unknown_id", "length", "parameter", "checksum")
 """Meanings of error codes that the runtimes support."""
@@ -36,7 +36,7 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class StepDescription:
+class ReportDescription:
     """Telemetry that a link reads, and its fields with a role there, in the order of the
     ICD.
     """
@@ -244,7 +244,7 @@ class LinkDescription:
         return index if index and set(INDEX_PARTS) <= set(index.fields) else None
 
     @property
-    def polled(self) -> StepDescription | None:
+    def polled(self) -> ReportDescription | None:
         """Frame with the result of the last telecommand.
 
         Its roles are id, processed, error and parameter.
@@ -252,30 +252,32 @@ class LinkDescription:
         polled = self.facts.polled
         names = ("id", "processed", "error", "parameter")
         return (
-            self.step(
-                Step(polled.message, {name: getattr(polled, name) for name in names})
+            self.report(
+                Report(polled.message, {name: getattr(polled, name) for name in names})
             )
             if polled
             else None
         )
 
     @property
-    def identification(self) -> StepDescription | None:
+    def identification(self) -> ReportDescription | None:
         """Frame that identifies the node."""
         return (
-            self.step(self.facts.identification) if self.facts.identification else None
+            self.report(self.facts.identification)
+            if self.facts.identification
+            else None
         )
 
-    def step(self, step: Step) -> StepDescription:
+    def report(self, report: Report) -> ReportDescription:
         """Return the description of telemetry that the link reads."""
-        message = self._describe(step.message)
+        message = self._describe(report.message)
         fields = {field.model.name: field for field in message.fields}
         places = tuple(
             Place(role, fields[name])
-            for role, name in step.fields.items()
+            for role, name in report.fields.items()
             if name in fields
         )
-        return StepDescription(step.message, places)
+        return ReportDescription(report.message, places)
 
     @property
     def joined_bytes(self) -> int:
@@ -304,7 +306,8 @@ class LinkDescription:
         """Messages that the wire layer requests by itself, whichever messages a program
         uses.
         """
-        return [step.message for step in (self.polled, self.identification) if step]
+        reports = (self.polled, self.identification)
+        return [report.message for report in reports if report]
 
     @cached_property
     def in_procedures(self) -> list[Message]:

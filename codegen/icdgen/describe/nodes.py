@@ -433,12 +433,7 @@ class NodeDescription:
     @cached_property
     def procedures(self) -> dict[str, dict[str, Any]]:
         """Procedures of the node in the ICD, by name."""
-        rows = self._description.icd.protocol_of(self.model).get("procedures", {})
-        return {
-            name: row
-            for name, row in rows.items()
-            if self.name in row.get("nodes", (self.name,))
-        }
+        return self._description.icd.procedures_of(self.model)
 
     @cached_property
     def has_client(self) -> bool:

@@ -223,6 +223,17 @@ class Icd:
         """Return the protocol facts of the node: `protocol_of_all`."""
         return protocol_of_all((*self.included(node), node))
 
+    def procedures_of(self, node: Node) -> dict[str, dict[str, Any]]:
+        """Return the sections of the procedures that the node has, by name.
+
+        An included node can have some that are only for others.
+        """
+        return {
+            name: section
+            for name, section in self.protocol_of(node).get("procedures", {}).items()
+            if node.name in section.get("nodes", (node.name,))
+        }
+
 
 # Parts of the protocol section that contain any number of things by name.
 _BY_NAME = ("checksums", "procedures")

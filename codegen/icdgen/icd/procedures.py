@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from typing import Any
+
 BYTES = "bytes"  # type of an input that is sent in blocks
 FLAG = "bool"  # type of an input that is true or false
 SEND = "send"  # direction of a `map`
@@ -31,3 +34,18 @@ def name_of(value: str) -> tuple[str, str]:
     """
     owner, separator, own = value.partition(".")
     return (owner, own) if separator else ("", owner)
+
+
+def nested_steps(steps: object) -> Iterator[Mapping[str, Any]]:
+    """Yield the steps of a list, and the steps within them, in their order. Anything
+    else, which the schema check reports, is passed over.
+    """
+    for step in steps if isinstance(steps, list) else ():
+        if not isinstance(step, Mapping):
+            continue
+        yield step
+        yield from nested_steps(step.get("repeat"))
+        for loop in (step.get("blocks"), step.get("missing")):
+            if isinstance(loop, Mapping):
+                yield from nested_steps(loop.get("each"))
+                yield from nested_steps(loop.get("steps"))

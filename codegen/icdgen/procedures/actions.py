@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from icdgen.procedures.numbers import put_number
-from icdgen.procedures.run import Device, Run, index_of
-from icdgen.protocol.procedures import Collect, Effect, Get, Jump, Poll, Procedure
+from icdgen.procedures.run import Run, index_of
+from icdgen.protocol.procedures import Collect, Get, Jump, Poll
 
 
 class Listing(Run):
@@ -16,19 +16,12 @@ class Listing(Run):
 
     entries: list[bytes] | None = None
 
-    def __init__(
-        self,
-        procedure: Procedure,
-        effect: Effect,
-        device: Device,
-        names: tuple[str, ...],
-    ) -> None:
-        super().__init__(procedure, effect, device, names)
+    def prepare(self) -> None:
         self._position = 0
-        collect = index_of(procedure.steps, Collect) or 0
+        collect = index_of(self.procedure.steps, Collect) or 0
         self._loop = next(
             range(step.to, index)
-            for index, step in enumerate(procedure.steps)
+            for index, step in enumerate(self.procedure.steps)
             if isinstance(step, Jump) and step.to <= collect < index
         )
 
@@ -55,17 +48,10 @@ class Listing(Run):
 class Action(Run):
     """The device does something with an object, or describes it."""
 
-    def __init__(
-        self,
-        procedure: Procedure,
-        effect: Effect,
-        device: Device,
-        names: tuple[str, ...],
-    ) -> None:
-        super().__init__(procedure, effect, device, names)
-        naming = [i for i in self.sends if self.given(i) & set(effect.key)]
+    def prepare(self) -> None:
+        naming = [i for i in self.sends if self.given(i) & set(self.effect.key)]
         self._step = next(iter(naming or self.sends), None)
-        requests = [s for s in procedure.steps if isinstance(s, (Get, Poll))]
+        requests = [s for s in self.procedure.steps if isinstance(s, (Get, Poll))]
         self._described = requests[-1].message if requests else None
 
     def execute(self, index: int, data: bytes) -> None:

@@ -15,7 +15,7 @@ from icdgen.procedures.numbers import (
     mark_received,
     put_number,
 )
-from icdgen.procedures.run import Change, Device, Run, is_of, steps_of
+from icdgen.procedures.run import Change, Run, is_of, steps_of
 from icdgen.protocol.procedures import (
     BLOCK_IS_EMPTY,
     BLOCK_LENGTH,
@@ -23,9 +23,7 @@ from icdgen.protocol.procedures import (
     PACKET_NUMBER,
     PACKET_OFFSET,
     Blocks,
-    Effect,
     Jump,
-    Procedure,
     Receive,
     Send,
     SetLength,
@@ -45,14 +43,8 @@ class Packet(NamedTuple):
 class BlockRun(Run):
     """State of a procedure with blocks."""
 
-    def __init__(
-        self,
-        procedure: Procedure,
-        effect: Effect,
-        device: Device,
-        names: tuple[str, ...],
-    ) -> None:
-        super().__init__(procedure, effect, device, names)
+    def prepare(self) -> None:
+        procedure = self.procedure
         assert procedure.blocks
         self.blocks: Blocks = procedure.blocks
         self.map = empty_map(self.blocks.map) if self.blocks.map else bytearray()
@@ -111,15 +103,9 @@ class BlockRun(Run):
 class Reading(BlockRun):
     """The client reads an object in blocks."""
 
-    def __init__(
-        self,
-        procedure: Procedure,
-        effect: Effect,
-        device: Device,
-        names: tuple[str, ...],
-    ) -> None:
-        super().__init__(procedure, effect, device, names)
-        self.receive = steps_of(procedure, Receive)[0]
+    def prepare(self) -> None:
+        super().prepare()
+        self.receive = steps_of(self.procedure, Receive)[0]
         self.block = b""
         self.waiting: list[int] = []  # positions of packets that are to be sent
         self._last: int | None = None  # position of the last requested packet
@@ -194,18 +180,12 @@ class Reading(BlockRun):
 class Writing(BlockRun):
     """The client writes an object in blocks."""
 
-    def __init__(
-        self,
-        procedure: Procedure,
-        effect: Effect,
-        device: Device,
-        names: tuple[str, ...],
-    ) -> None:
-        super().__init__(procedure, effect, device, names)
+    def prepare(self) -> None:
+        super().prepare()
         self.received: dict[int, bytes] = {}  # packets of the block by their offset
         self._is_complete = False  # the next packet begins another block
         self._map_from = 0  # number of the last telecommand that changed the map
-        packets = [i for i in self.inside if sends_packets(procedure, i)]
+        packets = [i for i in self.inside if sends_packets(self.procedure, i)]
         later = [i for i in self.inside if i > max(packets)]
         # Without a telecommand that commits the block, each packet is stored at once.
         self._commit_step = later[-1] if later else None

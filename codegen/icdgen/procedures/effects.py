@@ -81,7 +81,7 @@ def default_effect(procedure: Procedure) -> Effect:
         for put in step.puts
         if put.value.in_register
     }
-    numbers = [each.name for each in procedure.inputs if not each.is_bytes]
+    numbers = [each.name for each in procedure.numbers]
     key = {
         register: name
         for register, name in enumerate(numbers, procedure.first_input)

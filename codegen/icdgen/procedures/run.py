@@ -102,6 +102,10 @@ class Run:
         self._reached_by: dict[tuple[int | None, ...], list[int]] = {}
         # Step -> the telecommand that leads to it, and the end of its processing
         self._requests: dict[int, tuple[int, int]] = {}
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Find the steps that matter, and set the state at the beginning."""
 
     def telecommand(self, now: int, message: Message, data: bytes) -> bool:
         """Process a telecommand. Return whether it belongs to the procedure.
@@ -212,7 +216,7 @@ class Run:
 
     def _check(self, step: Send, numbers: Mapping[int, int]) -> None:
         """Check the numbers that are inputs. Raise `Refused`."""
-        inputs = [each for each in self.procedure.inputs if not each.is_bytes]
+        inputs = self.procedure.numbers
         for put in step.puts:
             position = put.value.number - self.procedure.first_input
             if not put.value.in_register or not 0 <= position < len(inputs):

@@ -27,8 +27,8 @@ from icdgen.protocol.sections import (
     LogMask,
     LogMessage,
     Polled,
+    Report,
     Settings,
-    Step,
     TimePart,
 )
 
@@ -63,8 +63,8 @@ class Facts:
     log_message: LogMessage | None
     time: dict[str, TimePart]
     index: Index | None
-    identification: Step | None
-    statistics: Step | None
+    identification: Report | None
+    statistics: Report | None
     boot_ms: int | None
     # If present, ids have up to 32 bits and the other parts of the link are None
     stream: Stream | None
@@ -183,8 +183,8 @@ def of(icd: Icd, node: Node) -> Facts:
         log_message=reader.log_message(),
         time=reader.time(),
         index=reader.index(),
-        identification=reader.step(reader.section("identification")),
-        statistics=reader.step(reader.section("statistics")),
+        identification=reader.report(reader.section("identification")),
+        statistics=reader.report(reader.section("statistics")),
         boot_ms=None if boot is None else boot * 1000,
         stream=reader.stream(),
         procedures=tuple(reader.procedures()),

@@ -29,7 +29,6 @@ BLOCK_OFFSET, BLOCK_LENGTH, BLOCK_IS_EMPTY, PACKET_NUMBER, PACKET_OFFSET = range
     len(FIXED_NAMES)
 )
 UNKNOWN = 0xFFFF_FFFF  # value of an optional input that is not given
-MOST_REGISTERS = 24
 
 Result = Literal[
     "done", "refused", "busy", "timeout", "failed", "length", "checksum", "rounds", "limit"
@@ -281,6 +280,11 @@ class Blocks:
     most: int  # largest number of bytes in all
     map: PacketMap | None
 
+    @property
+    def packets(self) -> int:
+        """Largest number of packets of a block."""
+        return -(-self.size // self.packet_bytes)
+
 
 @dataclass(frozen=True, slots=True)
 class Effect:
@@ -328,6 +332,16 @@ class Procedure:
     def first_input(self) -> int:
         """Register of the first input that is a number."""
         return len(FIXED_NAMES)
+
+    @property
+    def numbers(self) -> tuple[Input, ...]:
+        """Inputs that are numbers, in the order of their registers."""
+        return tuple(each for each in self.inputs if not each.is_bytes)
+
+    @property
+    def content(self) -> Input | None:
+        """Input with the bytes to send; None if the procedure sends none."""
+        return next((each for each in self.inputs if each.is_bytes), None)
 
     @property
     def messages(self) -> tuple[Message, ...]:

@@ -34,7 +34,7 @@ from icdgen.protocol.sections import (
     LogMask,
     LogMessage,
     Polled,
-    Step,
+    Report,
     TimePart,
 )
 
@@ -265,17 +265,9 @@ class Reader:
             for path in ("crc8", "crc16", *names)
             if (crc := self.part(path, Crc))
         }
-        for name, section in self._procedures().items():
+        for name, section in self.icd.procedures_of(self.node).items():
             reader = ProcedureReader(section, nodes, self.messages, enums, checksums)
             yield reader.read(name)
-
-    def _procedures(self) -> dict[str, dict[str, Any]]:
-        """Return the sections of the procedures that the node has, by name."""
-        return {
-            name: section
-            for name, section in self.section("procedures").items()
-            if self.node.name in section.get("nodes", [self.node.name])
-        }
 
     def unsolicited(self) -> dict[int, int]:
         """Return the telemetry that the node sends unasked on the UART: the id that
@@ -286,12 +278,12 @@ class Reader:
             for row in self.section("uart").get("unsolicited", ())
         }
 
-    def step(self, given: dict[str, Any]) -> Step | None:
+    def report(self, given: dict[str, Any]) -> Report | None:
         message = self.messages.get(given.get("message", ""))
-        return Step(message, dict(given.get("fields", {}))) if message else None
+        return Report(message, dict(given.get("fields", {}))) if message else None
 
     def assumptions(self) -> Iterator[Assumption]:
-        protocol = {**self.protocol, "procedures": self._procedures()}
+        protocol = {**self.protocol, "procedures": self.icd.procedures_of(self.node)}
         yield from assumptions_of(protocol, ())
         for message in self.messages.values():
             for key, why in message.assumptions:

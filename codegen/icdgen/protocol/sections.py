@@ -313,7 +313,7 @@ class Index:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Step:
+class Report:
     """Telemetry that a link reads, and its fields by role."""
 
     message: Message

@@ -11,13 +11,12 @@ from icdgen_runtime.wire.times import dos_time_pack
 
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
-from icdgen.icd.responses import field_of
 from icdgen.procedures.effects import Key, Object, effect_of
 from icdgen.procedures.run import steps_of
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Procedure, Send, Value
-from icdgen.protocol.responding import place_of
 from icdgen.runtime_objects.links import link_of
+from icdgen.sim.values import number_places
 from icdgen.values.entry import from_physical
 
 
@@ -43,7 +42,7 @@ def read_file(icd: Icd, node: Node, text: str) -> tuple[str, Key, Object]:
         raise wrong
     key = []
     for register, part in zip(effect.key, parts, strict=True):
-        number = _number(icd, node, procedure, register, part)
+        number = _number(icd, procedure, register, part)
         if number is None:
             raise wrong
         key.append(number)
@@ -63,9 +62,7 @@ def read_file(icd: Icd, node: Node, text: str) -> tuple[str, Key, Object]:
     return effect.kind, tuple(key), Object(bytearray(data), packed)
 
 
-def _number(
-    icd: Icd, node: Node, procedure: Procedure, register: int, text: str
-) -> int | None:
+def _number(icd: Icd, procedure: Procedure, register: int, text: str) -> int | None:
     """Return the number of an input, given as in the telecommand that has it; None if
     it does not fit.
 
@@ -75,12 +72,10 @@ def _number(
         for put in step.puts:
             if put.value != Value(register, True):
                 continue
-            for field in icd.longest_frame(step.message):
-                place = place_of(node, field_of(step.message, field.name))
-                if place == put.place:
-                    number = from_physical(field, text)
-                    assert isinstance(number, int)
-                    return number if 0 <= number < 1 << put.place.bits else None
+            index = number_places(icd, step.message).index(put.place)
+            number = from_physical(icd.longest_frame(step.message)[index], text)
+            assert isinstance(number, int)
+            return number if 0 <= number < 1 << put.place.bits else None
     return None
 
 

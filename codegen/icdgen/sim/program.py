@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,17 +11,15 @@ from icdgen_runtime.wire.logs import LogMessage
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
-from icdgen.icd.responses import field_of
+from icdgen.icd.procedures import nested_steps
 from icdgen.procedures.counterpart import Counterpart, Device, Refused
 from icdgen.procedures.effects import effect_of
 from icdgen.protocol import facts
 from icdgen.protocol.exchange import NumberPlace
-from icdgen.protocol.procedures import Send
-from icdgen.protocol.responding import place_of
 from icdgen.runtime_objects.links import link_of
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
-from icdgen.sim.values import Values
+from icdgen.sim.values import Values, number_places
 from icdgen.values.frame import violations
 
 Raw = dict[str, "int | bytes"]
@@ -207,27 +205,13 @@ class Program:
 
     def _index(self, message: Message, place: NumberPlace | None) -> int:
         """Return the index of the field at a place; 0 without one."""
-        places = [
-            place_of(self.node, field_of(message, field.name))
-            for field in self.icd.longest_frame(message)
-        ]
+        places = number_places(self.icd, message)
         return places.index(place) if place in places else 0
 
     def _unsupported(self) -> set[str]:
         """Return the telecommands of procedures that only other nodes have."""
-        sections = self.icd.protocol_of(self.node).get("procedures", {}).values()
-        others = [
-            section
-            for section in sections
-            if self.node.name not in section.get("nodes", [self.node.name])
-        ]
-        own = {
-            step.message.name
-            for procedure in self.facts.procedures
-            for step in procedure.steps
-            if isinstance(step, Send)
-        }
-        return {name for section in others for name in _sent(section["steps"])} - own
+        every = self.icd.protocol_of(self.node).get("procedures", {})
+        return _sent(every) - _sent(self.icd.procedures_of(self.node))
 
     def _refusal(
         self, reason: str, parameter: int = 0, acknowledge: bool = True
@@ -235,26 +219,30 @@ class Program:
         return Outcome(self.facts.errors.get(reason, 1), parameter, acknowledge)
 
     def _identify(self) -> None:
-        step = self.facts.identification
-        if step:
+        report = self.facts.identification
+        if report:
             values = {
                 "node_type": self.node.node_type,
                 "interface_version": self.node.interface_version,
             }
             self.values.update(
-                step.message,
-                {n: values.get(r) or 0 for r, n in step.fields.items() if r in values},
+                report.message,
+                {
+                    n: values.get(r) or 0
+                    for r, n in report.fields.items()
+                    if r in values
+                },
             )
 
     def _statistics(self, message: Message) -> Raw:
-        step = self.facts.statistics
-        if step is None or step.message.name != message.name:
+        report = self.facts.statistics
+        if report is None or report.message.name != message.name:
             return {}
         bits = {
-            field.name: field.bits for field in self.icd.longest_frame(step.message)
+            field.name: field.bits for field in self.icd.longest_frame(report.message)
         }
         result: Raw = {}
-        for role, name in step.fields.items():
+        for role, name in report.fields.items():
             count = self.counts.get(role, 0)
             result[name] = (
                 count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
@@ -299,13 +287,11 @@ class Program:
         self.log_at = now + setting[1] if setting and setting[1] else None
 
 
-def _sent(steps: list[dict[str, Any]]) -> Iterator[str]:
-    """Yield the telecommands of steps, and of the steps within them."""
-    for step in steps:
-        if "send" in step:
-            yield step["send"]
-        for part in step.values():
-            inner = part if isinstance(part, dict) else {"steps": part}
-            for rows in inner.values():
-                if isinstance(rows, list):
-                    yield from _sent([row for row in rows if isinstance(row, dict)])
+def _sent(procedures: Mapping[str, dict[str, Any]]) -> set[str]:
+    """Return the telecommands of procedures of an ICD."""
+    return {
+        step["send"]
+        for section in procedures.values()
+        for step in nested_steps(section["steps"])
+        if "send" in step
+    }

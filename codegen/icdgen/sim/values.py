@@ -10,7 +10,21 @@ from icdgen import codec
 from icdgen.icd.curve import Curve
 from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.responses import field_of
+from icdgen.protocol.exchange import NumberPlace
+from icdgen.protocol.responding import place_of
 from icdgen.values.frame import violations
+
+
+def number_places(icd: Icd, message: Message) -> list[NumberPlace | None]:
+    """Return the place of each field of the longest frame of a message; None if its
+    bits are no number in at most 4 bytes.
+    """
+    node = icd.node(message.node)
+    return [
+        place_of(node, field_of(message, field.name))
+        for field in icd.longest_frame(message)
+    ]
 
 
 class Values:

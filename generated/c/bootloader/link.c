@@ -341,7 +341,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {ICD_ROLE_ERROR, 16u, 8u}, /* TC error status */
         {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
     };
-    static const icd_step_t polled = {
+    static const icd_report_t polled = {
         -1, 240, 4u, 4u, polled_places,
     };
     /**
@@ -434,7 +434,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
     };
-    static const icd_step_t identification = {
+    static const icd_report_t identification = {
         -1, 128, 8u, 2u, identification_places,
     };
     /**

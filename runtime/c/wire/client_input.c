@@ -280,7 +280,7 @@ static inline void icdgen_client_polled(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     const icd_link_t *const link = client->link;
-    const icd_step_t *const step = link->polled;
+    const icd_report_t *const report = link->polled;
     size_t length = 0;
     uint32_t code;
     if (icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length) != ICD_OK) {
@@ -288,16 +288,17 @@ static inline void icdgen_client_polled(
         icdgen_client_again(client, now, on_event, context);
         return;
     }
-    if (icdgen_get(link, step, bytes, ICD_ROLE_ID) != client->message->id ||
-        icdgen_get(link, step, bytes, ICD_ROLE_PROCESSED) == 0u) {
+    if (icdgen_get(link, report, bytes, ICD_ROLE_ID) != client->message->id ||
+        icdgen_get(link, report, bytes, ICD_ROLE_PROCESSED) == 0u) {
         icdgen_client_again(client, now, on_event, context);
         return;
     }
-    code = icdgen_get(link, step, bytes, ICD_ROLE_ERROR);
+    code = icdgen_get(link, report, bytes, ICD_ROLE_ERROR);
     if (code == link->no_error) {
         icdgen_client_done(client, NULL, 0, on_event, context);
     } else {
-        icdgen_client_refused(client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
+        icdgen_client_refused(
+            client, now, code, icdgen_get(link, report, bytes, ICD_ROLE_PARAMETER), on_event, context);
     }
 }
 

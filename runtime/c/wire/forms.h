@@ -276,6 +276,6 @@ typedef struct {
     uint16_t length;
     uint8_t place_count;
     const icd_place_t *places;
-} icd_step_t;
+} icd_report_t;
 
 #endif /* ICDGEN_WIRE_FORMS_H */

@@ -21,8 +21,8 @@ from icdgen.describe.links import (
     INDEX_PARTS,
     Assumptions,
     LinkDescription,
+    ReportDescription,
     SentMessage,
-    StepDescription,
 )
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.envelope import (
@@ -141,7 +141,7 @@ class _Tables(TableSet):
             ),
             Row(or_none(facts.boot_ms), "boot time in ms"),
             Row(
-                self.named_step("polled", link.polled),
+                self.report("polled", link.polled),
                 "what is polled for an acknowledge",
             ),
             Row(self.can(), "CAN"),
@@ -149,9 +149,7 @@ class _Tables(TableSet):
             Row(self.crc16(), "CRC of files"),
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
-            Row(
-                self.named_step("identification", link.identification), "identification"
-            ),
+            Row(self.report("identification", link.identification), "identification"),
             Row(self.stream(), "envelope"),
         ]
         assumed = (
@@ -231,28 +229,24 @@ class _Tables(TableSet):
             f" || \\\n{STEP}".join(conditions),
         )
 
-    def step(self, name: str, step: StepDescription) -> str:
-        """Return the initialiser of a step without braces; its places are a separate
-        table.
+    def report(self, name: str, report: ReportDescription | None) -> str:
+        """Declare the table of telemetry that the link reads; its places are a table of
+        their own.
         """
+        if report is None:
+            return "NULL"
         rows = [
             Row(
                 f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}",
                 plain(field.model.name),
             )
-            for role, field in step.places
+            for role, field in report.places
         ]
         places = self.array(f"{name}_places", "icd_place_t", rows)
-        ids = f"{or_none(step.message.telecommand_id)}, {or_none(step.message.telemetry_id)}"
-        return f"{ids}, {step.message.length}u, {len(rows)}u, {places}"
-
-    def named_step(self, name: str, step: StepDescription | None) -> str:
-        """Declare the table of a single step."""
-        return (
-            self.add(name, "icd_step_t", [Row(self.step(name, step))])
-            if step
-            else "NULL"
-        )
+        message = report.message
+        ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
+        row = Row(f"{ids}, {message.length}u, {len(rows)}u, {places}")
+        return self.add(name, "icd_report_t", [row])
 
     def telecommand(self, sent: SentMessage) -> Row:
         """Return the row of a telecommand, with a comment on assumed facts."""

@@ -122,14 +122,12 @@ class ProcedureCode:
         )
 
     @property
-    def numbers(self) -> list[Input]:
-        """Inputs that are numbers."""
-        return [each for each in self.procedure.inputs if not each.is_bytes]
-
-    @property
-    def bytes(self) -> Input | None:
-        """Input with the bytes to send."""
-        return next((each for each in self.procedure.inputs if each.is_bytes), None)
+    def numbers(self) -> list[str]:
+        """Expressions of the inputs that are numbers."""
+        return [
+            f"{each.name} ? 1u : 0u" if each.is_flag else f"ICDGEN_U32({each.name})"
+            for each in self.procedure.numbers
+        ]
 
     @property
     def parameters(self) -> list[str]:
@@ -162,8 +160,8 @@ class ProcedureCode:
     def members(self) -> list[tuple[str, str]]:
         """Members of the memory of a procedure, and their values."""
         rows = [("block" if n == "block_size" else n, n) for n in self.memory_names]
-        if self.bytes:
-            given = input_parameters(self.bytes.name, True)
+        if self.procedure.content:
+            given = input_parameters(self.procedure.content.name, True)
             rows = [*zip(("bytes", "byte_count"), given, strict=True), *rows]
         return rows
 
@@ -209,15 +207,14 @@ class ProcedureCode:
         blocks = self.procedure.blocks
         if blocks is None:
             return []
-        packets = -(-blocks.size // blocks.packet_bytes)
         bitmap = (
             self._size("BITMAP_BYTES"),
-            -(-packets // 8),
+            -(-blocks.packets // 8),
             "Size in bytes of a bitmap for the packets of the largest block.",
         )
         buffer = (
             self._size("BLOCK_BYTES"),
-            packets * blocks.packet_bytes,
+            blocks.packets * blocks.packet_bytes,
             "Size in bytes of a buffer for the largest block.",
         )
         return [buffer, bitmap] if self.receives else [bitmap]
@@ -269,8 +266,7 @@ class _Tables(TableSet):
             "checksums": "icd_checksum_test_t",
             "tests": "icd_test_t",
         }
-        inputs = [each for each in procedure.inputs if not each.is_bytes]
-        bytes = [each.most for each in procedure.inputs if each.is_bytes]
+        inputs, content = procedure.numbers, procedure.content
         arrays = ", ".join(
             self.array(name, types[name], rows) for name, rows in self._rows.items()
         )
@@ -287,7 +283,9 @@ class _Tables(TableSet):
             ),
             Row(f"{len(inputs)}u, {receives}u", "how many inputs, receives"),
             Row(self.blocks(procedure.blocks), "blocks"),
-            Row(f"{max(bytes, default=0)}u", "largest number of bytes to send"),
+            Row(
+                f"{content.most if content else 0}u", "largest number of bytes to send"
+            ),
             Row(f"{procedure.most_entries}u", "largest number of entries"),
             Row(f"{procedure.time}u", "longest duration in ms"),
             Row(f"{procedure.requests}u", "largest number of requests"),

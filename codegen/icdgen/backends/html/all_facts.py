@@ -13,7 +13,7 @@ from icdgen.backends.html.texts import capitalized
 from icdgen.icd import schema
 from icdgen.protocol.declared import Fact, Kind, facts_of
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Crc, Step
+from icdgen.protocol.sections import Crc
 
 _IN_HEXADECIMAL = ("address_7bit", "check", "printed_constant")
 # Place in the manual, reasons (in a separate table), prose
@@ -59,17 +59,11 @@ def of_code(relations: Relations, facts: Facts) -> list[Part]:
             # Unknown facts have no row; the page lists what the ICD describes.
             if value is None or value == ():
                 continue
-            url = (
-                relations.links.message(value.message)
-                if isinstance(value, Step)
-                else ""
-            )
             rows.append(
                 Row(
                     capitalized(fact.about),
                     value_text(fact, value),
                     why.get((path, fact.key), ""),
-                    url,
                 )
             )
         if rows:
@@ -162,8 +156,6 @@ def value_text(fact: Fact, value: object) -> str:
         return f"{value:,} ms"
     if fact.kind in (Kind.OCTET, Kind.CODE) and isinstance(value, int):
         return f"0x{value:02X}"
-    if isinstance(value, Step):
-        return value.message.name
     if fact.kind is Kind.SPAN and isinstance(value, tuple):
         return f"bytes {value[0]} to {value[0] + value[1] - 1}"
     return as_text(value)

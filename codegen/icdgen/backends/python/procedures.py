@@ -79,11 +79,9 @@ class ProcedureClass:
     @property
     def arguments(self) -> list[str]:
         """Arguments of the constructor of the base class."""
-        inputs = self.model.inputs
-        numbers = [
-            f'"{each.name}": {each.name}' for each in inputs if not each.is_bytes
-        ]
-        sent = [f"data={each.name}" for each in inputs if each.is_bytes]
+        content = self.model.content
+        numbers = [f'"{each.name}": {each.name}' for each in self.model.numbers]
+        sent = [f"data={content.name}"] if content else []
         values = [f"{{{', '.join(numbers)}}}"] if numbers else []
         block = [f"block={names.BLOCK}"] if self.model.blocks else []
         return ["_link.LINK", f'"{self.model.name}"', *values, *sent, *block]

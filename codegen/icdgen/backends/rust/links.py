@@ -28,8 +28,8 @@ from icdgen.describe.links import (
     INDEX_PARTS,
     Assumptions,
     LinkDescription,
+    ReportDescription,
     SentMessage,
-    StepDescription,
 )
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.sections import CAN_KINDS
@@ -230,23 +230,23 @@ def _place(field: FieldDescription) -> Expression:
     return flat_rows(flat("Piece", **piece._asdict()) for piece in field.pieces)
 
 
-def _polled(step: StepDescription | None) -> Brackets | None:
-    if step is None:
+def _polled(report: ReportDescription | None) -> Brackets | None:
+    if report is None:
         return None
     return struct(
         "Polled",
-        part("frame", integer(step.message.ids[0])),
-        *(part(place.role, _place(place.field)) for place in step.places),
+        part("frame", integer(report.message.ids[0])),
+        *(part(place.role, _place(place.field)) for place in report.places),
     )
 
 
-def _identification(step: StepDescription | None) -> Brackets | None:
-    if step is None:
+def _identification(report: ReportDescription | None) -> Brackets | None:
+    if report is None:
         return None
-    fields = {place.role: place.field for place in step.places}
+    fields = {place.role: place.field for place in report.places}
     return struct(
         "Identification",
-        part("length", integer(step.message.length)),
+        part("length", integer(report.message.length)),
         *(
             part(role, _place(fields[role]) if role in fields else "&[]")
             for role in ("node_type", "interface_version")

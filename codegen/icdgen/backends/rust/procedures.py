@@ -162,7 +162,7 @@ class _Writer:
         borrowed = ["'a"] * has_memory
         functions = ["F"] if bound else []
         bounds = [f"F: {bound}"] if bound else []
-        sent = next((each for each in procedure.inputs if each.is_bytes), None)
+        sent = procedure.content
         return ProcedureText(
             type=self._type,
             constant=self._constant,
@@ -173,9 +173,7 @@ class _Writer:
             bounds=_angle(borrowed + bounds),
             elided=(_angle(functions), _angle(["'_"] * has_memory + functions)),
             sink=sink,
-            numbers=", ".join(
-                self._number(each) for each in procedure.inputs if not each.is_bytes
-            ),
+            numbers=", ".join(self._number(each) for each in procedure.numbers),
             data=_parameter(sent) if sent else "&[]",
             memory="memory" if has_memory else "&mut []",
             into_sink=into_sink,
@@ -265,10 +263,9 @@ class _Writer:
         return "\n".join([*lines, head])
 
     def _errors(self) -> Iterator[str]:
-        inputs = self._procedure.inputs
-        if any(not each.is_bytes for each in inputs):
+        if self._procedure.numbers:
             yield "[`Error::Range`] if an input has a value that the ICD does not allow"
-        if any(each.is_bytes for each in inputs):
+        if self._procedure.content:
             yield "[`Error::TooLong`] if there are too many bytes"
         if self._procedure.blocks:
             yield "[`Error::Length`] if the memory is too small for a packet"
@@ -322,13 +319,12 @@ class _Writer:
         blocks = self._procedure.blocks
         if blocks is None:
             return ""
-        packets = -(-blocks.size // blocks.packet_bytes)
-        received = 0 if blocks.sends else packets * blocks.packet_bytes
-        return integer(received + -(-packets // 8))
+        received = 0 if blocks.sends else blocks.packets * blocks.packet_bytes
+        return integer(received + -(-blocks.packets // 8))
 
     def _form(self) -> Brackets:
         procedure = self._procedure
-        most = [each.most for each in procedure.inputs if each.is_bytes]
+        content = procedure.content
         inputs = (
             _of(
                 "Input",
@@ -338,8 +334,7 @@ class _Writer:
                 allowed=string(_allowed(each)),
                 is_optional=each.is_optional,
             )
-            for each in procedure.inputs
-            if not each.is_bytes
+            for each in procedure.numbers
         )
         outputs = (
             f"({string(each.name)}, {each.register})" for each in procedure.outputs
@@ -348,7 +343,7 @@ class _Writer:
         items = (
             part("name", string(procedure.name)),
             part("inputs", rows(inputs)),
-            part("most_bytes", integer(most[0] if most else 0)),
+            part("most_bytes", integer(content.most if content else 0)),
             part("outputs", flat_rows(outputs)),
             part("entry", some(entry)),
             part("most_entries", integer(procedure.most_entries)),

@@ -11,6 +11,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.packets import Packet, Packets, covers_of, declared_packets
+from icdgen.icd.procedures import nested_steps
 from icdgen.icd.responses import Section
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
@@ -437,16 +438,12 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                     yield Fault.at_key(declared, "covers", text, "remove it")
 
 
-def _checksums_in_steps(steps: object) -> Iterator[str]:
+def _checksums_in_steps(procedures: object) -> Iterator[str]:
     """Yield the names of the checksums that steps of procedures compare."""
-    if isinstance(steps, Map):
-        if isinstance(name := steps.get("checksum"), str):
-            yield name
-        for row in steps.values():
-            yield from _checksums_in_steps(row)
-    elif isinstance(steps, Seq | list):
-        for row in steps:
-            yield from _checksums_in_steps(row)
+    for procedure in procedures.values() if isinstance(procedures, Map) else ():
+        for step in nested_steps(at_path(procedure, ["steps"])):
+            if isinstance(name := at_path(step, ("verify", "checksum")), str):
+                yield name
 
 
 def _checksum_fields(link: Link) -> Iterator[tuple[LinkPacket, str, Map]]:

@@ -8,13 +8,15 @@ from typing import Any
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
-from icdgen.icd.procedures import BYTES, EFFECTS
+from icdgen.icd.procedures import BYTES, EFFECTS, nested_steps
 from icdgen.icd.responses import field_of, number_run
 from icdgen.icd.roles import INTEGERS
-from icdgen.icd.rules.context import Context, section_of
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.procedures import procedures_in
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
+from icdgen.icd.trees import mappings, named
 from icdgen.wording import quote
 
 NUMBERS = ("size", "time", "checksum")  # of any object
@@ -30,14 +32,15 @@ _VERBS_OF = {
 def effects_name_what_exists(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         messages = {message.name: message for message in ctx.messages_of(node)}
+        nodes = {owner.name: owner for owner in ctx.scope(node)}
         keys = _keys_of_kinds(ctx.protocol_of(node).get("procedures", {}))
-        for procedure in (section_of(node, "procedures") or {}).values():
-            effect = procedure.get("effect") if isinstance(procedure, Map) else None
+        for procedure in procedures_in(node):
+            effect = procedure.get("effect")
             if isinstance(effect, Map):
                 yield from _verbs(effect)
                 yield from _steps_for(procedure, effect)
                 yield from _key(procedure, effect)
-                yield from _fields(node, procedure, effect, messages, keys)
+                yield from _fields(nodes, procedure, effect, messages, keys)
 
 
 def _verbs(effect: Map) -> Iterator[Fault]:
@@ -63,10 +66,7 @@ def _verbs(effect: Map) -> Iterator[Fault]:
 
 def _steps_for(procedure: Map, effect: Map) -> Iterator[Fault]:
     """Yield the fault of an effect that the steps of its procedure cannot have."""
-    rows = procedure.get("steps")
-    steps = (
-        [row for row in rows if isinstance(row, Map)] if isinstance(rows, Seq) else []
-    )
+    steps = mappings(procedure.get("steps"))
     blocks = [row["blocks"] for row in steps if isinstance(row.get("blocks"), Map)]
     sends = [row for row in blocks if "of" in row]
     cases = (
@@ -84,7 +84,7 @@ def _key(procedure: Map, effect: Map) -> Iterator[Fault]:
     """Yield the faults of inputs that identify an object."""
     inputs = procedure.get("inputs", {})
     numbers = {
-        name: name
+        name
         for name, row in inputs.items()
         if isinstance(row, Map) and row.get("type") != BYTES
     }
@@ -92,13 +92,13 @@ def _key(procedure: Map, effect: Map) -> Iterator[Fault]:
     for name, place in key.placed() if isinstance(key, Seq) else ():
         if name not in numbers:
             text = f"there is no input {quote(str(name))} that is a number"
-            remedy = suggestion(str(name), numbers, VERBATIM)
+            remedy = suggestion(str(name), sorted(numbers), VERBATIM)
             yield Fault.of_place(effect, place, text, *remedy)
     all_if = effect.get("all_if")
     if isinstance(all_if, Map):
         for name in all_if.keys() - numbers:
             text = f"there is no input {quote(name)} that is a number"
-            remedy = suggestion(name, numbers, VERBATIM)
+            remedy = suggestion(name, sorted(numbers), VERBATIM)
             yield Fault.of_place(all_if, all_if.key_at(name), text, *remedy)
     to = effect.get("to")
     if isinstance(to, Seq) and isinstance(key, Seq) and len(to) != len(key):
@@ -118,7 +118,7 @@ def _keys_of_kinds(procedures: Mapping[str, Any]) -> dict[str, set[str]]:
 
 
 def _fields(
-    node: Node,
+    nodes: Mapping[str, Node],
     procedure: Map,
     effect: Map,
     messages: Mapping[str, Message],
@@ -126,8 +126,13 @@ def _fields(
 ) -> Iterator[Fault]:
     """Yield the faults of fields that describe an object."""
     fields = effect.get("fields")
-    requested = [*_requests(procedure.get("steps"))]
-    message = messages.get(requested[-1]) if requested else None
+    requested = [
+        step[kind]
+        for step in nested_steps(procedure.get("steps"))
+        for kind in ("get", "poll")
+        if kind in step
+    ]
+    message = named(messages, requested[-1]) if requested else None
     kind = next((effect[verb] for verb in EFFECTS if verb in effect), None)
     numbers = {*NUMBERS, *keys.get(str(kind), ()), *effect.get("key", ())}
     if not isinstance(fields, Map):
@@ -139,28 +144,18 @@ def _fields(
     for name, field_name in fields.items():
         if name not in numbers:
             text = f"{quote(name)} is no number of an object"
-            remedy = suggestion(name, {each: each for each in numbers}, VERBATIM)
+            remedy = suggestion(name, sorted(numbers), VERBATIM)
             yield Fault.of_place(fields, fields.key_at(name), text, *remedy)
         field = field_of(message, field_name)
         if field is None:
             text = f"{quote(message.name)} has no field {quote(field_name)}"
-            known = {each.name: each for each in message.fields}
-            yield Fault.at(fields, name, text, *suggestion(field_name, known, VERBATIM))
-        elif field.scalar.type not in INTEGERS or number_run(field, node) is None:
+            existing = [each.name for each in message.fields]
+            yield Fault.at(
+                fields, name, text, *suggestion(field_name, existing, VERBATIM)
+            )
+        elif (
+            field.scalar.type not in INTEGERS
+            or number_run(field, nodes[message.node]) is None
+        ):
             text = f"{quote(field_name)} is no whole number in at most 4 bytes"
             yield Fault.at(fields, name, text, "name another field")
-
-
-def _requests(steps: object) -> Iterator[str]:
-    """Yield the telemetry that steps request, in their order."""
-    for step in steps if isinstance(steps, Seq) else ():
-        if not isinstance(step, Map):
-            continue
-        for kind, content in step.items():
-            if kind in ("get", "poll") and isinstance(content, str):
-                yield content
-            elif kind == "repeat":
-                yield from _requests(content)
-            elif kind in ("blocks", "missing") and isinstance(content, Map):
-                yield from _requests(content.get("each"))
-                yield from _requests(content.get("steps"))

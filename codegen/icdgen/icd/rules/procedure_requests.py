@@ -10,9 +10,9 @@ from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND
 from icdgen.icd.packets import is_requested
 from icdgen.icd.responses import REPLY, declared_responses
-from icdgen.icd.rules.context import Context, section_of
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
-from icdgen.icd.rules.procedures import steps_in
+from icdgen.icd.rules.procedures import procedures_in, steps_in
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import named
 from icdgen.wording import quote
@@ -46,9 +46,8 @@ def telemetry_of_steps_can_be_requested(ctx: Context) -> Iterator[Fault]:
 def _requests(ctx: Context, link: Link) -> Iterator[tuple[Map, object, Place]]:
     """Yield each step that requests telemetry, with the name of the telemetry."""
     for owner in ctx.scope(link.node):
-        for procedure in (section_of(owner, "procedures") or unread()).values():
-            rows = procedure.get("steps") if isinstance(procedure, Map) else None
-            for step, kind, *_ in steps_in(rows):
+        for procedure in procedures_in(owner):
+            for step, kind, *_ in steps_in(procedure.get("steps")):
                 if kind in ("get", "poll"):
                     yield step, step[kind], step.at(kind)
                 listed = step.get("messages")

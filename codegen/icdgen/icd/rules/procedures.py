@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from icdgen.icd.fault import Fault
@@ -111,6 +111,13 @@ def steps_in(rows: object, outer: Placed | None = None) -> Iterator[Placed]:
                 yield from steps_in(content.get(key), within)
 
 
+def procedures_in(node: Node) -> Iterator[Map]:
+    """Yield the sections of the procedures that the file of a node declares."""
+    for procedure in (section_of(node, "procedures") or unread()).values():
+        if isinstance(procedure, Map):  # otherwise the schema check reports it
+            yield procedure
+
+
 def _procedures(ctx: Context) -> Iterator[Names]:
     """Yield the procedures of all nodes, each once."""
     for node in ctx.icd.nodes:
@@ -121,9 +128,7 @@ def _procedures(ctx: Context) -> Iterator[Names]:
         declared = protocol.get("checksums")
         own = {*declared} if isinstance(declared, Mapping) else set()
         checksums = frozenset({*own, *({"crc8", "crc16"} & {*protocol})})
-        for procedure in (section_of(node, "procedures") or unread()).values():
-            if not isinstance(procedure, Map):
-                continue  # the schema check reports it
+        for procedure in procedures_in(node):
             frames = {
                 str(step.get("as", step.get(kind))): messages[step[kind]]
                 for step, kind, *_ in steps_in(procedure.get("steps"))
@@ -250,9 +255,9 @@ def _messages(names: Names, placed: Placed) -> Iterator[Fault]:
             yield Fault(step, place, text, "name messages that can")
 
 
-def _unknown(owner: Map, key: str, what: str, known: Mapping[str, Any]) -> Fault:
+def _unknown(owner: Map, key: str, what: str, existing: Iterable[str]) -> Fault:
     """Return the fault of a name that nothing has."""
-    remedy = suggestion(owner[key], known, VERBATIM)
+    remedy = suggestion(owner[key], existing, VERBATIM)
     return Fault.at(owner, key, f"there is no {what} {quote(owner[key])}", *remedy)
 
 
@@ -286,9 +291,9 @@ def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
             continue
         field = field_of(message, name)
         if field is None:
-            known = {each.name: each for each in message.fields}
+            existing = [each.name for each in message.fields]
             text = f"{quote(message.name)} has no field {quote(name)}"
-            remedy = suggestion(name, known, VERBATIM)
+            remedy = suggestion(name, existing, VERBATIM)
             place = owner.at(key) if owner is step else owner.key_at(key)
             yield Fault.of_place(owner, place, text, *remedy)
             continue
@@ -342,8 +347,7 @@ def _values(names: Names, placed: Placed) -> Iterator[Fault]:
         yield from _reference(names, verify, "field", False)
     checksum = verify.get("checksum")
     if isinstance(checksum, str) and checksum not in names.checksums:
-        known = {name: name for name in names.checksums}
-        yield _unknown(verify, "checksum", "checksum", known)
+        yield _unknown(verify, "checksum", "checksum", names.checksums)
     covered = verify.get("of")
     if covered == BLOCK and _BLOCKS not in placed.inside:
         text = "there is no block outside of `blocks`"
@@ -398,17 +402,16 @@ def _reference(
     frame, field_name = name_of(value)
     if may_be_input and not frame:
         if names.type_of(field_name) in (None, BYTES):
-            known = {name: name for name in names.inputs}
-            yield _unknown(owner, key, "number", known)
+            yield _unknown(owner, key, "number", names.inputs)
         return
     field = names.field(frame, field_name)
     if field is None:
-        known = {
-            f"{name}.{each.name}": each.name
+        existing = [
+            f"{name}.{each.name}"
             for name, message in names.frames.items()
             for each in message.fields
-        }
-        yield _unknown(owner, key, "field", known)
+        ]
+        yield _unknown(owner, key, "field", existing)
     elif reason := _reason_against(names.nodes[names.frames[frame].node], field, False):
         yield Fault.at(owner, key, f"{quote(value)} {reason}", "name another field")
 

@@ -102,7 +102,7 @@ class _Scripts:
     def call(self, **changes: Any) -> Call:
         """Return a call of the procedure, with these values of inputs."""
         procedure, inputs = self.procedure, Call()
-        for number, each in enumerate(self._inputs, procedure.first_input):
+        for number, each in enumerate(self.procedure.numbers, procedure.first_input):
             inputs[each.name] = _sample(each)
             if self.blocks and number == self.blocks.total:
                 inputs[each.name] = self.size
@@ -112,10 +112,6 @@ class _Scripts:
         if self.blocks and self.blocks.sends:
             call["bytes"] = self.content.hex()
         return {**call, **self.block, **changes}
-
-    @property
-    def _inputs(self) -> list[Input]:
-        return [each for each in self.procedure.inputs if not each.is_bytes]
 
     def device(
         self, call: Call, loss: float = 0.0, content: bytes | None = None
@@ -173,7 +169,7 @@ class _Scripts:
                 yield self.case(
                     f"{loss:.0%} lost{where}", call, self.device(call, loss)
                 )
-        for flag in (each for each in self._inputs if each.is_flag):
+        for flag in (each for each in self.procedure.numbers if each.is_flag):
             yield self.case(f"{flag.name} is set", self.call(**{flag.name: 1}))
 
     def _failures(self) -> Requests:
@@ -221,7 +217,7 @@ class _Scripts:
         """Yield scripts of polls for which the device is busy, until their time is
         over.
         """
-        flags = {each.name: 1 for each in self._inputs if each.is_flag}
+        flags = {each.name: 1 for each in self.procedure.numbers if each.is_flag}
         ends = (
             ("nothing new a millisecond before its time is over", 1, False),
             ("nothing new when its time is over", 0, False),
@@ -243,7 +239,7 @@ class _Scripts:
 
     def _numbers(self) -> Requests:
         """Yield the smallest and largest numbers of the inputs, and others."""
-        for each in self._inputs:
+        for each in self.procedure.numbers:
             allowed = each.values or (0, each.most)
             for number in allowed:
                 yield f"{each.name} is {number}", _request(
@@ -364,7 +360,7 @@ class _Scripts:
     @property
     def _input_of_total(self) -> Input:
         assert self.blocks and self.blocks.total is not None
-        return self._inputs[self.blocks.total - self.procedure.first_input]
+        return self.procedure.numbers[self.blocks.total - self.procedure.first_input]
 
     @property
     def _total(self) -> str | None:

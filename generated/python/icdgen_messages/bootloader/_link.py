@@ -204,14 +204,14 @@ LINK: link.Link[_Node] = link.Link(
             "meta": (12, 25),
         },
     ),
-    identification=link.Step(
+    identification=link.Report(
         telemetry=128,
         fields={
             "node_type": "node_type",
             "interface_version": "interface_version",
         },
     ),
-    statistics=link.Step(
+    statistics=link.Report(
         telemetry=144,
         fields={
             "telecommands": "telecommand_counter",

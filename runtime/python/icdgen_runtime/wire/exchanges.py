@@ -138,7 +138,7 @@ class Exchanges(Generic[N]):
             except BusyError:
                 yield None
         client = self.client
-        handle = client.begun if isinstance(client, EnvelopeClient) else 0
+        handle = self._last_handle()
         reply: Optional[Reply] = None
         try:
             yield "send"
@@ -153,11 +153,7 @@ class Exchanges(Generic[N]):
                         return _with_data(event, reply)
                 events = yield None
         finally:
-            # Otherwise it stays busy after an exception of the port.
-            if isinstance(client, Client):
-                client.cancel()
-            else:
-                client.cancel(handle=handle)
+            self._cancel(handle)
 
     def _concurrently(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
         """Run several exchanges at once. If one fails, the others are closed."""
@@ -188,58 +184,57 @@ class Exchanges(Generic[N]):
         self, procedure: P, progress: Optional[Progress] = None
     ) -> Exchange[P]:
         """Run a procedure to its end. Raise `FailedError`."""
-        client = self.client
+        client, handle = self.client, 0  # of the last request
         if isinstance(client, Client):
             procedure.bus = client.bus
-        handles: list[int] = []
-        try:
-            return (yield from self._drive(procedure, progress, handles))
-        finally:
-            if isinstance(client, Client):
-                client.cancel()
-            else:
-                client.cancel(handle=handles[-1] if handles else 0)
-
-    def _drive(
-        self, procedure: P, progress: Optional[Progress], handles: list[int]
-    ) -> Exchange[P]:
-        """Run a procedure, and add the handles of its requests to a list."""
-        client = self.client
         events: list[Event] = []
         reported: Optional[tuple[int, Optional[int]]] = None
         refused: Optional[Refused] = None
-        while True:
-            for event in events:
-                if isinstance(event, (*OUTCOMES, Reply)):
-                    if isinstance(client, EnvelopeClient):
-                        # Other tasks may have requests of their own.
-                        if event.handle not in handles[-1:]:
-                            continue
-                    elif isinstance(event, Refused) and event.may_be_damaged:
-                        self._report(event)
-                if isinstance(event, Refused):
-                    refused = event
-                procedure.event(self._now(), event)
-            events = []
-            is_free = isinstance(client, EnvelopeClient) or not client.busy
-            if is_free and (request := procedure.next(self._now())):
-                events = client.start(self._now(), request)
-                if isinstance(client, EnvelopeClient):
-                    handles.append(client.begun)
-            yield "send"
-            if isinstance(client, EnvelopeClient) and handles:
-                sent = client.sent(handles[-1])
-                events += [sent] if sent else []
-            if progress and procedure.progress != reported:
-                reported = procedure.progress
-                progress(*reported)
-            if procedure.result == "done":
-                return procedure
-            if procedure.result:
-                why = refused if procedure.result == "refused" else None
-                raise FailedError(procedure.result, why)
-            if not events:
-                events = yield procedure.deadline
+        try:
+            while True:
+                for event in events:
+                    # Other tasks may have requests of their own.
+                    if isinstance(event, (*OUTCOMES, Reply)) and event.handle != handle:
+                        continue
+                    if isinstance(event, Refused):
+                        refused = event
+                        if event.may_be_damaged and isinstance(client, Client):
+                            self._report(event)
+                    procedure.event(self._now(), event)
+                events = []
+                is_free = isinstance(client, EnvelopeClient) or not client.busy
+                if is_free and (request := procedure.next(self._now())):
+                    events = client.start(self._now(), request)
+                    handle = self._last_handle()
+                yield "send"
+                if isinstance(client, EnvelopeClient) and (sent := client.sent(handle)):
+                    events.append(sent)
+                if progress and procedure.progress != reported:
+                    reported = procedure.progress
+                    progress(*reported)
+                if procedure.result == "done":
+                    return procedure
+                if procedure.result:
+                    why = refused if procedure.result == "refused" else None
+                    raise FailedError(procedure.result, why)
+                if not events:
+                    events = yield procedure.deadline
+        finally:
+            self._cancel(handle)
+
+    def _last_handle(self) -> int:
+        """Return the handle of the last request; 0 on a link that has none."""
+        client = self.client
+        return client.begun if isinstance(client, EnvelopeClient) else 0
+
+    def _cancel(self, handle: int) -> None:
+        """Cancel a request. Otherwise the client stays busy after an exception of the
+        port.
+        """
+        if isinstance(self.client, Client):
+            self.client.cancel()
+        else:
+            self.client.cancel(handle=handle)
 
 
 def executed(outcome: Outcome, name: str) -> Union[AnyDone, Sent]:

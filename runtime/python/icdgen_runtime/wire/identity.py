@@ -22,10 +22,10 @@ def identify(link: Link, data: Buffer) -> Identity:
 
     Raise `LengthError` and `UnsupportedError`.
     """
-    step = need(link.identification, "identification")
-    frame = link.TELEMETRY[need(step.telemetry, "identification")].from_bytes(data)
-    type = int(getattr(frame, step.fields["node_type"]))
-    version = int(getattr(frame, step.fields["interface_version"]))
+    report = need(link.identification, "identification")
+    frame = link.TELEMETRY[need(report.telemetry, "identification")].from_bytes(data)
+    type = int(getattr(frame, report.fields["node_type"]))
+    version = int(getattr(frame, report.fields["interface_version"]))
     is_type = link.node_type in (None, type)
     return Identity(
         type, version, is_type and link.interface_version in (None, version)

@@ -271,7 +271,7 @@ class Index(NamedTuple):
     """Type of the index file."""
 
 
-class Step(NamedTuple):
+class Report(NamedTuple):
     """A message, and its attributes by role."""
 
     fields: dict[str, str]
@@ -315,8 +315,8 @@ class Facts(NamedTuple):
     log_message: Optional[LogMessageForm] = None
     time: Optional[dict[str, TimePart]] = None
     index_file: Optional[Index] = None
-    identification: Optional[Step] = None
-    statistics: Optional[Step] = None
+    identification: Optional[Report] = None
+    statistics: Optional[Report] = None
     boot_time: Optional[int] = None
     stream: Optional[Stream] = None
     procedures: dict[str, ProcedureForm] = {}  # noqa: RUF012
