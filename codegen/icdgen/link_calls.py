@@ -143,7 +143,7 @@ class _LinkBuilder:
             "statistics": facts.statistics and self.report(facts.statistics),
             "boot_time": facts.boot_ms,
             "stream": self.commented_rest(
-                facts.stream and _stream(facts.stream), "stream"
+                facts.stream and _stream(facts.stream), "link"
             ),
             "procedures": {
                 each.name: _commented(

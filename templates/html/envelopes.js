@@ -167,8 +167,8 @@ const icdgenEnvelopes = ((frames) => {
       end += size;
       if (one.is !== "message") found.lost += size;
     }
-    if (form.delimited_by === "none" && bytes.length > form.longest) refuse("overrun", bytes, bytes.length);
-    else if (form.delimited_by === "none") take(bytes, bytes.length);
+    if (form.delimited_by === "datagram" && bytes.length > form.longest) refuse("overrun", bytes, bytes.length);
+    else if (form.delimited_by === "datagram") take(bytes, bytes.length);
     else if (form.delimited_by === "length") [found.lost, end] = byLength(form, packets, bytes, events);
     else {
       const read = unstuffed(form, bytes);
@@ -355,7 +355,7 @@ const icdgenEnvelopes = ((frames) => {
 
   /** The packet that bytes begin with, without stuffing, and whether its end came. */
   function begun(form, direction, bytes) {
-    if (form.delimited_by === "none") return { frame: bytes, whole: true };
+    if (form.delimited_by === "datagram") return { frame: bytes, whole: true };
     if (form.delimited_by === "length") {
       const packet = packetsOf(form, direction).find((one) => bitsOfConstants(one, bytes) >= 0);
       const needed = packet && sizeOf(form, packet, bytes);

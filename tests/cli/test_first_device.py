@@ -312,15 +312,13 @@ def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path
     checked = icdgen("check")
     assert checked.status == 0 and "no findings" in checked.out, checked.out
     pump = load([tmp_path / "icd" / "pump.yaml"]).icd.nodes[0]
-    assert pump.protocol["stream"].keys() == origin.protocol["stream"].keys() - {
-        "commands"
-    }
-    ours, theirs = pump.protocol["stream"], origin.protocol["stream"]
+    assert pump.protocol["link"].keys() == origin.protocol["link"].keys() - {"commands"}
+    ours, theirs = pump.protocol["link"], origin.protocol["link"]
     assert ours.get("header") == theirs.get("header")
     packets = ours.get("packets", {})
     assert packets.items() <= theirs.get("packets", {}).items()
     assert bool(packets) == ("packets" in theirs)
-    has_responses = "commands" in origin.protocol["stream"]
+    has_responses = "commands" in origin.protocol["link"]
     assert ("`commands` is not copied" in result.out) == has_responses
 
 

@@ -127,11 +127,11 @@ NINE = """\
 icdgen: 1
 node: {name: nine, title: Nine telecommands, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     header: [{at: 0, bits: 8, role: id}, {at: 8, bits: 8, role: length}]
     commands: {ack: {message: Ack, echo: Command}}
-  client: {reply_timeout_ms: 100, late_ms: 900, in_flight: 8}
+    client: {reply_timeout_ms: 100, late_ms: 900, in_flight: 8}
 messages:
   - name: Ack
     id: 99

@@ -54,7 +54,7 @@ def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
 
 def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
     (tree,) = camera.trees.values()
-    header = tree["protocol"]["stream"]["header"]
+    header = tree["protocol"]["link"]["header"]
     assert [(one["bits"], one["role"]) for one in header] == [
         (3, "constant"), (1, "constant"), (1, "flags"), (11, "id"), (2, "type"), (14, "sequence"), (16, "length"),
     ]  # fmt: skip
@@ -293,7 +293,7 @@ def test_packets_of_another_version_have_it_in_their_envelope(tmp_path):
         'entry="Version" value="0"',
         'entry="Version" value="1"',
     )
-    header = imported("camera.xml", folder).trees["camera"]["protocol"]["stream"][
+    header = imported("camera.xml", folder).trees["camera"]["protocol"]["link"][
         "header"
     ]
     assert header[0] == {"bits": 3, "role": "constant", "value": 1}
@@ -524,7 +524,7 @@ def test_an_id_in_front_of_all_is_the_envelope(tmp_path):
     )
     (tmp_path / "ids.xml").write_text(sheet(container("X", abstract="true") + types))
     (tree,) = run.read(tmp_path / "ids.xml", eds.Eds()).trees.values()
-    assert tree["protocol"]["stream"]["header"] == [{"bits": 8, "role": "id"}]
+    assert tree["protocol"]["link"]["header"] == [{"bits": 8, "role": "id"}]
     assert [
         (one["id"], one["length"], one["fields"][0]["name"]) for one in tree["messages"]
     ] == [

@@ -173,7 +173,7 @@ def test_version_1_has_ids_of_a_byte_and_no_extensions(tmp_path):
         "HEARTBEAT"
     ] and "may_end_early" not in tree["messages"][0]
     assert (
-        tree["protocol"]["stream"]["header"][0]["value"] == 0xFE
+        tree["protocol"]["link"]["header"][0]["value"] == 0xFE
         and tree["node"]["id_bits"] == 8
     )
 

@@ -452,7 +452,7 @@ def test_kaitai_what_is_not_used_is_a_note_with_its_line(tmp_path):
 def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeypatch):
     def fill(network, found, to, fill=packets.fill):
         fill(network, found, to)
-        network.protocol["stream"]["header"][-1]["plus"] = -40
+        network.protocol["link"]["header"][-1]["plus"] = -40
 
     monkeypatch.setattr(packets, "fill", fill)
     read = imported(SHAPES / "aggregate.xml")

@@ -38,7 +38,7 @@ def imported(name):
 
 def test_the_primary_header_is_the_envelope_and_the_application_process_the_id(probe):
     (tree,) = probe.trees.values()
-    header = tree["protocol"]["stream"]["header"]
+    header = tree["protocol"]["link"]["header"]
     assert [(one["bits"], one["role"]) for one in header] == [
         (3, "constant"), (1, "constant"), (1, "flags"), (11, "id"), (2, "type"), (14, "sequence"), (16, "length"),
     ]  # fmt: skip
@@ -61,7 +61,7 @@ def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
         )
     )
     read = run.read(tmp_path / "probe.xml", xtce.Xtce())
-    header = read.trees["probe"]["protocol"]["stream"]["header"]
+    header = read.trees["probe"]["protocol"]["link"]["header"]
     assert read.imported == 2 and header[2]["value"] == {
         "telecommand": 0,
         "telemetry": 1,

@@ -86,7 +86,7 @@ def _definition(
         for found in (judge.types.get(f"{one}/{name}") for one in packages)
         if found is not None
     )
-    header = tree.get("protocol", {}).get("stream", {}).get("header", [])
+    header = tree.get("protocol", {}).get("link", {}).get("header", [])
     skipped = sum(one["bits"] for one in header)  # they follow each other
 
     def raw(data: bytes) -> Values:

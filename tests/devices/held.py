@@ -73,7 +73,7 @@ def _imported(
     """
     names, tree = {one.name for one in left}, dict(tree)
     tree["messages"] = [one for one in tree["messages"] if one["name"] in names]
-    if "checksums" in tree.get("protocol", {}):
+    if link := tree.get("protocol", {}).get("link", {}):
         checksums = {
             name: {
                 **one,
@@ -83,9 +83,13 @@ def _imported(
                     if owner in names
                 },
             }
-            for name, one in tree["protocol"]["checksums"].items()
+            for name, one in link.get("checksums", {}).items()
         }
-        tree["protocol"] = {**tree["protocol"], "checksums": checksums}
+        if checksums:
+            tree["protocol"] = {
+                **tree["protocol"],
+                "link": {**link, "checksums": checksums},
+            }
     file.write_text(emit.text(tree), encoding="utf-8")
     loaded = load([file])
     if not loaded.ok:

@@ -60,8 +60,8 @@ COMMANDS = """
 icdgen: 1
 node: {name: autopilot, title: Autopilot, byte_order: little, bit_order: lsb0, id_bits: 24}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     header:
       - {at: 0, bits: 8, role: sync, value: 0xFD}
       - {at: 8, bits: 8, role: length}
@@ -71,7 +71,7 @@ protocol:
       - {at: 40, bits: 8, role: source, value: {telecommand: 255, telemetry: 1}}
       - {at: 48, bits: 8, role: type, value: {telecommand: 190, telemetry: 1}}
       - {at: 56, bits: 24, role: id}
-    trailer: [{at: 0, bits: 16, role: checksum, checksum: x25}]
+    trailer: [{at: 0, bits: 16, role: checksum, checksum: x25, covers: {from: length, to: data}}]
     commands:
       ack:
         message: Command Ack
@@ -80,18 +80,17 @@ protocol:
         success: [Accepted]
         busy: [Temporarily Rejected]
         progress: [In Progress]
-  checksums:
-    x25:
-      kind: crc
-      width: 16
-      polynomial: 0x1021
-      init: 0xFFFF
-      reflect_in: true
-      reflect_out: true
-      xor_out: 0
-      covers: {from: length, to: data}
-      seeds: {Command Long: 152, Command Ack: 143}
-  client: {reply_timeout_ms: 1500, retries: 2, in_flight: 2, progress_for_ms: 60000}
+    checksums:
+      x25:
+        kind: crc
+        width: 16
+        polynomial: 0x1021
+        init: 0xFFFF
+        reflect_in: true
+        reflect_out: true
+        xor_out: 0
+        seeds: {Command Long: 152, Command Ack: 143}
+    client: {reply_timeout_ms: 1500, retries: 2, in_flight: 2, progress_for_ms: 60000}
 enums:
   - name: Result
     identifier: mav_result

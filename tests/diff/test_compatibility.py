@@ -184,16 +184,16 @@ def test_the_step_of_the_version_and_its_reason(tmp_path, change, expected):
 
 ENVELOPED = BASE + """\
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     header:
       - {at: 0, bits: 8, role: sync, value: {telecommand: 0x55, telemetry: 0x56}}
       - {at: 8, bits: 16, role: length}
       - {at: 24, bits: 8, role: id}
-    trailer: [{at: 0, bits: 8, role: checksum, checksum: sum}]
+    trailer: [{at: 0, bits: 8, role: checksum, checksum: sum, covers: {from: length, to: data}}]
     commands: {ack: Status}
-  checksums:
-    sum: {kind: sum, width: 8, init: 0, covers: {from: length, to: data}}
+    checksums:
+      sum: {kind: sum, width: 8, init: 0}
 """
 
 

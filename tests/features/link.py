@@ -55,11 +55,15 @@ def envelope(id_bits: int) -> dict[str, object]:
         {"at": 8, "bits": 16, "role": "length"},
         {"at": 24, "bits": id_bits, "role": "id"},
     ]
-    trailer = [{"at": 0, "bits": 8, "role": "checksum", "checksum": "parity"}]
-    parity = {"kind": "xor", "width": 8, "covers": {"from": "length", "to": "data"}}
+    covers = {"from": "length", "to": "data"}
+    checksum = {"at": 0, "bits": 8, "role": "checksum", "checksum": "parity"}
     return {
         "protocol": {
-            "stream": {"delimited_by": "length", "header": header, "trailer": trailer},
-            "checksums": {"parity": parity},
+            "link": {
+                "framing": {"by": "length"},
+                "header": header,
+                "trailer": [{**checksum, "covers": covers}],
+                "checksums": {"parity": {"kind": "xor", "width": 8}},
+            }
         }
     }

@@ -17,7 +17,7 @@ HELD_ELSEWHERE = {
         for key in ("polynomial", "init", "xor_out", "empty", "check")
     ),
     *(
-        f"checksums/additionalProperties/{key}"
+        f"link/checksums/additionalProperties/{key}"
         for key in ("polynomial", "init", "xor_out", "empty", "check")
     ),
     *(f"{crc}/printed_constant" for crc in ("crc8", "crc16")),

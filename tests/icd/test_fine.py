@@ -20,7 +20,8 @@ SHARED = """\
 icdgen: 1
 node: {name: shared, title: Shared, byte_order: big, bit_order: msb0}
 protocol:
-  client: {reply_timeout_ms: 100, late_ms: 50}
+  link:
+    client: {reply_timeout_ms: 100, late_ms: 50}
 messages:
   - {name: Ping, id: 1, kind: telecommand, length: 0, repeat: true}
   - {name: Reset, id: 2, kind: telecommand, length: 0, response: none}
@@ -30,8 +31,8 @@ icdgen: 1
 include: [shared.yaml]
 node: {name: device, title: Device, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: slip
+  link:
+    framing: {by: slip}
     header: [{at: 0, bits: 8, role: id}]
     commands: {ack: {message: Ack, echo: Command}}
 messages:

@@ -147,7 +147,7 @@ def test_what_cannot_be_is_said(capture, tmp_path):
     other = tmp_path / "other"
     other.write_bytes(b"telemetry of zebras, yaks and antelopes " * 100)
     packets = tmp_path / "packets.yaml"
-    content = (LINKS / "slip.yaml").read_text().replace("slip", "none")
+    content = (LINKS / "slip.yaml").read_text().replace("slip", "datagram")
     packets.write_text(content)
     for words, said in (
         (
@@ -190,8 +190,8 @@ ODD = """\
 icdgen: 1
 node: {name: odd, title: Odd, byte_order: big, bit_order: msb0, id_bits: 16}
 protocol:
-  stream:
-    delimited_by: cobs
+  link:
+    framing: {by: cobs}
     header: [{at: 0, bits: 16, role: id}, {at: 16, bits: 8, role: source, value: 7}]
 enums: [{name: Way, members: [{value: 0, name: Down}, {value: 1, name: Up}]}]
 structs:

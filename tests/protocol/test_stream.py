@@ -28,7 +28,7 @@ def links() -> dict[str, Link]:
 
 
 STREAMS = sorted(
-    name for name, link in links().items() if link.stream.delimited_by != "none"
+    name for name, link in links().items() if link.stream.delimited_by != "datagram"
 )
 
 
@@ -40,7 +40,7 @@ def encoded(
     A packet that does not tell its message comes out as a whole.
     """
     line, sent = b"", []
-    plain = link._replace(stream=link.stream._replace(delimited_by="none"))
+    plain = link._replace(stream=link.stream._replace(delimited_by="datagram"))
     for number in range(count):
         row = draw(st.sampled_from(link.stream.rows("telemetry")))
         data = draw(st.binary(min_size=row.most, max_size=row.most))
@@ -114,14 +114,20 @@ SEEDED = """
 icdgen: 1
 node: {name: device, title: Device, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     packets:
-      host: {from: host, header: [{at: 0, bits: 8, role: id}], trailer: [{at: 0, bits: 8, role: checksum, checksum: sent}]}
-      device: {from: device, header: [{at: 0, bits: 8, role: id}], trailer: [{at: 0, bits: 8, role: checksum, checksum: received}]}
-  checksums:
-    sent: {kind: sum, width: 8, covers: {from: id, to: data}, seeds: {Go: 1, Status: 2}}
-    received: {kind: sum, width: 8, covers: {from: id, to: data}, seeds: {Go: 3, Status: 4}}
+      host:
+        from: host
+        header: [{bits: 8, role: id}]
+        trailer: [{bits: 8, role: checksum, checksum: sent, covers: {from: id, to: data}}]
+      device:
+        from: device
+        header: [{bits: 8, role: id}]
+        trailer: [{bits: 8, role: checksum, checksum: received, covers: {from: id, to: data}}]
+    checksums:
+      sent: {kind: sum, width: 8, seeds: {Go: 1, Status: 2}}
+      received: {kind: sum, width: 8, seeds: {Go: 3, Status: 4}}
 messages:
   - {name: Go, id: 1, kind: telecommand, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}
   - {name: Status, id: 2, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}

@@ -251,10 +251,10 @@ class Source:
         ]
         if value in types and key.path[-1] != "name":
             return [name for name in types if name != value]
-        stream = self.section.get("stream", {})
+        link = self.section.get("link", {})
         roles = [
             row["role"]
-            for form in (stream, *stream.get("packets", {}).values())
+            for form in (link, *link.get("packets", {}).values())
             for part in ("header", "trailer")
             for row in form.get(part, ())
         ]

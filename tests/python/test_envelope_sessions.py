@@ -27,7 +27,7 @@ POLL["response"] = {"reply": "Navigation Status"}
 def package(tmp_path_factory):
     icd = yaml.safe_load((ROOT / "examples" / "links" / "ubx.yaml").read_text("utf-8"))
     icd["messages"] += [{**STATUS, "fields": [FIELD]}, POLL]
-    icd["protocol"]["client"] = {"in_flight": 3}
+    icd["protocol"]["link"]["client"] = {"in_flight": 3}
     folder = tmp_path_factory.mktemp("several")
     (folder / "receiver.yaml").write_text(yaml.safe_dump(icd))
     return packages.write(

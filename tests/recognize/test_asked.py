@@ -20,16 +20,16 @@ PACK = """\
 icdgen: 1
 node: {name: pack, title: Pack, byte_order: big, bit_order: msb0, id_bits: 16}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     header:
       - {at: 0, bits: 8, role: sync, value: 0xA5}
       - {at: 8, bits: 16, role: id}
       - {at: 24, bits: 8, role: length}
     trailer:
-      - {at: 0, bits: 8, role: checksum, checksum: sum}
-  checksums:
-    sum: {kind: sum, width: 8, init: 0, xor_out: 0, covers: {from: sync, to: data}}
+      - {at: 0, bits: 8, role: checksum, checksum: sum, covers: {from: sync, to: data}}
+    checksums:
+      sum: {kind: sum, width: 8, init: 0, xor_out: 0}
 messages:
   - {name: Set Limit, id: 257, kind: telecommand, length: 2, fields: [{at: 0, bits: 16, name: Limit, type: uint}]}
   - {name: Limit, id: 257, kind: telemetry, length: 2, fields: [{at: 0, bits: 16, name: Limit, type: uint}]}

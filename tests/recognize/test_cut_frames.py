@@ -30,16 +30,16 @@ MOTOR = """\
 icdgen: 1
 node: {name: motor, title: Motor, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     header:
       - {at: 0, bits: 16, role: sync, value: [0xA5, 0x5A]}
       - {at: 16, bits: 8, role: id}
       - {at: 24, bits: 8, role: length}
     trailer:
-      - {at: 0, bits: 8, role: checksum, checksum: sum8}
-  checksums:
-    sum8: {kind: sum, width: 8, init: 0, xor_out: 0, covers: {from: id, to: data}}
+      - {at: 0, bits: 8, role: checksum, checksum: sum8, covers: {from: id, to: data}}
+    checksums:
+      sum8: {kind: sum, width: 8, init: 0, xor_out: 0}
 messages:
   - name: Power
     id: 2
@@ -63,18 +63,18 @@ BATTERY = """\
 icdgen: 1
 node: {name: battery, title: Battery whose replies have a status, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     header:
       - {at: 0, bits: 8, role: sync, value: 0xDD}
       - {at: 8, bits: 8, role: id}
       - {at: 16, bits: 8, role: flags}
       - {at: 24, bits: 8, role: length}
     trailer:
-      - {at: 0, bits: 16, role: checksum, checksum: sum16}
+      - {at: 0, bits: 16, role: checksum, checksum: sum16, covers: {from: flags, to: data}}
       - {at: 16, bits: 8, role: constant, value: 0x77}
-  checksums:
-    sum16: {kind: sum, width: 16, init: 0xFFFF, xor_out: 0xFFFF, covers: {from: flags, to: data}}
+    checksums:
+      sum16: {kind: sum, width: 16, init: 0xFFFF, xor_out: 0xFFFF}
 messages:
   - {name: Basic, id: 3, kind: telemetry, length: 2, fields: [{at: 0, bits: 16, name: Voltage, type: uint, unit: mV}]}
   - {name: Version, id: 5, kind: telemetry, length: 0, fields: [{at: 0, name: Version, type: text, size: rest, up_to: 40}]}

@@ -302,7 +302,7 @@ def test_packets_that_delimit_messages_need_a_way_that_keeps_them_apart():
     node = next(
         one.name
         for one in ICD.nodes
-        if ICD.protocol_of(one).get("stream", {}).get("delimited_by") == "none"
+        if ICD.protocol_of(one)["link"]["framing"]["by"] == "datagram"
     )
     with pytest.raises(UserError, match="only packets"):
         run.run(ICD, node, [("tcp", "127.0.0.1", 0)], run.Options(), print)

@@ -12,7 +12,7 @@ ICD = """\
 icdgen: 1
 node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
 protocol:
-  stream: {delimited_by: slip, header: [{at: 0, bits: 8, role: id}]}
+  link: {framing: {by: slip}, header: [{at: 0, bits: 8, role: id}]}
 structs:
   - {name: Key, length: 2, fields: [{at: 0, bits: 8, name: Week, type: uint}, {at: 8, bits: 8, name: Hour, type: uint}]}
   - name: Curve

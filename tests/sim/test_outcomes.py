@@ -375,8 +375,8 @@ STATUS_OF_ONE_BIT = """\
 icdgen: 1
 node: {name: valve, title: Valve, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: slip
+  link:
+    framing: {by: slip}
     header: [{at: 0, bits: 8, role: id}]
     commands:
       ack: {message: Result, status: Has Time, success: [1], busy: [0]}
@@ -389,8 +389,8 @@ messages:
 @pytest.mark.parametrize(
     ("sets", "fault", "lacks"),
     [
-        (", busy: [0]", "nak=1", "needs `nak` in `stream: commands`, or values of a"),
-        ("", "busy=1", "needs `busy` in `stream: commands`, in the values of a"),
+        (", busy: [0]", "nak=1", "needs `nak` in `link: commands`, or values of a"),
+        ("", "busy=1", "needs `busy` in `link: commands`, in the values of a"),
     ],
 )
 def test_a_fault_that_no_response_can_express_names_what_the_icd_lacks(

@@ -9,8 +9,8 @@ RELAY = """
 icdgen: 1
 node: {name: relay, title: Relay, id_bits: 16, byte_order: big, bit_order: msb0}
 protocol:
-  stream:
-    delimited_by: length
+  link:
+    framing: {by: length}
     packets:
       order:
         from: host
@@ -19,14 +19,14 @@ protocol:
           - {at: 8,  bits: 8, role: id}
           - {at: 16, bits: 8, role: length, counts: message}
           - {at: 24, bits: 8, role: id}
-        trailer: [{at: 0, bits: 16, role: checksum, checksum: crc}]
+        trailer: [{at: 0, bits: 16, role: checksum, checksum: crc, covers: {from: sync, to: data}}]
       question:
         from: host
         summary: Its two bytes of data mean nothing
         header:
           - {at: 0, bits: 8,  role: sync, value: 0xC2}
           - {at: 8, bits: 16, role: id}
-        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor}]
+        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor, covers: {from: sync, to: data}}]
       report:
         from: device
         header:
@@ -34,11 +34,11 @@ protocol:
           - {at: 8, bits: 16, role: id}
           - {at: 24, bits: 8, role: status, enum: State}
           - {at: 32, bits: 8, role: length}
-        trailer: [{at: 0, bits: 16, role: checksum, checksum: crc}]
+        trailer: [{at: 0, bits: 16, role: checksum, checksum: crc, covers: {from: sync, to: data}}]
       beat:
         from: device
         header: [{at: 0, bits: 16, role: sync, value: [0xD2, 0xD3]}]
-        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor}]
+        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor, covers: {from: sync, to: data}}]
         messages: [Beat]
       refusal:
         from: device
@@ -47,17 +47,17 @@ protocol:
           - {at: 0,  bits: 8,  role: sync, value: 0xD4}
           - {at: 8,  bits: 16, role: id}
           - {at: 24, bits: 8,  role: reason, enum: Reason}
-        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor}]
+        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor, covers: {from: sync, to: data}}]
       busy:
         from: device
         header: [{at: 0, bits: 16, role: sync, value: [0xD5, 0xD6]}]
-        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor}]
+        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor, covers: {from: sync, to: data}}]
       taken:
         from: device
         header:
           - {at: 0, bits: 8,  role: sync, value: 0xD7}
           - {at: 8, bits: 16, role: id}
-        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor}]
+        trailer: [{at: 0, bits: 8, role: checksum, checksum: xor, covers: {from: sync, to: data}}]
     commands:
       ack: Done
       nak: {packet: refusal, echo: id, reason: reason}
@@ -67,11 +67,11 @@ protocol:
       reserved: 2
       nak: {packet: refusal, echo: id, reason: reason}
       timeout_ms: 250
-  checksums:
-    crc:
-      {kind: crc, width: 16, polynomial: 0x1021, init: 0xFFFF, xor_out: 0,
-       reflect_in: false, reflect_out: false, covers: {from: sync, to: data}}
-    xor: {kind: xor, width: 8, covers: {from: sync, to: data}}
+    checksums:
+      crc:
+        {kind: crc, width: 16, polynomial: 0x1021, init: 0xFFFF, xor_out: 0,
+         reflect_in: false, reflect_out: false}
+      xor: {kind: xor, width: 8}
 enums:
   - name: State
     members: [{value: 0, name: Open}, {value: 1, name: Closed}]

@@ -43,11 +43,15 @@ NAMED = {path.stem: path.read_text("utf-8") for path in FILES}
 # The relay with other delimiters, where no length says where a packet ends.
 RELAYS = {
     f"relay_{delimiter}": RELAY.replace(
-        "delimited_by: length", f"delimited_by: {delimiter}"
+        "framing: {by: length}", f"framing: {{by: {delimiter}}}"
     )
-    for delimiter in ("length", "slip", "cobs", "none")
+    for delimiter in ("length", "slip", "cobs", "datagram")
 }
-ICDS = {name: text for name, text in (NAMED | RELAYS).items() if "delimited_by" in text}
+ICDS = {
+    name: text
+    for name, text in (NAMED | RELAYS).items()
+    if "\n  link:\n    framing:" in text
+}
 
 
 def packets_of(icd, direction: str, source: random.Random) -> list[bytes]:
@@ -83,7 +87,7 @@ def lines_of(icd, direction: str, count: int) -> list[bytes]:
     """Traffic of a direction: whole and damaged packets, and noise between them."""
     source = random.Random(11)
     packets = packets_of(icd, direction, source)
-    one_packet = facts.of(icd, icd.nodes[0]).stream.delimited_by == "none"
+    one_packet = facts.of(icd, icd.nodes[0]).stream.delimited_by == "datagram"
     lines = [*packets] if packets else []
     for _ in range(count if packets else 0):
         line = bytearray()

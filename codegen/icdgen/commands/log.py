@@ -51,7 +51,7 @@ _SUFFIXES = {
     type=click.Choice(["telemetry", "telecommand"]),
     default="telemetry",
     show_default=True,
-    help="Direction of a recorded framed stream.",
+    help="Direction of a recorded framed link.",
 )
 @icd_option
 def log(
@@ -66,7 +66,7 @@ def log(
     """List the contents of a telemetry log or a recorded link, or convert it to CSV,
     JSON lines or Parquet.
 
-    FILE is a log file of NODE, or, for a framed stream, a recording of the received
+    FILE is a log file of NODE, or, for a framed link, a recording of the received
     bytes. A row is an entry of the log or a message of the recording. A column is a
     field, `frame__field_unit`, with physical values and names of members. MESSAGEs, by
     id or name, limit the output to these. Without --out the conversion goes to standard

@@ -52,7 +52,7 @@ def monitor(
     identification.
 
     NODE can be omitted if there is only one. Frames that the device sends without a
-    request (logs) are shown as well. On a framed stream, all received messages or the
+    request (logs) are shown as well. On a framed link, all received messages or the
     given MESSAGEs are shown, and only responses to telecommands are requested. A
     message without a response keeps its last values and shows their age. On a terminal
     the table stays in place and scrolls if it is longer (arrows, PgUp, PgDn, Home,

@@ -144,7 +144,7 @@ class _Sim(click.Command):
 @click.option(
     "--every",
     type=SECONDS,
-    help="Period of telemetry on framed streams, in s; 0: none (default: the ICD's, otherwise 1).",
+    help="Period of telemetry on framed links, in s; 0: none (default: the ICD's, otherwise 1).",
 )
 @click.option(
     "--envelope",

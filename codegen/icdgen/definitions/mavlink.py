@@ -100,7 +100,7 @@ class MavLink2:
             node_name(file), f"MAVLink {stem}", {"byte_order": "little", "bit_order": "lsb0", "id_bits": self.id_bits},
             protocol=self.envelope(),
         )  # fmt: skip
-        seeds = network.seeds = network.protocol["checksums"]["x25"]["seeds"]  # type: ignore[index]
+        seeds = network.seeds = network.protocol["link"]["checksums"]["x25"]["seeds"]  # type: ignore[index]
         for path, root in roots.items():
             versions = (node.text or "" for node in root.iter("version"))
             version = next(
@@ -206,11 +206,15 @@ class MavLink2:
             {"bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
             {"bits": self.id_bits, "role": "id"},
         ]
-        trailer = [{"bits": 16, "role": "checksum", "checksum": "x25"}]
-        checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
+        covers = {"from": "length", "to": "data"}
+        checksum: Item = {"bits": 16, "role": "checksum", "checksum": "x25"}
         return {
-            "stream": {"delimited_by": "length", "header": header, "trailer": trailer},
-            "checksums": {"x25": checksum},
+            "link": {
+                "framing": {"by": "length"},
+                "header": header,
+                "trailer": [{**checksum, "covers": covers}],
+                "checksums": {"x25": {**_X25, "seeds": {}}},
+            }
         }
 
 

@@ -139,8 +139,8 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
         except NotSupported as why:
             to.left_out(container.name, why)
     network.protocol = {
-        "stream": {
-            "delimited_by": "length",
+        "link": {
+            "framing": {"by": "length"},
             "header": [
                 {"bits": 3, "role": "constant", "value": version},
                 {
@@ -186,8 +186,8 @@ def _add_without_header(
     widest, start = 8, _id_in_front(containers)
     if start:
         network.protocol = {
-            "stream": {
-                "delimited_by": "none",
+            "link": {
+                "framing": {"by": "datagram"},
                 "header": [{"bits": start, "role": "id"}],
             }
         }

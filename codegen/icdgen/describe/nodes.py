@@ -29,7 +29,7 @@ from icdgen.describe.lengths import (
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Icd, Message, Node, Struct
+from icdgen.icd.model import Enum, Icd, Message, Node, Struct, framed_link
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
 
@@ -440,8 +440,8 @@ class NodeDescription:
         """Whether its link has messages with an id of one byte: only these have a
         client, procedures and logs.
         """
-        return self.is_linked and "stream" not in self._description.icd.protocol_of(
-            self.model
+        return self.is_linked and not framed_link(
+            self._description.icd.protocol_of(self.model)
         )
 
     @property

@@ -13,22 +13,19 @@ from typing import Any, NamedTuple
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd, Node, framed_link
 from icdgen.protocol import facts as protocol
 
 # Keys that describe the manual, not the device
 WORDS = frozenset(("source", "summary", "printed_constant"))
 NAMES = ("name", "role", "value")  # keys that identify the rows of a list
 PART = re.compile(
-    r"protocol\.stream(\.packets(\.[^.]+)?)?(\.(header|trailer)(\.[^.]+)?)?"
+    r"protocol\.link(\.packets(\.[^.]+)?)?(\.(header|trailer)(\.[^.]+)?)?"
 )  # keys whose addition or removal changes the packet format
-AROUND = re.compile(
-    r"protocol\.stream\.(delimited_by|header|trailer|packets)\b.*"
-    r"|protocol\.checksums\b.*"
-)
+AROUND = re.compile(r"protocol\.link\.(framing|header|trailer|packets|checksums)\b.*")
 
 # To telecommands and requests of telemetry
-RESPONSES = re.compile(r"protocol\.stream\.(commands|requests)\b.*")
+RESPONSES = re.compile(r"protocol\.link\.(commands|requests)\b.*")
 
 
 class Fact(NamedTuple):
@@ -139,7 +136,7 @@ def shown(value: object) -> str:
 
 def has_packet_format(side: tuple[Icd, Node]) -> bool:
     """Return whether messages of the node have a packet format."""
-    return "stream" in side[1].protocol
+    return bool(framed_link(side[1].protocol))
 
 
 def packet_formats_differ(

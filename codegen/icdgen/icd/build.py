@@ -96,7 +96,7 @@ class Builder:
         structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
         if isinstance(protocol, Map):
-            packets.place_fields(protocol.get("stream"))
+            packets.place_fields(protocol.get("link"))
         words = tuple(
             w
             for w in (listed if isinstance(listed, list) else ())

@@ -7,7 +7,7 @@ the cache.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from typing import Any
 
@@ -235,8 +235,8 @@ class Icd:
         }
 
 
-# Parts of the protocol section that contain any number of things by name.
-_BY_NAME = ("checksums", "procedures")
+# Parts whose keys are overridden one by one.
+_BY_NAME = ("link", "procedures")
 
 
 def protocol_of_all(owners: Iterable[Node]) -> dict[str, Any]:
@@ -254,6 +254,14 @@ def protocol_of_all(owners: Iterable[Node]) -> dict[str, Any]:
         }
         merged |= owner.protocol | named
     return merged
+
+
+def framed_link(protocol: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the section `link` of a protocol section that describes a link of packets;
+    empty if it describes none, or another kind of link.
+    """
+    link = protocol.get("link")
+    return link if isinstance(link, dict) and "framing" in link else {}
 
 
 def closure(nodes: Iterable[Node], names: Iterable[str]) -> tuple[Node, ...]:

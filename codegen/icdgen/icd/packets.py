@@ -1,4 +1,4 @@
-"""Packet formats of a framed link, as the ICD declares them: ``packets`` of a `stream`,
+"""Packet formats of a framed link, as the ICD declares them: ``packets`` of a `link`,
 or its ``header`` and ``trailer`` alone.
 
 `icdgen.icd.rules.packets` checks them; `icdgen.protocol.enveloping` makes tables of
@@ -120,15 +120,15 @@ class Packets(NamedTuple):
         return listed or [packet for packet in carrying if packet.messages is None]
 
 
-def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packets:
-    """Return the packet formats of a `stream`.
+def declared_packets(link: Section, messages: Iterable[Message] = ()) -> Packets:
+    """Return the packet formats of a `link`.
 
     ``messages``: those of the node, whose responses can name packets.
     """
-    own = stream.get("packets")
-    header, trailer = (_fields(stream.get(part)) for part in ("header", "trailer"))
+    own = link.get("packets")
+    header, trailer = (_fields(link.get(part)) for part in ("header", "trailer"))
     if not isinstance(own, Mapping):
-        packets = [Packet("", stream, header, trailer)]
+        packets = [Packet("", link, header, trailer)]
     else:
         packets = [
             Packet(
@@ -140,7 +140,7 @@ def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packe
             for name, row in own.items()
             if isinstance(row, Mapping)
         ]
-    requests = stream.get("requests")
+    requests = link.get("requests")
     requesting, requested_bytes, answering = None, 0, None
     if isinstance(requests, Mapping):
         requested_bytes = requests.get("reserved", 0)
@@ -153,7 +153,7 @@ def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packe
         answering = next(
             (each for each in from_device if each == requests.get("response")), None
         )
-    responses = _responses(stream, messages)
+    responses = _responses(link, messages)
     named = [row.get("packet") for row in responses]  # may be no text
     # The other ones that responses name are mistakes, which rule ICD176 reports.
     responding = {
@@ -168,15 +168,15 @@ def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packe
     )
 
 
-def place_fields(stream: object) -> None:
+def place_fields(link: object) -> None:
     """Give fields of headers and trailers that have no position the end of the field in
     front of them.
 
-    ``stream``: the section of an ICD, or anything else, which the schema check reports.
+    ``link``: the section of an ICD, or anything else, which the schema check reports.
     """
-    packets = stream.get("packets") if isinstance(stream, Mapping) else None
+    packets = link.get("packets") if isinstance(link, Mapping) else None
     own = packets.values() if isinstance(packets, Mapping) else ()
-    for section in (each for each in (stream, *own) if isinstance(each, Mapping)):
+    for section in (each for each in (link, *own) if isinstance(each, Mapping)):
         for part in ("header", "trailer"):
             end = 0
             for row in _fields(section.get(part)):
@@ -191,26 +191,15 @@ def _fields(rows: object) -> list[Any]:
     return [row for row in fields if isinstance(row, Mapping)]
 
 
-def _responses(stream: Section, messages: Iterable[Message]) -> Iterator[Section]:
+def _responses(link: Section, messages: Iterable[Message]) -> Iterator[Section]:
     """Yield all responses of a link."""
-    commands = stream.get("commands", {})
-    for section in (commands, stream.get("requests", {})):
+    commands = link.get("commands", {})
+    for section in (commands, link.get("requests", {})):
         if isinstance(section, Mapping):
             yield from responses_in(section).values()
     for message in messages:
         if isinstance(commands, Mapping) and message.telecommand_id is not None:
             yield from declared_responses(commands, message).values()
-
-
-def covers_of(row: Section, checksums: Section) -> Section:
-    """Return what the checksum of a field covers: as the field says, otherwise the
-    declaration of its checksum; empty if neither does.
-    """
-    for section in (row, checksums.get(row.get("checksum", ""))):
-        covers = section.get("covers") if isinstance(section, Mapping) else None
-        if isinstance(covers, Mapping):
-            return covers
-    return {}
 
 
 def value_of(row: Section, direction: str, is_little: bool) -> int:

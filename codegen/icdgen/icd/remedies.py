@@ -40,6 +40,9 @@ _KEYS = {
     "width": "`bits:`", "description": "`summary:`", "comment": "`summary:`", "values": "`enum:`, with the members under `enums:`",
 }  # fmt: skip
 
+# Keys of earlier versions, which `icdgen fmt` converts.
+_EARLIER = frozenset({"stream", "checksums", "client"})
+
 _IN_BYTES = {
     "byte": ("at", "the first bit, if bytes count from 0"),
     "bytes": ("bits", "the width in bits"),
@@ -192,6 +195,10 @@ def of_key(key: str, value: object, known_keys: list[str]) -> Remedy | None:
     if target in known_keys:
         written = f" {8 * value}" if type(value) is int and 0 <= value < 1 << 16 else ""
         return Remedy(f"write `{target}:{written}`, {meaning}")
+    if key in _EARLIER and "link" in known_keys:
+        return Remedy("it is in `link:` now; `icdgen fmt` converts the file")
+    if key == "covers":
+        return Remedy("write it at the field with the role `checksum`")
     if key.lower() in _REPEATED:
         if "count" in known_keys:
             return Remedy(

@@ -1,5 +1,5 @@
 """Responses to telecommands on framed links, as the ICD declares them: ``commands`` of a
-`stream` for all telecommands, and the key ``response`` of one.
+`link` for all telecommands, and the key ``response`` of one.
 
 `icdgen.icd.rules.responses` checks them; `icdgen.protocol.responding` makes tables of
 them.
@@ -62,7 +62,7 @@ def declared_responses(commands: Section, message: Message) -> dict[str, Section
 
 
 def responses_in(keys: Section) -> dict[str, Section]:
-    """Return the responses of `stream: commands`, or of a `response`, by kind.
+    """Return the responses of `link: commands`, or of a `response`, by kind.
 
     A response that is only a name is a mapping with the key ``message`` here.
     """

@@ -7,7 +7,7 @@ from typing import Any
 from icdgen_runtime.wire.events import Busy, Outcome, Refused, Timeout
 
 from icdgen.icd.error_codes import error_enum
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd, Message, Node, framed_link
 from icdgen.icd.responses import declared_responses, echoes_of, reason_of
 from icdgen.values.frame import Frame
 
@@ -18,7 +18,7 @@ def reason_name(icd: Icd, node: Node, outcome: Outcome) -> str | None:
     """
     if not isinstance(outcome, Refused | Busy) or outcome.code is None:
         return None
-    if "stream" in icd.protocol_of(node):
+    if framed_link(icd.protocol_of(node)):
         return outcome.reason
     enum = error_enum(icd, node)
     member = enum.member_of(outcome.code) if enum else None
@@ -64,7 +64,7 @@ def has_further_fields(icd: Icd, node: Node, sent: Message, response: Message) -
     """Return whether a response says more than the telecommand, the status and the
     reason.
     """
-    commands = icd.protocol_of(node).get("stream", {}).get("commands", {})
+    commands = icd.protocol_of(node).get("link", {}).get("commands", {})
     known: set[str | None] = set()
     for row in declared_responses(commands, sent).values():
         if row.get("message") == response.name:

@@ -253,7 +253,7 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
     Raise `icdgen.errors.UserError`.
     """
     scheme, separator, remainder = text.partition("://")
-    is_packet = protocol.get("stream", {}).get("delimited_by") == "none"
+    is_packet = protocol.get("link", {}).get("framing", {}).get("by") == "datagram"
     if is_packet and scheme != "udp":
         raise PortError(
             f"{text} keeps no packets apart, and only they delimit messages here",
@@ -286,7 +286,8 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
         raise PortError(
             f"there is no port `{text}`: no such file", f"a port is named so: {FORMS}"
         )
-    return Serial(text, protocol.get("uart", {}))
+    line = protocol.get("link", {}).get("line") or protocol.get("uart", {})
+    return Serial(text, line)
 
 
 def address(text: str) -> tuple[str, int]:

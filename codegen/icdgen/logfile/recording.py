@@ -20,7 +20,7 @@ from icdgen.icd.variants import ids_of
 from icdgen.link.line_statistics import FAULTS
 from icdgen.logfile.rows import Done
 from icdgen.protocol import facts
-from icdgen.protocol.envelope import PACKET
+from icdgen.protocol.envelope import DATAGRAM
 from icdgen.runtime_objects.links import link_of
 
 _PIECE = 1 << 18  # bytes of a read
@@ -134,7 +134,7 @@ class Recording:
             names = ", ".join(sorted(name for _, name in unknown))
             help = "`--direction` says who sent what was recorded"
             raise UserError(f"{names} is no {direction} of {node.name}", help)
-        if self.form.delimited_by == PACKET:
+        if self.form.delimited_by == DATAGRAM:
             what = f"a message of {node.name} ends with the packet that carries it, which a file does not tell"
             raise UserError(what, "`icdgen decode` takes packets, one by one")
         try:

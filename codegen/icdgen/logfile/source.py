@@ -187,7 +187,7 @@ def node_of(icd: Icd, name: str | None) -> Node:
     if len(candidates) == 1:
         return candidates[0]
     if not candidates:
-        help = "`protocol.telemetry_log` describes files, and `protocol.stream` what can be recorded of a link"
+        help = "`protocol.telemetry_log` describes files, and `protocol.link` what can be recorded of a link"
         raise UserError("the ICDs describe no logs", help)
     names = ", ".join(node.name for node in candidates)
     raise UserError("it is not said whose log it is", f"name the node; nodes: {names}")

@@ -14,14 +14,14 @@ from icdgen.icd import checksum
 from icdgen.protocol.exchange import Exchange
 from icdgen.protocol.sections import Crc
 
-LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = (
+LENGTH, SLIP, COBS, HDLC, DATAGRAM = DELIMITERS = (
     "length",
     "slip",
     "cobs",
     "hdlc",
-    "none",
+    "datagram",
 )
-"""Delimiters of messages; `none`: the packet that carries the message."""
+"""Delimiters of messages; `datagram`: the packet that carries the message."""
 
 GIVEN = ("sequence", "source", "destination", "type", "flags", "time", "status", "reason")  # fmt: skip
 """Roles of fields whose values the sender chooses."""

@@ -1,4 +1,4 @@
-"""Reader of the `stream` section of a checked ICD, into the classes of
+"""Reader of the `link` section of a checked ICD, into the classes of
 `icdgen.protocol.envelope`.
 """
 
@@ -13,7 +13,6 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.packets import (
     Packet,
     Packets,
-    covers_of,
     declared_packets,
     id_shifts,
     is_requested,
@@ -144,7 +143,7 @@ def declaration_of(packet: Packet, checksums: Section) -> Section:
     """
     row = place_of(packet.rows, "checksum") or {}
     declaration: Section = checksums.get(row.get("checksum", ""), {})
-    return {**declaration, "covers": covers_of(row, checksums)} if declaration else {}
+    return {**declaration, "covers": row["covers"]} if declaration else {}
 
 
 def check_of(packet: Packet, checksums: Section) -> Check | None:
@@ -212,11 +211,10 @@ def packet_of(
 def stream_of(
     node: Node,
     section: Section,
-    checksums: Section,
     ids: Ids,
     enums: Mapping[str, Enum],
 ) -> Stream:
-    """Return the packet formats and messages of a `stream` section.
+    """Return the packet formats and messages of a `link` section.
 
     ``enums``: enumerations of the node, by name.
     """
@@ -224,7 +222,7 @@ def stream_of(
         [variant.message for variants in of_id.values() for variant in variants]
         for of_id in (ids.telecommand, ids.telemetry)
     )
-    packets = declared_packets(section, sent)
+    packets, checksums = declared_packets(section, sent), section.get("checksums", {})
     telemetry = {
         message.name: (message.telemetry_id, message)
         for message in received
@@ -248,7 +246,7 @@ def stream_of(
         exchange = request_exchange(sources, section["requests"])
         request = TelemetryRequest(requesting, exchange)
     stream = Stream(
-        delimited_by=section["delimited_by"],
+        delimited_by=section["framing"]["by"],
         per_id=sequence.get("per", "link") == "id",
         packets=formats,
         telecommands=telecommands,

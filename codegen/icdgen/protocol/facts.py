@@ -77,7 +77,7 @@ class Facts:
     def parts(self) -> dict[str, object]:
         """Described parts with declared facts, by their sections of the ICD."""
         parts = {
-            "client": self.client, "uart.framing": self.framing, "uart.acknowledge": self.acknowledge, "can": self.can,
+            "link.client": self.client, "uart.framing": self.framing, "uart.acknowledge": self.acknowledge, "can": self.can,
             "can.extended": self.can and self.can.extended, "crc8": self.checksum, "crc16": self.crc16,
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
             "index_file": self.index,
@@ -164,7 +164,7 @@ def of(icd: Icd, node: Node) -> Facts:
         telemetry_ids=reader.telemetry_ids(),
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
-        client=reader.part("client", Settings) or Settings(),
+        client=reader.part("link.client", Settings) or Settings(),
         framing=reader.part("uart.framing", Framing),
         acknowledge=reader.acknowledge(),
         polled=reader.polled(),

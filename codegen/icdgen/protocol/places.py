@@ -7,7 +7,7 @@ from typing import Any
 from icdgen.protocol import sections
 
 PLACES: tuple[tuple[str, type[Any]], ...] = (
-    ("client", sections.Settings),
+    ("link.client", sections.Settings),
     ("uart.framing", sections.Framing),
     ("uart.acknowledge", sections.Acknowledge),
     ("can", sections.Can),
@@ -19,8 +19,8 @@ PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("telemetry_log", sections.LogFile),
     ("unsolicited_log", sections.LogMessage),
     ("index_file", sections.Index),
-    ("checksums.*", sections.Crc),
-    *((path, sections.CheckValue) for path in ("crc8", "crc16", "checksums.*")),
+    ("link.checksums.*", sections.Crc),
+    *((path, sections.CheckValue) for path in ("crc8", "crc16", "link.checksums.*")),
 )
 """Where the facts of each part stand in the protocol section of an ICD; `*` is any
 name.

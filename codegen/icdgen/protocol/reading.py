@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import ceil
 from typing import Any, NamedTuple, TypeVar
 
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd, Message, Node, framed_link
 from icdgen.icd.variants import ids_of
 from icdgen.protocol.declared import read
 from icdgen.protocol.envelope import Stream
@@ -85,7 +85,7 @@ class Reader:
 
     def telemetry_ids(self) -> Direction:
         ids = self.section("message_id", "telemetry")
-        if self.section("stream"):
+        if framed_link(self.protocol):
             return Direction(1, 0)
         # Without telemetry the range is empty (first above last), and no received
         # message is a reply.
@@ -186,13 +186,12 @@ class Reader:
         )
 
     def stream(self) -> Stream | None:
-        section = self.section("stream")
+        section = framed_link(self.protocol)
         if not section:
             return None
         return stream_of(
             self.node,
             section,
-            self.section("checksums"),
             ids_of(self.icd, self.node),
             {
                 enum.name: enum
@@ -259,9 +258,9 @@ class Reader:
         owners = (*self.icd.included(self.node), self.node)
         nodes = {node.name: node for node in owners}
         enums = {enum.name: enum for node in owners for enum in node.enums}
-        names = [f"checksums.{name}" for name in self.section("checksums")]
+        names = [f"link.checksums.{name}" for name in self.section("link", "checksums")]
         checksums = {
-            path.removeprefix("checksums."): crc
+            path.removeprefix("link.checksums."): crc
             for path in ("crc8", "crc16", *names)
             if (crc := self.part(path, Crc))
         }

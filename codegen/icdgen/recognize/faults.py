@@ -26,7 +26,7 @@ from icdgen_runtime.wire.stuffing import Unstuffer
 
 from icdgen.describe.ids import id_text
 from icdgen.describe.numbers import byte_count
-from icdgen.protocol.envelope import COBS, HDLC, LENGTH, PACKET, SLIP
+from icdgen.protocol.envelope import COBS, DATAGRAM, HDLC, LENGTH, SLIP
 from icdgen.recognize.reading import Endpoint
 from icdgen.values.errors import BadLength, NotFound
 
@@ -400,7 +400,7 @@ def packet_begun(
     """Return the first packet without stuffing, and whether its end was received."""
     form = endpoint.link.stream
     assert form
-    if form.delimited_by == PACKET:
+    if form.delimited_by == DATAGRAM:
         return data, True
     if form.delimited_by == LENGTH:
         sizes = (

@@ -24,6 +24,7 @@ from icdgen.icd.model import (
     Message,
     Node,
     Struct,
+    framed_link,
 )
 from icdgen.icd.responses import ACK, BUSY, NAK, PROGRESS, REPLY, declared_responses
 from icdgen.icd.variants import ids_of
@@ -266,12 +267,12 @@ def _outcomes(icd: Icd, selected: Node, message: Message) -> list[str]:
     without header and trailer, an acknowledge.
     """
     protocol = icd.protocol_of(selected)
-    if "stream" not in protocol or message.telecommand_id is None:
+    if not framed_link(protocol) or message.telecommand_id is None:
         if message.acknowledge:
             return []
         restarts = message.expects_reset
         return ["restarts instead of acknowledging" if restarts else "not acknowledged"]
-    commands = protocol["stream"].get("commands", {})
+    commands = protocol["link"].get("commands", {})
     responses = declared_responses(commands, message)
     texts = [
         f"{_RESPONSES[kind]} {row.get('message') or 'packet ' + row['packet']}"

@@ -17,7 +17,7 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.variants import ids_of
 from icdgen.procedures.counterpart import Refused
-from icdgen.protocol.envelope import PACKET
+from icdgen.protocol.envelope import DATAGRAM
 from icdgen.protocol.facts import need
 from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
@@ -26,7 +26,7 @@ from icdgen.sim.faults import Faults
 from icdgen.values import numbers
 
 Cause = Literal["unknown_id", "length", "value", "checksum", "busy"]
-"""Why a telecommand is refused: a key of `reasons` in `stream: commands`."""
+"""Why a telecommand is refused: a key of `reasons` in `link: commands`."""
 
 _CAUSES: dict[str, Cause] = {  # event of the decoder -> cause
     "unknown_id": "unknown_id",
@@ -60,13 +60,13 @@ class EnvelopeLine(DeviceLine):
         super().__init__(computer, faults)
         program = computer.program
         self.form: Stream = need(program.link.stream, "stream")
-        self.keeps_packets = self.form.delimited_by == PACKET
+        self.keeps_packets = self.form.delimited_by == DATAGRAM
         packets = self.form.packets_of("telecommand")
         self._is_checked = any(packet.check for packet in packets)
         self.sender = Sender(program.link, "telemetry", chosen)
         self.decoder = StreamDecoder(program.link, "telecommand")
         self.ids = ids_of(program.icd, program.node)
-        section = program.icd.protocol_of(program.node)["stream"]
+        section = program.icd.protocol_of(program.node)["link"]
         commands: Mapping[str, Any] = section.get("commands", {})
         self._names_of_causes: Mapping[str, str] = commands.get("reasons", {})
         responses = [
@@ -80,7 +80,7 @@ class EnvelopeLine(DeviceLine):
         }
         if not self._refusals:
             self.no_refusal = (
-                "it needs `nak` in `stream: commands`, or values of a `status` that do "
+                "it needs `nak` in `link: commands`, or values of a `status` that do "
                 "not confirm"
             )
         is_busy_a_reason = bool(self._refusals) and "busy" in self._names_of_causes
@@ -88,7 +88,7 @@ class EnvelopeLine(DeviceLine):
             response_of(self.form, row.id, "busy") for row in self.form.telecommands
         ):
             self.no_busy_response = (
-                "it needs `busy` in `stream: commands`, in the values of a `status`, or "
+                "it needs `busy` in `link: commands`, in the values of a `status`, or "
                 "in the `reasons` of refusals"
             )
         responding = {response.telemetry for response in responses}

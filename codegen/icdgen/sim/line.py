@@ -38,7 +38,7 @@ class Line(DeviceLine):
             self.no_refusal = (
                 "it needs `uart: acknowledge`, and telecommands that are acknowledged"
             )
-        self.no_busy_response = "only a framed link (`stream`) can have one"
+        self.no_busy_response = "only a framed link (`link: framing`) can have one"
         self._no_error = program.facts.errors.get("none", 0)
         enum = error_enum(program.icd, program.node)
         self._codes = {

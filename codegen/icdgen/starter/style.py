@@ -28,11 +28,10 @@ _SECTIONS = (
     "i2c",
     "can",
     "crc8",
-    "stream",
-    "checksums",
+    "link",
 )
 # Keys of these sections that name messages of the node, which are not copied.
-_KEYS_ABOUT_MESSAGES = {"stream": ("commands",)}
+_KEYS_ABOUT_MESSAGES = {"link": ("commands",)}
 # Keys about the manual of the node, and about messages that are not copied.
 _KEYS_ABOUT_THE_MANUAL = (
     "source",
@@ -77,9 +76,9 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
             f"{node.name} does not say how its messages travel",
             "take the style of another node",
         )
-    lacks_responses = "commands" in (sections.get("stream") or {})
-    if "packets" in protocol.get("stream", {}):
-        protocol["stream"] = _without_listed_messages(protocol["stream"])
+    lacks_responses = "commands" in (sections.get("link") or {})
+    if "packets" in protocol.get("link", {}):
+        protocol["link"] = _without_listed_messages(protocol["link"])
     for key, omitted in _KEYS_ABOUT_MESSAGES.items():
         if key in protocol:
             protocol[key] = {
@@ -166,24 +165,24 @@ def in_style(text: str, style: Style, origin: str) -> str:
     return emit.of(root)
 
 
-def _without_listed_messages(stream: Tree) -> Tree:
-    """Return the section `stream` with the packets of all messages, of requests and of
+def _without_listed_messages(link: Tree) -> Tree:
+    """Return the section `link` with the packets of all messages, of requests and of
     refused requests only: other packets have messages that are not copied.
     """
-    requests = stream.get("requests", {})
+    requests = link.get("requests", {})
     responses = (row for row in requests.values() if isinstance(row, dict))
     named = {row.get("packet") for row in responses}
     responding = {
         row.get("packet")
-        for row in stream.get("commands", {}).values()
+        for row in link.get("commands", {}).values()
         if isinstance(row, dict)
     }
     packets = {
         name: packet
-        for name, packet in stream["packets"].items()
+        for name, packet in link["packets"].items()
         if "messages" not in packet and (name in named or name not in responding)
     }
-    return {**stream, "packets": packets}
+    return {**link, "packets": packets}
 
 
 def _seeded(protocol: Tree, messages: list[str]) -> Tree:
@@ -191,12 +190,16 @@ def _seeded(protocol: Tree, messages: list[str]) -> Tree:
     of the seeds of other messages.
     """
     seeds = {"seeds": dict.fromkeys(messages, 0)}
+    link = dict(protocol.get("link", {}))
+    named = _checksums_in(link)
     checksums = {
         name: {**checksum, **seeds} if "seeds" in checksum else checksum
-        for name, checksum in protocol.get("checksums", {}).items()
-        if name in _checksums_in(protocol.get("stream"))
+        for name, checksum in link.pop("checksums", {}).items()
+        if name in named
     }
-    return {**protocol, "checksums": checksums} if checksums else protocol
+    if checksums:
+        link["checksums"] = checksums
+    return {**protocol, "link": link} if link else protocol
 
 
 def _checksums_in(tree: object) -> set[str]:
@@ -239,7 +242,7 @@ def _renumber(messages: list[Child], style: Style) -> None:
 
 def _lengthen(messages: list[Child], style: Style) -> None:
     """Add reserved bytes to messages that are no multiple of the unit of lengths."""
-    packets = declared_packets(style.protocol.get("stream", {})).all
+    packets = declared_packets(style.protocol.get("link", {})).all
     units = (row.get("unit", 1) for packet in packets for row in packet.of("length"))
     unit = max(units, default=1)
     for message in messages:
@@ -260,7 +263,7 @@ def _lengthen(messages: list[Child], style: Style) -> None:
 def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
     """Return the first and last id of each direction."""
     section = protocol.get("message_id") or {}
-    packets = declared_packets(protocol.get("stream", {})).all
+    packets = declared_packets(protocol.get("link", {})).all
     widths = (sum(row["bits"] for row in packet.of(ID_ROLE)) for packet in packets)
     bits = min((width for width in widths if width), default=8)
     # Ids of the first ICD are small numbers, also if the link could carry larger ones.

@@ -27,9 +27,9 @@ from icdgen.describe.links import (
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.envelope import (
     CRC,
+    DATAGRAM,
     DIRECTIONS,
     NOTHING,
-    PACKET,
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, Response
@@ -336,7 +336,7 @@ class _Tables(TableSet):
             exchange = exchanges[form.request.exchange]
             row = Row(f"{exchange}, {data}, {form.request.packet}u")
             request = self.add("request", "icd_telemetry_request_t", [row])
-        delimiter = "packet" if form.delimited_by == PACKET else form.delimited_by
+        delimiter = "packet" if form.delimited_by == DATAGRAM else form.delimited_by
         around = (
             max((packet.overhead for packet in form.packets_of(each)), default=-1)
             for each in DIRECTIONS
@@ -361,7 +361,7 @@ class _Tables(TableSet):
             Row(request, "request of telemetry"),
         ]
         return self.add(
-            "stream", "icd_stream_form_t", parts, self.assumed.of_section("stream")
+            "stream", "icd_stream_form_t", parts, self.assumed.of_section("link")
         )
 
     def packet(self, form: Stream, number: int) -> Row:

@@ -20,12 +20,12 @@ from icdgen.protocol.envelope import (
     COBS,
     CRC,
     DATA,
+    DATAGRAM,
     DIRECTIONS,
     GIVEN,
     HDLC,
     LENGTH,
     NOTHING,
-    PACKET,
     REQUEST,
     SLIP,
     Check,
@@ -45,7 +45,7 @@ ENDS = {
     SLIP: "at the byte C0: in the message C0 is sent as DB DC, and DB as DB DD (SLIP, RFC 1055)",
     HDLC: "at the byte 7E: in the message 7E is sent as 7D 5E, and 7D as 7D 5D (HDLC, RFC 1662)",
     COBS: "at the byte 00; zeros in the message are stuffed (COBS)",
-    PACKET: "with the packet that carries it",
+    DATAGRAM: "with the packet that carries it",
 }
 _ROLES = {
     "sync": "begins a message",
@@ -311,7 +311,7 @@ def sums(section: Section, node_facts: Facts) -> list[Sum]:
     """Return the named checksums."""
     checksums = []
     checks = _checks(section, node_facts)
-    for name, declaration in section.get("checksums", {}).items():
+    for name, declaration in section.get("link", {}).get("checksums", {}).items():
         form = checks.get(name)
         kind, covers = declaration["kind"], declaration.get("covers")
         rows = [
@@ -344,7 +344,7 @@ def _checks(section: Section, node_facts: Facts) -> dict[str, Check]:
     """Return the checksums of the packets by name."""
     if node_facts.stream is None:
         return {}
-    declared = declared_packets(section["stream"]).all
+    declared = declared_packets(section["link"]).all
     return {
         row["checksum"]: form.check
         for packet, form in zip(declared, node_facts.stream.packets, strict=True)
@@ -398,7 +398,7 @@ def _unstuffed(link: Link) -> Link:
     parts.
     """
     assert link.stream
-    return link._replace(stream=link.stream._replace(delimited_by="none"))
+    return link._replace(stream=link.stream._replace(delimited_by="datagram"))
 
 
 def _parts(packet: PacketFormat, sent: bytes) -> list[Part]:

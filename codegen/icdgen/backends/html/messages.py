@@ -16,7 +16,7 @@ from icdgen.describe.numbers import count_text, length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.lines import lines
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Message, Node, framed_link
 from icdgen.wording import count
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def _facts(
     """Return label, text and link of each fact."""
     protocol = relations.icd.protocol_of(node) or {}
     # Packet formats have responses instead of acknowledges.
-    is_acknowledged = message.telecommand_id is not None and "stream" not in protocol
+    is_acknowledged = message.telecommand_id is not None and not framed_link(protocol)
     source = [
         f"{word} {number}"
         for word, number in (("table", message.table), ("page", message.page))

@@ -88,8 +88,8 @@ def _anchor(packet: str, node: Node, taken: set[str]) -> str:
 
 
 def _section(relations: Relations, node: Node) -> Mapping[str, Any]:
-    """Return the `stream` of a node; empty without one."""
-    section: Mapping[str, Any] = relations.icd.protocol_of(node).get("stream", {})
+    """Return the `link` of a node; empty without one."""
+    section: Mapping[str, Any] = relations.icd.protocol_of(node).get("link", {})
     return section
 
 

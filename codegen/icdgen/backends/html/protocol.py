@@ -114,8 +114,10 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
 def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     """Return the settings of each bus."""
     settings_by_bus = []
-    for key, title in texts.BUSES.items():
-        rows = list(_settings(section.get(key, {}), ""))
+    buses = {title: section.get(key, {}) for key, title in texts.BUSES.items()}
+    line = {"Serial line": section.get("link", {}).get("line", {})}
+    for title, settings in (line | buses).items():
+        rows = list(_settings(settings, ""))
         if rows:
             settings_by_bus.append((title, rows))
     return settings_by_bus

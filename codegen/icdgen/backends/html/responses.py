@@ -11,7 +11,7 @@ from icdgen.backends.html.all_facts import Row
 from icdgen.backends.html.packets import packet_urls
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.backends.html.texts import capitalized
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Message, Node, framed_link
 from icdgen.icd.responses import (
     ACK,
     BUSY,
@@ -120,7 +120,7 @@ def request_row(relations: Relations, node: Node) -> RequestRow | None:
     stream = facts.of(relations.icd, node).stream
     if stream is None or stream.request is None:
         return None
-    section = relations.icd.protocol_of(node)["stream"]["requests"]
+    section = relations.icd.protocol_of(node)["link"]["requests"]
     name, urls = stream.packets[stream.request.packet].name, packet_urls(
         relations, node
     )
@@ -143,7 +143,7 @@ def of_message(
     relations: Relations, node: Node, message: Message
 ) -> Iterator[tuple[str, str, str]]:
     """Yield label, text and link of each fact about responses on the page of a message."""
-    if "stream" not in relations.icd.protocol_of(node):
+    if not framed_link(relations.icd.protocol_of(node)):
         return
     if message.telecommand_id is not None:
         row = _telecommand(relations, node, message)
@@ -187,7 +187,7 @@ def _milliseconds(timeout: int | None) -> str:
 
 
 def _commands(relations: Relations, node: Node) -> Mapping[str, Any]:
-    stream: Mapping[str, Any] = relations.icd.protocol_of(node).get("stream", {})
+    stream: Mapping[str, Any] = relations.icd.protocol_of(node).get("link", {})
     commands: Mapping[str, Any] = stream.get("commands", {})
     return commands
 

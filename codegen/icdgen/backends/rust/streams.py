@@ -33,7 +33,7 @@ from icdgen.protocol.envelope import (
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 
-_DELIMITERS = {"none": "Packet"}
+_DELIMITERS = {"datagram": "Packet"}
 _CONTENTS = {NOTHING: "Nothing"}
 
 

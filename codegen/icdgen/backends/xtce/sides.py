@@ -105,7 +105,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
 
 def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) -> Head:
     """Return the header of all messages of a direction."""
-    header = protocol.get("stream", {}).get("header", ())
+    header = protocol.get("link", {}).get("header", ())
     # The header of CCSDS 133.0-B-2 is recognized by the positions of its fields.
     is_packet = [(row.get("at"), row.get("bits")) for row in header] == [
         run[:2] for run in _PACKET.values()

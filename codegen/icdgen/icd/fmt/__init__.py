@@ -12,18 +12,22 @@ from icdgen.icd.located import Map
 def format_text(text: str, name: str) -> str:
     """Return the text of a file in the canonical layout, with its comments.
 
-    ``name`` is the file name in findings.
+    Keys of earlier versions are converted to the present ones. ``name`` is the file
+    name in findings.
 
     Raises `diagnostics.Findings` if the loader cannot read the text, because then its
     meaning is unclear.
     """
-    from icdgen.icd.fmt import kinds, read, write
+    from icdgen.icd.fmt import earlier, kinds, read, write
 
     text = text.removeprefix("\ufeff")
     values = source.parse(text.encode("utf-8", "surrogatepass"), name)
     document = "errata" if "errata" in values else "icd"
     root = read.read(text, values)
+    is_converted = earlier.convert(root)
     result = write.write(root, kinds.root(document))
+    if is_converted:
+        values = source.parse(result.encode("utf-8", "surrogatepass"), name)
     if result != text:
         _verify(text, values, result, name)
     return result

@@ -96,7 +96,7 @@ def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
         for message in ctx.messages_of(node):
             if id(message.source) in optional:
                 absent = f"{quote(message.name)} has optional fields"
-                help = "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
+                help = "leave `when` or `protocol` out of this ICD, or describe the link in `link`"
                 yield Fault.at(
                     message.source,
                     "name",

@@ -13,7 +13,15 @@ from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Derived, LayoutNode, Orders, Scalar, scalar_of
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Icd, Message, Node, Struct, protocol_of_all
+from icdgen.icd.model import (
+    Enum,
+    Icd,
+    Message,
+    Node,
+    Struct,
+    framed_link,
+    protocol_of_all,
+)
 from icdgen.icd.trees import at_path, mappings
 from icdgen.once import cached_property
 
@@ -230,7 +238,7 @@ class Context:
         """Return whether the protocol describes links on which each message needs an id
         and one length.
 
-        A `stream` needs neither.
+        A framed link needs neither.
         """
         protocol = self.protocol_of(node)
-        return bool(protocol) and "stream" not in protocol
+        return bool(protocol) and not framed_link(protocol)

@@ -1,4 +1,4 @@
-"""Protocol section `stream`: links whose frames have header and trailer fields with
+"""Protocol section `link`: links whose frames have header and trailer fields with
 roles.
 """
 
@@ -9,10 +9,9 @@ from typing import Any, NamedTuple
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.packets import Packet, Packets, covers_of, declared_packets
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
+from icdgen.icd.packets import Packet, Packets, declared_packets
 from icdgen.icd.procedures import nested_steps
-from icdgen.icd.responses import Section
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, of_wide_value
@@ -38,8 +37,10 @@ ONLY_WITH = {
     "covers": ("checksum",),
     "enum": ("status", "reason"),
 }
-# Keys of a protocol section with `stream`.
-ALLOWED_WITH_STREAM = ("stream", "checksums", "client", "uart", "boot", "procedures")
+# Keys of a protocol section with a framed link.
+ALLOWED_WITH_LINK = ("link", "boot", "procedures")
+# Keys of `link` that other links have as well.
+ALLOWED_WITHOUT_FRAMING = ("source", "client", "assumptions")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -85,18 +86,29 @@ class Link(NamedTuple):
                     seen.add(id(row))
                     yield part, row
 
+    @property
+    def checksums(self) -> Map:
+        """Return the declarations of the checksums, by name."""
+        checksums = self.section.get("checksums")
+        return checksums if isinstance(checksums, Map) else unread()
+
+    @property
+    def framing(self) -> object:
+        """Return how bytes become packets."""
+        return at_path(self.section, ("framing", "by"))
+
     def place(self, packet: LinkPacket) -> tuple[Map, str]:
         """Return mapping and key that describe a packet as a whole."""
         if packet.title:
             return self.section["packets"][packet.packet.name], "from"
-        return self.section, "delimited_by"
+        return self.section, "framing"
 
 
 def links(ctx: Context) -> Iterator[Link]:
-    """Yield the links of the nodes that declare a valid `stream` themselves."""
+    """Yield the links of the nodes that declare a valid `link` themselves."""
     for node in ctx.icd.nodes:
-        section = section_of(node, "stream")
-        if section is None:
+        section = section_of(node, "link")
+        if section is None or "framing" not in section:
             continue
         telecommands = [message for _, message in ids_of(ctx, node, TELECOMMAND)]
         declared = declared_packets(section, telecommands)
@@ -151,34 +163,27 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         protocol = link.node.source["protocol"]
         for key in protocol:
-            if key not in ALLOWED_WITH_STREAM:
-                message = f"`{key}` belongs to another kind of link than `stream` and has no effect"
-                yield Fault.at_key(
-                    protocol, key, message, f"remove `{key}` or `stream`"
-                )
-        uart = protocol.get("uart")
-        client = protocol.get("client")
+            if key not in ALLOWED_WITH_LINK:
+                message = f"`{key}` has no effect beside `link: framing`"
+                help = f"remove `{key}` or `framing`"
+                if key == "uart":
+                    help = "remove it: `link: line` describes a serial line"
+                yield Fault.at_key(protocol, key, message, help)
+        client = link.section.get("client")
         for key in ("poll_interval_ms", "poll_timeout_ms"):
             if isinstance(client, Map) and key in client:
-                message = f"`{key}` has no effect, because framed streams do not poll"
+                message = f"`{key}` has no effect, because framed links do not poll"
                 yield Fault.at_key(client, key, message, "remove it")
-        for key in ("framing", "acknowledge"):
-            if isinstance(uart, Map) and key in uart:
-                message = f"`uart: {key}` and `stream` are two ways to delimit messages, and a device uses one of them"
-                yield Fault.at_key(
-                    uart, key, message, f"remove `{key}`, or remove `stream`"
-                )
     for node in ctx.icd.nodes:
-        checksums = section_of(node, "checksums")
-        if checksums is not None and "stream" not in ctx.protocol_of(node):
-            protocol = node.source["protocol"]
-            message = "there is no `stream` whose messages these checksums could be of"
-            yield Fault.at_key(
-                protocol,
-                "checksums",
-                message,
-                "describe the link as a `stream`, or remove them",
-            )
+        section = section_of(node, "link") or unread()
+        if framed_link(ctx.protocol_of(node)):
+            continue
+        for key in section:
+            if key not in ALLOWED_WITHOUT_FRAMING:
+                message = f"`{key}` belongs to a framed link, and `framing` is missing"
+                help = "add `framing: {by: ...}`, how bytes become packets"
+                yield Fault.at_key(section, key, message, help)
+                break
 
 
 @rule("ICD171")
@@ -225,7 +230,7 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
 
 def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
     """Yield the faults of roles that a packet needs and no field has."""
-    is_delimited = link.section.get("delimited_by") != "length"
+    is_delimited = link.framing != "length"
     for packet in link.packets:
         place = link.place(packet)
         lengths = packet.of("length")
@@ -260,11 +265,11 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             if len(lengths_of) > 1:
                 sizes = listing(f"{size}" for size in sorted(lengths_of))
                 message = f"no field{packet.title} has the role `length`, and the telemetry in it has {sizes} bytes"
-                help = "add one, or choose another value of `delimited_by`"
+                help = "add one, or choose another `framing`"
                 yield Fault.at(*place, message, help)
         if varying is not None:
             message = f"no field{packet.title} has the role `length`, and {quote(varying.name)} has no fixed length"
-            help = "add one, or choose another value of `delimited_by`"
+            help = "add one, or choose another `framing`"
             yield Fault.at(*place, message, help)
 
 
@@ -395,7 +400,7 @@ def _lengths(
 @rule("ICD173")
 def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
-        checksums = section_of(link.node, "checksums") or unread()
+        checksums = link.checksums
         fields = list(_checksum_fields(link))
         procedures = link.node.source["protocol"].get("procedures")
         in_procedures = set(_checksums_in_steps(procedures))
@@ -421,21 +426,15 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                 )
             elif _is_valid(declared):
                 yield from _checksum(ctx, link, packet, part, row, declared)
-                yield from _covered(packet, part, row, covers_of(row, checksums))
-        for name, declared in checksums.items():
+                yield from _covered(packet, part, row, row.get("covers"))
+        for name in checksums:
             own = [row for *_, row in fields if row.get("checksum") == name]
             if not own and name in in_procedures:
                 continue
             if not own:
                 message = f"no field of the frame has the checksum {quote(name)}"
                 help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
-                yield Fault(
-                    section_of(link.node), checksums.key_at(name), message, help
-                )
-            elif isinstance(declared, Map) and "covers" in declared:
-                if all("covers" in row for row in own):
-                    text = "`covers` has no effect, because each field with this checksum has its own"
-                    yield Fault.at_key(declared, "covers", text, "remove it")
+                yield Fault.at_key(checksums, name, message, help)
 
 
 def _checksums_in_steps(procedures: object) -> Iterator[str]:
@@ -521,14 +520,14 @@ def _checksum(
 
 
 def _covered(
-    packet: LinkPacket, part: str, row: Map, covers: Section
+    packet: LinkPacket, part: str, row: Map, covers: object
 ) -> Iterator[Fault]:
     """Yield the faults of `covers`, which must include the data but not the checksum
     itself.
     """
-    if not isinstance(covers, Map) or not covers:
+    if not isinstance(covers, Map):
         message = "nothing says what the checksum covers"
-        help = "add `covers: {from: ..., to: ...}` to the field or to its checksum"
+        help = "add `covers: {from: ..., to: ...}`"
         yield Fault.at(row, "checksum", message, help)
         return
     if not all(isinstance(covers.get(key), str) for key in ("from", "to")):
@@ -607,8 +606,7 @@ def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
     the framing.
     """
     for link in links(ctx):
-        checksums = section_of(link.node, "checksums") or unread()
-        all_seeds = [at_path(checksum, ["seeds"]) for checksum in checksums.values()]
+        all_seeds = [at_path(each, ["seeds"]) for each in link.checksums.values()]
         for direction in DIRECTIONS:
             first_of_id: dict[int, Message] = {}
             for id, message in ids_of(ctx, link.node, direction):

@@ -18,7 +18,7 @@ from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import mappings
 from icdgen.wording import count, listing, quote
 
-LINKED_BITS = 8  # width of ids on the links of a protocol section, other than `stream`
+LINKED_BITS = 8  # width of ids on the links of a protocol section, other than `link`
 
 
 class Use(NamedTuple):
@@ -70,7 +70,7 @@ def _is_id(value: object) -> bool:
 @rule("ICD055")
 def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        # On a link other than `stream`, only the id identifies a message.
+        # On a link other than `link`, only the id identifies a message.
         is_linked = ctx.is_linked(node)
         seen: dict[tuple[str, int], list[Use]] = {}
         for use in _uses_in_scope(ctx, node):
@@ -221,7 +221,7 @@ def _remedy(
 ) -> str:
     """Return the help for an id that is out of range."""
     if not ranges and ctx.is_linked(node):
-        return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except a `stream`"
+        return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except those of `link`"
     if not ranges:
         # Identifiers of CAN have 11 or 29 bits, other ids whole bytes.
         widths = (29, 32) if node.id_bits == 11 else (8, 16, 24, 32)
@@ -270,7 +270,9 @@ def links_can_carry_ids(ctx: Context) -> Iterator[Fault]:
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         if node.id_bits > LINKED_BITS:
             message = f"ids have {node.id_bits} bits, but the links that `protocol` describes carry ids of one byte"
-            help = "describe the link as a `stream`, or leave `protocol` out; or correct `id_bits`"
+            help = (
+                "describe it in `link`, or leave `protocol` out; or correct `id_bits`"
+            )
             yield Fault.at(node.source["node"], "id_bits", message, help)
 
 

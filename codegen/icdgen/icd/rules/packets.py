@@ -1,4 +1,4 @@
-"""Packet formats of framed links: ``packets`` and ``requests`` of `stream`."""
+"""Packet formats of framed links: ``packets`` and ``requests`` of `link`."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
 from icdgen.icd.packets import DEVICE, HOST, Packet, is_requested, value_of
 from icdgen.icd.pieces import bits_of
 from icdgen.icd.responses import declared_responses
-from icdgen.icd.rules.context import Context, section_of
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import (
     DIRECTIONS,
     FIXED,
@@ -138,7 +138,9 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
         if not isinstance(requests, Map):
             for _, message in telemetry:
                 if "requested" in message.source:
-                    text = "`requested` has an effect on links with `stream: requests` only"
+                    text = (
+                        "`requested` has an effect on links with `link: requests` only"
+                    )
                     yield Fault.at_key(message.source, "requested", text, "remove it")
             continue
         name = link.declared.requesting
@@ -240,9 +242,8 @@ def _nameless(
         text = f"no telemetry is sent in the packet {quote(packet.name)}"
         help = "remove `response`, or correct the packets"
         yield Fault.at(requests, "response", text, help)
-    checksums = section_of(link.node, "checksums") or unread()
     for row in mappings(packet.of("checksum")):
-        declared = checksums.get(row.get("checksum", ""))
+        declared = link.checksums.get(row.get("checksum", ""))
         if isinstance(declared, Map) and "seeds" in declared:
             text = "the checksum has a seed for each message, and the packet does not say which message it carries"
             yield Fault.at(row, "checksum", text, "remove `seeds`, or add an id")

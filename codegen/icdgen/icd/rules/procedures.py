@@ -24,7 +24,7 @@ from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
-from icdgen.icd.trees import mappings, named
+from icdgen.icd.trees import at_path, mappings, named
 from icdgen.wording import count, listing, quote
 
 MOST_REGISTERS = 24  # numbers that a procedure keeps
@@ -125,7 +125,7 @@ def _procedures(ctx: Context) -> Iterator[Names]:
         nodes = {owner.name: owner for owner in ctx.scope(node)}
         protocol = ctx.protocol_of(node)
         # Without places: it is a copy if several nodes have checksums.
-        declared = protocol.get("checksums")
+        declared = at_path(protocol, ("link", "checksums"))
         own = {*declared} if isinstance(declared, Mapping) else set()
         checksums = frozenset({*own, *({"crc8", "crc16"} & {*protocol})})
         for procedure in procedures_in(node):

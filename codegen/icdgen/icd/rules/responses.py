@@ -1,4 +1,4 @@
-"""Responses to telecommands on framed links: ``commands`` of `stream`, and the key
+"""Responses to telecommands on framed links: ``commands`` of `link`, and the key
 `response` of messages.
 """
 
@@ -11,7 +11,7 @@ from icdgen.icd.enumeration import Enum
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, integer_range
 from icdgen.icd.located import Map, Seq, unread
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
 from icdgen.icd.packets import ID_ROLE, Packet
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
@@ -647,7 +647,7 @@ def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
                 text = f"`{key}` applies to a telecommand, not to telemetry"
                 yield Fault.at_key(message.source, key, text, "remove it")
             elif _is_on_other_links(ctx, node) and ctx.complete:
-                text = f"`{key}` has an effect on framed links (`stream`) only"
+                text = f"`{key}` has an effect on framed links (`link: framing`) only"
                 yield Fault.at_key(message.source, key, text, "remove it")
         if "period_ms" not in message.source:
             continue
@@ -659,11 +659,13 @@ def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
             yield Fault.at_key(message.source, "period_ms", text, "remove it")
     for node in ctx.icd.nodes:
         protocol = node.source.get("protocol")
-        client = protocol.get("client") if isinstance(protocol, Map) else None
+        client = at_path(protocol, ("link", "client"))
         if isinstance(client, Map) and _is_on_other_links(ctx, node):
             for key in STREAM_SETTINGS:
                 if key in client:
-                    text = f"`{key}` has an effect on framed links (`stream`) only"
+                    text = (
+                        f"`{key}` has an effect on framed links (`link: framing`) only"
+                    )
                     yield Fault.at_key(client, key, text, "remove it")
 
 
@@ -673,7 +675,7 @@ def _is_on_other_links(ctx: Context, node: Node) -> bool:
     A file that other files include often describes no link.
     """
     protocols = [ctx.protocol_of(user) for user in ctx.users(node)]
-    return not any("stream" in protocol for protocol in protocols) and any(
+    return not any(map(framed_link, protocols)) and any(
         at_path(protocol, path) is not None
         for protocol in protocols
         for path in OTHER_LINKS

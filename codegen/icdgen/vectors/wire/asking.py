@@ -112,7 +112,7 @@ class Sample:
     def header_of(self, asked: Row) -> bytes:
         """Return the header of what a row sends, with the first sequence number."""
         stream = need(self.link.stream, "stream")
-        link = self.link._replace(stream=stream._replace(delimited_by="none"))
+        link = self.link._replace(stream=stream._replace(delimited_by="datagram"))
         if "telecommand" not in asked:
             return stream_encode_request(link, asked["telemetry"])
         data = bytes.fromhex(asked["bytes"])
@@ -268,7 +268,7 @@ def _requests_with_reply(
     bad = bytearray.fromhex(s.come(0, frame)["receive"])
     # Delimited formats end with a delimiter, so a byte in the middle is damaged
     # instead.
-    bad[-1 if form.delimited_by in ("length", "none") else len(bad) // 2] ^= 1
+    bad[-1 if form.delimited_by in ("length", "datagram") else len(bad) // 2] ^= 1
     yield "the reply comes", [
         s.ask(0, row, **reply),
         s.come(30, frame),

@@ -20,10 +20,10 @@ from icdgen_runtime.wire.stream import (
 )
 
 from icdgen.protocol.envelope import (
+    DATAGRAM,
     DIRECTIONS,
     GIVEN,
     NOTHING,
-    PACKET,
     Stream,
     StreamRow,
 )
@@ -73,7 +73,7 @@ def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests
             continue
         sent += [_line(link, direction, row, source, 0) for row in rows[:2]]
         yield "packets of all formats, one after the other", _events(direction, sent)
-        if form.delimited_by != PACKET:
+        if form.delimited_by != DATAGRAM:
             stream = b"\x00\xff" + b"".join(sent) + b"noise" + b"".join(sent[::-1])
             for how, chunks in pieces("packets of all formats", stream, source):
                 yield how, _events(direction, chunks)
@@ -171,7 +171,7 @@ def _streams(
         for number, row in enumerate(rows[:6])
     ]
     good = _line(link, direction, short, source, 0)
-    if form.delimited_by == PACKET:
+    if form.delimited_by == DATAGRAM:
         yield "packets, one after the other", _events(direction, lines)
         yield "a packet of nothing", _events(direction, [b"", good])
         yield "two messages in a packet", _events(direction, [good + good])

@@ -639,31 +639,31 @@ LINK: link.Link[_Node] = link.Link(
     },
     assumptions=(
         link.Assumption(
-            section="client",
+            section="link.client",
             key="reply_timeout_ms",
             value=1000,
             why="No time is given. The longest message takes 90 ms on the UART.",
         ),
         link.Assumption(
-            section="client",
+            section="link.client",
             key="retries",
             value=3,
             why="Nothing is said about trying again.",
         ),
         link.Assumption(
-            section="client",
+            section="link.client",
             key="poll_interval_ms",
             value=20,
             why="No time is given.",
         ),
         link.Assumption(
-            section="client",
+            section="link.client",
             key="poll_timeout_ms",
             value=5000,
             why="No time is given.",
         ),
         link.Assumption(
-            section="client",
+            section="link.client",
             key="late_ms",
             value=1000,
             why="No time is given. It is ten times the longest message on the UART.",

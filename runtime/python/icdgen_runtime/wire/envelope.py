@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple, Optional
 
-Delimiter = Literal["length", "slip", "cobs", "hdlc", "none"]
+Delimiter = Literal["length", "slip", "cobs", "hdlc", "datagram"]
 CheckKind = Literal["crc", "fletcher", "fletcher_255", "sum", "xor"]
 Direction = Literal["telecommand", "telemetry"]
 Content = Literal["message", "request", "requested", "none"]

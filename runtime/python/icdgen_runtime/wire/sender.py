@@ -32,7 +32,7 @@ class Sender:
     ) -> None:
         self._form = form = need(link.stream, "stream")
         # Without delimiters, to see the header.
-        self._link = link._replace(stream=form._replace(delimited_by="none"))
+        self._link = link._replace(stream=form._replace(delimited_by="datagram"))
         self.header = b""
         """Header of the last packet."""
         self._direction: Direction = direction

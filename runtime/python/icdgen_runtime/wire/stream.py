@@ -395,7 +395,7 @@ class StreamDecoder:
         self._buffer = bytearray()
         self._line = (
             None
-            if form.delimited_by in ("length", "none")
+            if form.delimited_by in ("length", "datagram")
             else Unstuffer(form.delimited_by, self._limit)
         )
         self._last: dict[Optional[int], int] = {}  # last sequence numbers
@@ -413,7 +413,7 @@ class StreamDecoder:
         if self._line:
             for frame in self._line.feed(data):
                 self._frame(frame.bytes, frame.size, frame.fault, events)
-        elif self._form.delimited_by == "none":
+        elif self._form.delimited_by == "datagram":
             fault = "overrun" if len(data) > self._limit else None
             self._frame(data, len(data), fault, events)
         else:
