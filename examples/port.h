@@ -1,4 +1,4 @@
-/* A TCP port and a clock on POSIX for request.c and control.c. Your driver and clock replace them. */
+/* A TCP port and a clock on POSIX for the example programs. Your driver and clock replace them. */
 #ifndef PORT_H
 #define PORT_H
 
@@ -47,20 +47,42 @@ static inline int port_open(const char *host, const char *number)
     return port;
 }
 
+/* Sends the bytes. */
+static inline void port_write(int port, const uint8_t *bytes, size_t count)
+{
+    while (count != 0) {
+        const ssize_t sent = write(port, bytes, count);
+        if (sent < 0) {
+            port_failed("cannot send");
+        }
+        bytes += sent;
+        count -= (size_t)sent;
+    }
+}
+
+/* Waits for bytes until the time `until`. Returns their number; 0: none came. */
+static inline size_t port_read(int port, uint8_t *bytes, size_t capacity, uint32_t until)
+{
+    struct pollfd ready = {port, POLLIN, 0};
+    const int32_t left = (int32_t)(until - port_now());
+    ssize_t got = 0;
+    if (poll(&ready, 1, left > 0 ? left : 0) > 0) {
+        got = read(port, bytes, capacity);
+        if (got <= 0) {
+            fprintf(stderr, "the connection is closed\n");
+            exit(EXIT_FAILURE);
+        }
+    }
+    return (size_t)got;
+}
+
 /* Sends all that the client has to send. */
 static inline void port_send(int port, icd_client_t *client)
 {
     const uint8_t *bytes;
     size_t count;
     while (icd_client_output(client, &bytes, &count)) {
-        while (count != 0) {
-            const ssize_t sent = write(port, bytes, count);
-            if (sent < 0) {
-                port_failed("cannot send");
-            }
-            bytes += sent;
-            count -= (size_t)sent;
-        }
+        port_write(port, bytes, count);
     }
 }
 
@@ -68,17 +90,8 @@ static inline void port_send(int port, icd_client_t *client)
 static inline void port_receive(int port, icd_client_t *client, uint32_t until, icd_event_fn *on_event, void *context)
 {
     uint8_t input[4096];
-    struct pollfd ready = {port, POLLIN, 0};
-    const int32_t left = (int32_t)(until - port_now());
-    ssize_t got = 0;
-    if (poll(&ready, 1, left > 0 ? left : 0) > 0) {
-        got = read(port, input, sizeof input);
-        if (got <= 0) {
-            fprintf(stderr, "the connection is closed\n");
-            exit(EXIT_FAILURE);
-        }
-    }
-    icd_client_received(client, port_now(), input, (size_t)got, on_event, context);
+    const size_t count = port_read(port, input, sizeof input, until);
+    icd_client_received(client, port_now(), input, count, on_event, context);
 }
 
 /* The outcome of a request: an event, with a copy of its data. */

@@ -8,10 +8,13 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import urlsplit
 
 import pytest
 
+from icdgen.icd.model import Icd
+from icdgen.loading import load
 from tests import documents
 from tests.c import harness as c
 from tests.conftest import ROOT
@@ -20,61 +23,79 @@ from tests.rust import harness as rust
 from tests.rust.tools import USED, Toolchain
 from tests.sim.device import simulator
 
-EXAMPLES = {
+CONTROL = {
     "c": ROOT / "examples" / "control.c",
     "rust": ROOT / "examples" / "rust" / "src" / "bin" / "control.rs",
     "python": ROOT / "examples" / "control.py",
 }
+WHEEL = {
+    language: ROOT / "examples" / "links" / f"wheel.{ending}"
+    for language, ending in (("c", "c"), ("rust", "rs"), ("python", "py"))
+}
+WHEEL_ICD = WHEEL["c"].with_suffix(".yaml")
 FLAGS = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", *c.WARNINGS)
 
 
-@pytest.fixture(scope="module")
-def headers(tmp_path_factory) -> Path:
-    return c.generate(c.shipped(), tmp_path_factory.mktemp("headers"))
+class Example(NamedTuple):
+    """A program in each language, and what is generated for it."""
+
+    files: dict[str, Path]
+    headers: Path
+    crate: Path  # compiled, with std
+    package: Path  # folder of the Python package
+    commands: dict[str, list[str | Path]]
 
 
-@pytest.fixture(scope="module")
-def crate(tmp_path_factory) -> Path:
-    """The compiled crate, with std."""
-    folder = tmp_path_factory.mktemp("crate")
-    return Toolchain("default").library(rust.generate(rust.shipped(), folder), *USED)
-
-
-@pytest.fixture(scope="module")
-def package(tmp_path_factory) -> Path:
-    """The folder of the Python package."""
-    folder = tmp_path_factory.mktemp("package")
-    for path, text in packages.files(packages.shipped()).items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(text, encoding="utf-8")
-    return folder
-
-
-@pytest.fixture(scope="module")
-def programs(headers, crate, package, tmp_path_factory) -> dict[str, list[str | Path]]:
-    """The command of each."""
-    folder = tmp_path_factory.mktemp("programs")
-    return {
-        "c": [
-            c.compile(
-                EXAMPLES["c"],
-                *FLAGS,
-                *c.SANITIZERS,
-                f"-I{headers}",
-                output=folder / "c",
-            )
-        ],
-        "rust": [
-            Toolchain("default").program(EXAMPLES["rust"], crate, folder / "rust")
-        ],
-        "python": [
-            "env",
-            f"PYTHONPATH={package}",
-            sys.executable,
-            "-B",
-            EXAMPLES["python"],
-        ],
+def built(icd: Icd, files: dict[str, Path], folder: Path) -> Example:
+    """The programs, compiled."""
+    (folder / "c").mkdir()
+    headers = c.generate(icd, folder / "c")
+    (folder / "rust").mkdir()
+    tools = Toolchain("default")
+    crate = tools.library(rust.generate(icd, folder / "rust"), *USED)
+    for path, text in packages.files(icd).items():
+        (folder / "python" / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "python" / path).write_text(text, encoding="utf-8")
+    includes = [f"-I{headers}", f"-I{ROOT / 'examples'}"]
+    in_c = c.compile(
+        files["c"], *FLAGS, *c.SANITIZERS, *includes, output=folder / "program"
+    )
+    path = f"PYTHONPATH={folder / 'python'}"
+    commands: dict[str, list[str | Path]] = {
+        "c": [in_c],
+        "rust": [tools.program(files["rust"], crate, folder / "program-in-rust")],
+        "python": ["env", path, sys.executable, "-B", files["python"]],
     }
+    return Example(files, headers, crate, folder / "python", commands)
+
+
+@pytest.fixture(scope="module")
+def control(tmp_path_factory) -> Example:
+    return built(c.shipped(), CONTROL, tmp_path_factory.mktemp("control"))
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory) -> Example:
+    icd = load([WHEEL_ICD]).icd
+    return built(icd, WHEEL, tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(params=["control", "wheel"])
+def example(request) -> Example:
+    return request.getfixturevalue(request.param)
+
+
+def outcomes(example: Example, *simulated: str) -> dict[str, tuple[int, str, str]]:
+    """The exit code and texts of each program, against a simulated device."""
+    said = {}
+    with simulator(*simulated, "--tcp", "0") as (place, _):
+        port = str(urlsplit(place).port)
+        for language, command in example.commands.items():
+            done = subprocess.run(
+                [*command, port], capture_output=True, text=True, timeout=60
+            )
+            said[language] = (done.returncode, done.stdout, done.stderr)
+    return said
 
 
 @pytest.mark.parametrize(
@@ -96,24 +117,29 @@ def programs(headers, crate, package, tmp_path_factory) -> dict[str, list[str | 
         (["--fault", "drop=100%@acknowledge"], (1, "", "no response, attempts: 1\n")),
     ],
 )
-def test_each_language_says_the_same_of_the_same_node(programs, options, said):
-    with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, _):
-        port = str(urlsplit(place).port)
-        ran = {
-            language: subprocess.run(
-                [*command, port], capture_output=True, text=True, timeout=60
-            )
-            for language, command in programs.items()
-        }
-    got = {
-        language: (done.returncode, done.stdout, done.stderr)
-        for language, done in ran.items()
-    }
-    assert got == dict.fromkeys(programs, said)
+def test_each_language_says_the_same_of_the_same_node(control, options, said):
+    got = outcomes(control, "--node", "cubeacp", *options)
+    assert got == dict.fromkeys(CONTROL, said)
 
 
-def test_what_was_commanded_is_what_the_node_holds(programs):
-    for command in programs.values():
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--set", "Events", "count=7"], (0, "7 events\n", "")),
+        (["--fault", "nak=100%:Wrong mode"], (1, "", "refused: Wrong mode\n")),
+        (["--fault", "busy=100%"], (1, "", "busy, attempts: 3\n")),
+        (["--fault", "silence=100%"], (1, "", "no response, attempts: 3\n")),
+        # The response to another telecommand is none to this one.
+        (["--fault", "foreign=100%"], (1, "", "no response, attempts: 3\n")),
+    ],
+)
+def test_each_language_says_the_same_outcome_of_a_command(wheel, options, said):
+    got = outcomes(wheel, "--icd", str(WHEEL_ICD), *options)
+    assert got == dict.fromkeys(WHEEL, said)
+
+
+def test_what_was_commanded_is_what_the_node_holds(control):
+    for command in control.commands.values():
         with simulator("--node", "cubeacp", "--tcp", "0") as (place, _):
             subprocess.run(
                 [*command, str(urlsplit(place).port)],
@@ -138,17 +164,18 @@ def test_what_was_commanded_is_what_the_node_holds(programs):
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_the_example_in_c_has_no_warning(headers, compiler):
-    c.compile(EXAMPLES["c"], *FLAGS, f"-I{headers}", compiler=compiler)
+def test_the_example_in_c_has_no_warning(example, compiler):
+    includes = [f"-I{example.headers}", f"-I{ROOT / 'examples'}"]
+    c.compile(example.files["c"], *FLAGS, *includes, compiler=compiler)
 
 
-def test_the_example_in_rust_is_tidy(crate, tmp_path):
-    toolchain = Toolchain("default")
-    toolchain.formatted(EXAMPLES["rust"])
-    toolchain.linted(EXAMPLES["rust"], tmp_path, "--extern", f"icd={crate}")
+def test_the_example_in_rust_is_tidy(example, tmp_path):
+    toolchain, file = Toolchain("default"), example.files["rust"]
+    toolchain.formatted(file)
+    toolchain.linted(file, tmp_path, "--extern", f"icd={example.crate}")
 
 
-def test_the_example_in_python_is_typed(package, tmp_path):
+def test_the_example_in_python_is_typed(example, tmp_path):
     command = [
         sys.executable,
         "-m",
@@ -156,9 +183,9 @@ def test_the_example_in_python_is_typed(package, tmp_path):
         "--strict",
         "--cache-dir",
         tmp_path,
-        EXAMPLES["python"],
+        example.files["python"],
     ]
-    path = {**os.environ, "MYPYPATH": str(package)}
+    path = {**os.environ, "MYPYPATH": str(example.package)}
     done = subprocess.run(
         command, cwd=tmp_path, env=path, capture_output=True, text=True
     )
@@ -171,8 +198,9 @@ def test_the_pages_show_the_examples_as_they_are():
         "rust": "guides/rust",
         "python": "guides/python",
     }
-    for language, example in EXAMPLES.items():
-        assert (
-            f"```{language}\n{example.read_text(encoding='utf-8')}```\n"
-            in documents.text(pages[language])
-        ), language
+    for language, file in CONTROL.items():
+        shown = documents.text(pages[language])
+        assert f"```{language}\n{file.read_text(encoding='utf-8')}```\n" in shown
+    shown = documents.text("guides/serial-link")
+    for language, file in WHEEL.items():
+        assert f"```{language}\n{file.read_text(encoding='utf-8')}```\n" in shown
