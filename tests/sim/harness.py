@@ -44,6 +44,7 @@ from tests.sim.tap import Tap, missing
 LOSSES = "0,1,10,30"
 ROOM = 524288  # bytes of a destination
 RUNNING = 1  # the program that a copy becomes
+BOOT = ("--boot", "100000")  # a client that starts slowly still meets the boot program
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -101,8 +102,7 @@ def run(
             f"{loss}%",
             "--late",
             "400",
-            "--boot",
-            "100000",  # a client that starts slowly still meets the boot program
+            *BOOT,
             *spoil,
         )
         with simulator("--node", node, "--tcp", "0", *options) as (place, _):
@@ -131,7 +131,7 @@ def against(client: list[str], *options: str) -> subprocess.CompletedProcess:
     """The client's end against a simulator with these options; the file it wants has
     100 bytes.
     """
-    with simulator(*options, "--tcp", "0") as (place, _):
+    with simulator(*options, *BOOT, "--tcp", "0") as (place, _):
         where = urlsplit(place)
         words = [*client, str(where.hostname), str(where.port), "100"]
         return subprocess.run(words, capture_output=True, text=True, timeout=60)
