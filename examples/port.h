@@ -105,8 +105,8 @@ typedef struct {
 static inline void port_on_event(void *context, const icd_event_t *event)
 {
     port_outcome_t *const outcome = (port_outcome_t *)context;
-    const bool ends =
-        event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT;
+    const bool ends = event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT ||
+        event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT;
     if (ends && event->length <= outcome->capacity) {
         outcome->event = *event;
         outcome->event.data = outcome->frame;

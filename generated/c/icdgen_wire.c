@@ -2391,18 +2391,19 @@ static inline bool icdgen_client_waits_for(const icd_client_t *client, icd_direc
     return client->state == ICD_CLIENT_WAIT && client->direction == direction && client->message->id == id;
 }
 
-/* Return whether the request waits for this response. If not, it may be a late one, which can then no longer arrive. */
-static inline bool icdgen_client_is_response(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
+/* Return whether this is a response to a request that has ended, and count it. */
+static inline bool icdgen_client_is_late(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
 {
-    if (icdgen_client_waits_for(client, direction, id)) {
-        return true;
-    }
+    bool is_late = false;
     for (uint8_t i = 0; i < client->late_count; ++i) {
         icd_late_t *const late = &client->late[i];
-        late->responses -= (late->direction == direction && late->id == id) ? 1u : 0u;
+        if (late->direction == direction && late->id == id) {
+            late->responses--;
+            is_late = true;
+        }
     }
     icdgen_client_forget(client, now);
-    return false;
+    return is_late;
 }
 
 /* End the request, and remember the responses that may still arrive. They count from the last transmission. */
@@ -2445,6 +2446,13 @@ static inline void icdgen_client_timeout(icd_client_t *client, icd_event_fn *on_
     icdgen_client_end(client, &event, on_event, context);
 }
 
+/* End a telecommand to which nothing responds. */
+static inline void icdgen_client_sent(icd_client_t *client, icd_event_fn *on_event, void *context)
+{
+    icd_event_t event = icdgen_event(ICD_EVENT_SENT, 0);
+    icdgen_client_end(client, &event, on_event, context);
+}
+
 /* Send the request, for the first time or again. */
 static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
@@ -2461,7 +2469,7 @@ static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_ev
     } else if (is_answered) {
         client->awaited++;
     } else {
-        icdgen_client_done(client, NULL, 0, on_event, context);
+        icdgen_client_sent(client, on_event, context);
     }
 }
 
@@ -2621,24 +2629,30 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
 
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
 {
+    icd_transaction_t transaction;
     *read = 0;
-    if (client->bus == ICD_BUS_I2C && client->poll) {
-        client->poll = false;
-        client->owed++;
-        *bytes = &client->poll_id;
-        *count = 1;
-        return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
-    }
-    if (client->bus != ICD_BUS_I2C || client->pending == 0u) {
+    if (client->bus != ICD_BUS_I2C || client->taken_count == ICDGEN_MOST_AWAITED) {
         return false;
     }
-    client->pending--;
-    client->owed++;
-    *bytes = client->whole;
-    *count = client->whole_length;
-    if (client->direction == ICD_TELEMETRY) {
-        (void)icd_i2c_read_length(client->link, client->whole[0], client->checks_telemetry, read);
+    if (client->poll) {
+        client->poll = false;
+        *bytes = &client->poll_id;
+        *count = 1;
+        transaction.reads = true;
+    } else if (client->pending != 0u) {
+        client->pending--;
+        *bytes = client->whole;
+        *count = client->whole_length;
+        transaction.reads = client->direction == ICD_TELEMETRY;
+    } else {
+        return false;
     }
+    transaction.id = **bytes;
+    if (transaction.reads) {
+        (void)icd_i2c_read_length(client->link, transaction.id, client->checks_telemetry, read);
+    }
+    client->taken[client->taken_count] = transaction;
+    client->taken_count++;
     return true;
 }
 
@@ -2716,90 +2730,100 @@ typedef struct {
     void *context;
 } icdgen_client_call_t;
 
-/*
- * Check the length and the checksum of received telemetry, and get the length of its frame. The length shows whether it
- * has a checksum.
- */
-static inline icd_event_kind_t icdgen_client_fault(
-    const icd_client_t *client, uint8_t id, const uint8_t *data, size_t length, size_t *frame)
+/* Report the fault of telemetry that was read or received: ICD_ERROR_CHECKSUM, otherwise a wrong length. */
+static inline void icdgen_client_fault(uint8_t id, icd_status_t status, icd_event_fn *on_event, void *context)
 {
+    const icd_event_kind_t kind = status == ICD_ERROR_CHECKSUM ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH;
+    icdgen_client_tell(kind, id, NULL, 0, on_event, context);
+}
+
+/* Report a response that the request does not wait for. */
+static inline void icdgen_client_unawaited(
+    const icdgen_client_call_t *call, icd_direction_t direction, uint32_t command, const icd_event_t *response)
+{
+    icd_event_t event = *response;
+    if (icdgen_client_is_late(call->client, call->now, direction, command)) {
+        event.kind = ICD_EVENT_LATE;
+    }
+    call->on_event(call->context, &event);
+}
+
+/* Process telemetry. Its length shows whether it has a checksum. */
+static inline void icdgen_client_replied(const icdgen_client_call_t *call, icd_event_t *reply)
+{
+    icd_client_t *const client = call->client;
     const icd_checksum_form_t *const form = client->link->checksum;
-    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, id);
-    *frame = message != NULL ? message->length : 0u;
-    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && length == *frame + form->bytes) {
-        const icd_status_t status = icd_i2c_reply(client->link, id, data, length, true, frame);
-        return status == ICD_OK ? ICD_EVENT_DONE : ICD_EVENT_CHECKSUM;
+    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, reply->id);
+    size_t frame = message != NULL ? message->length : 0u;
+    icd_status_t status = reply->length == frame ? ICD_OK : ICD_ERROR_LENGTH;
+    bool is_checked = false;
+    if (message == NULL) {
+        call->on_event(call->context, reply); /* stray */
+        return;
     }
-    if (length != *frame) {
-        return ICD_EVENT_MALFORMED;
+    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && reply->length == frame + form->bytes) {
+        is_checked = true;
+        status = icd_i2c_reply(client->link, reply->id, reply->data, reply->length, true, &frame);
     }
-    return client->checks_telemetry ? ICD_EVENT_UNCHECKED : ICD_EVENT_DONE;
-}
-
-/* Process telemetry. Return false if no request waits for it. */
-static inline bool icdgen_client_replied(
-    const icdgen_client_call_t *call, uint8_t id, const uint8_t *data, size_t length)
-{
-    icd_client_t *const client = call->client;
-    size_t frame = 0;
-    const icd_event_kind_t fault = icdgen_client_fault(client, id, data, length, &frame);
-    if (fault == ICD_EVENT_DONE) {
-        if (!icdgen_client_is_response(client, call->now, ICD_TELEMETRY, id)) {
-            return false;
-        }
-        icdgen_client_done(client, data, frame, call->on_event, call->context);
+    if (status != ICD_OK) {
+        icdgen_client_fault(reply->id, status, call->on_event, call->context);
+    } else if (client->checks_telemetry && !is_checked) {
+        icdgen_client_tell(ICD_EVENT_UNCHECKED, reply->id, NULL, 0, call->on_event, call->context);
+    } else if (icdgen_client_waits_for(client, ICD_TELEMETRY, reply->id)) {
+        icdgen_client_done(client, reply->data, frame, call->on_event, call->context);
     } else {
-        if (!icdgen_client_waits_for(client, ICD_TELEMETRY, id)) {
-            return false;
-        }
-        icdgen_client_tell(fault, id, NULL, 0, call->on_event, call->context);
+        reply->length = frame;
+        icdgen_client_unawaited(call, ICD_TELEMETRY, reply->id, reply);
     }
-    return true;
 }
 
-/* Process an acknowledge with this code, or a refusal. Return false if no request waits for it. */
-static inline bool icdgen_client_answered(
-    const icdgen_client_call_t *call, icd_direction_t direction, uint32_t id, bool is_positive, int64_t code)
+/* Process an acknowledge with this code, or a refusal, of a request. */
+static inline void icdgen_client_answered(
+    const icdgen_client_call_t *call,
+    icd_direction_t direction,
+    uint32_t id,
+    bool is_positive,
+    int64_t code,
+    const icd_event_t *response)
 {
     icd_client_t *const client = call->client;
-    if (!icdgen_client_is_response(client, call->now, direction, id)) {
-        return false;
-    }
-    if (is_positive) {
+    if (!icdgen_client_waits_for(client, direction, id)) {
+        icdgen_client_unawaited(call, direction, id, response);
+    } else if (is_positive) {
         icdgen_client_done(client, NULL, 0, call->on_event, call->context);
     } else {
         icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
     }
-    return true;
 }
 
 static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
 {
-    icd_client_t *const client = call->client;
-    const icd_link_t *const link = client->link;
+    const icd_link_t *const link = call->client->link;
     const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
-    bool is_response = false;
-    if (kind == ICD_UART_LOG) {
-        icdgen_client_tell(ICD_EVENT_LOG, message[0], message, length, call->on_event, call->context);
-        return;
-    }
-    if (kind == ICD_UART_ARRIVED) {
-        const uint8_t id = icdgen_unsolicited(link, message, length)->telemetry;
-        icdgen_client_tell(ICD_EVENT_ARRIVED, id, message + 1, length - 1u, call->on_event, call->context);
-        return;
-    }
+    icd_event_t event = icdgen_event(ICD_EVENT_STRAY, message[0]);
+    event.data = message + 1;
+    event.length = length - 1u;
     if (kind == ICD_UART_REPLY) {
-        is_response = icdgen_client_replied(call, message[0], message + 1, length - 1u);
-    } else if (kind == ICD_UART_ACKNOWLEDGE) {
+        icdgen_client_replied(call, &event);
+        return;
+    }
+    if (kind == ICD_UART_ACKNOWLEDGE) {
         const uint8_t code = message[link->acknowledge->error_at];
-        is_response = icdgen_client_answered(
-            call, ICD_TELECOMMAND, message[link->acknowledge->id_at], code == link->no_error, code);
+        icdgen_client_answered(
+            call, ICD_TELECOMMAND, message[link->acknowledge->id_at], code == link->no_error, code, &event);
+        return;
+    }
+    if (kind == ICD_UART_LOG) {
+        event.kind = ICD_EVENT_LOG;
+        event.data = message;
+        event.length = length;
+    } else if (kind == ICD_UART_ARRIVED) {
+        event.kind = ICD_EVENT_ARRIVED;
+        event.id = icdgen_unsolicited(link, message, length)->telemetry;
     } else {
-        /* no request has such a response */
+        /* stray */
     }
-    if (!is_response) {
-        icdgen_client_tell(ICD_EVENT_STRAY, message[0], message, length, call->on_event, call->context);
-    }
+    call->on_event(call->context, &event);
 }
 
 static inline void icdgen_client_on_uart(void *context, const icd_event_t *event)
@@ -2815,26 +2839,21 @@ static inline void icdgen_client_on_uart(void *context, const icd_event_t *event
 static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
 {
     const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    icd_client_t *const client = call->client;
+    const icd_can_kind_t kind = event->can_kind;
+    icd_event_t response = icdgen_event(ICD_EVENT_STRAY, event->id);
+    response.data = event->data;
+    response.length = event->length;
     if (event->kind != ICD_EVENT_MESSAGE) {
         call->on_event(call->context, event);
-        return;
-    }
-    const icd_can_kind_t kind = event->can_kind;
-    bool is_response = false;
-    if (event->source != client->link->can->node_address) {
-        /* stray */
+    } else if (event->source != call->client->link->can->node_address) {
+        call->on_event(call->context, &response);
     } else if (kind == ICD_CAN_REPLY) {
-        is_response = icdgen_client_replied(call, event->id, event->data, event->length);
+        icdgen_client_replied(call, &response);
     } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
         const icd_direction_t direction = kind == ICD_CAN_REQUEST_REFUSAL ? ICD_TELEMETRY : ICD_TELECOMMAND;
-        is_response = icdgen_client_answered(call, direction, event->id, kind == ICD_CAN_ACKNOWLEDGE, -1);
+        icdgen_client_answered(call, direction, event->id, kind == ICD_CAN_ACKNOWLEDGE, -1, &response);
     } else {
-        /* stray */
-    }
-    if (!is_response) {
-        icdgen_client_tell(
-            ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
+        call->on_event(call->context, &response);
     }
 }
 
@@ -2918,8 +2937,9 @@ static inline void icdgen_client_polled(
     const icd_report_t *const report = link->polled;
     size_t length = 0;
     uint32_t code;
-    if (icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length) != ICD_OK) {
-        icdgen_client_tell(ICD_EVENT_MALFORMED, client->poll_id, NULL, 0, on_event, context);
+    const icd_status_t status = icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length);
+    if (status != ICD_OK) {
+        icdgen_client_fault(client->poll_id, status, on_event, context);
         icdgen_client_again(client, now, on_event, context);
         return;
     }
@@ -2937,22 +2957,59 @@ static inline void icdgen_client_polled(
     }
 }
 
-/* I2C: return whether the last transaction is taken and belongs to the current request. */
-static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
+/* I2C: remove the oldest transaction whose result is missing. Return false if there is none. */
+static inline bool icdgen_client_untake(icd_client_t *client, icd_transaction_t *transaction)
 {
-    return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
-        !icdgen_client_has_output(client);
+    if (client->taken_count == 0u) {
+        return false;
+    }
+    *transaction = client->taken[0];
+    client->taken_count--;
+    for (uint8_t i = 0; i < client->taken_count; ++i) {
+        client->taken[i] = client->taken[i + 1u];
+    }
+    return true;
+}
+
+/* I2C: report the result of a transaction that nothing awaits any more. */
+static inline void icdgen_client_transferred_late(
+    const icd_client_t *client,
+    const icd_transaction_t *transaction,
+    const uint8_t *bytes,
+    size_t count,
+    icd_event_fn *on_event,
+    void *context)
+{
+    size_t length = 0;
+    icd_status_t status = ICD_OK;
+    if (transaction->reads && bytes != NULL) {
+        status = icd_i2c_reply(client->link, transaction->id, bytes, count, client->checks_telemetry, &length);
+    }
+    if (status == ICD_OK) {
+        icdgen_client_tell(ICD_EVENT_LATE, transaction->id, bytes, length, on_event, context);
+    } else {
+        icdgen_client_fault(transaction->id, status, on_event, context);
+    }
+}
+
+/* I2C: return whether the last transaction is taken and belongs to the current request. */
+static inline bool icdgen_client_awaits_transfer(const icd_client_t *client)
+{
+    return (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) && !icdgen_client_has_output(client);
 }
 
 ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     size_t length = 0;
-    const bool awaited = icdgen_client_awaits_transfer(client, 1);
-    client->owed -= client->owed != 0u ? 1u : 0u;
+    icd_transaction_t transaction;
+    const bool awaited = client->taken_count == 1u && icdgen_client_awaits_transfer(client);
+    const bool was_taken = icdgen_client_untake(client, &transaction);
     icd_client_tick(client, now, on_event, context); /* may end this request and start the next one */
-    if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
+    if (!was_taken) {
         icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
+    } else if (!awaited || !icdgen_client_awaits_transfer(client)) {
+        icdgen_client_transferred_late(client, &transaction, bytes, count, on_event, context);
     } else if (client->state == ICD_CLIENT_POLL) {
         if (bytes == NULL) {
             icdgen_client_again(client, now, on_event, context);
@@ -2964,14 +3021,15 @@ ICDGEN_API void icd_client_transferred(
         icdgen_client_no_reply(client, now, on_event, context);
     } else if (client->direction == ICD_TELEMETRY) {
         const uint8_t id = client->message->id;
-        if (icd_i2c_reply(client->link, id, bytes, count, client->checks_telemetry, &length) == ICD_OK) {
+        const icd_status_t status = icd_i2c_reply(client->link, id, bytes, count, client->checks_telemetry, &length);
+        if (status == ICD_OK) {
             icdgen_client_done(client, bytes, length, on_event, context);
         } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, id, NULL, 0, on_event, context);
+            icdgen_client_fault(id, status, on_event, context);
             icdgen_client_no_reply(client, now, on_event, context);
         }
     } else if ((client->message->flags & ICD_ACKNOWLEDGED) == 0u || client->link->polled == NULL) {
-        icdgen_client_done(client, NULL, 0, on_event, context);
+        icdgen_client_sent(client, on_event, context);
     } else {
         client->sent_whole = true;
         client->give_up = now + client->settings.poll_timeout;
@@ -4432,7 +4490,7 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
         icdgen_arrived(procedure, event->id, event->data, event->length);
     } else if (!procedure->is_requested) {
         /* of a request of the application */
-    } else if (event->kind == ICD_EVENT_DONE) {
+    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT) {
         icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
         icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);

@@ -760,15 +760,18 @@ typedef enum {
     ICD_EVENT_EMPTY,            /**< UART: an empty message, without an id. */
     ICD_EVENT_DUPLICATE,        /**< CAN: a packet was received twice. */
     ICD_EVENT_INCOMPLETE,       /**< CAN: a message is discarded because packets are missing. */
-    ICD_EVENT_MALFORMED,        /**< A reply of the wrong length; CAN: an invalid packet of this message. */
+    ICD_EVENT_MALFORMED,        /**< CAN: an invalid packet of this message. */
     ICD_EVENT_BUSY,             /**< CAN: no free slot for another sender; the packet is dropped. */
     ICD_EVENT_UNKNOWN_TYPE,     /**< CAN: the ICD has no such message type. */
     ICD_EVENT_DONE,             /**< Client: the request succeeded; for telemetry, `data` is the frame. */
+    ICD_EVENT_SENT,             /**< Client: a telecommand to which nothing responds was sent. */
     ICD_EVENT_REFUSED,          /**< Client: the node rejected the request (negative acknowledge). */
     ICD_EVENT_TIMEOUT,          /**< Client: no reply, or the node did not process the telecommand in time. */
     ICD_EVENT_ARRIVED,          /**< Client: unsolicited telemetry. */
     ICD_EVENT_LOG,              /**< Client: an unsolicited log message; `data` starts with its id. */
-    ICD_EVENT_STRAY, /**< Client: an unexpected message; `data` starts with its id (I2C: the bytes that were read). */
+    ICD_EVENT_LATE,     /**< Client: a response to a request that has ended; on I2C the result of a transaction. */
+    ICD_EVENT_STRAY,    /**< Client: a response without a request. I2C: a result without a transaction. */
+    ICD_EVENT_LENGTH,   /**< Client: telemetry of the wrong length; the request continues. */
     ICD_EVENT_CHECKSUM, /**< Client: a frame with a wrong checksum; the request continues. */
     ICD_EVENT_UNCHECKED /**< Client: a frame without the required checksum; the request continues. */
 } icd_event_kind_t;
@@ -776,15 +779,21 @@ typedef enum {
 /** Kinds of messages from the node on the UART. */
 typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_ARRIVED, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
 
-/** An event. The event and its data are valid only during the call of the callback. */
+/**
+ * An event. The event and its data are valid only during the call of the callback.
+ *
+ * Every request ends with one of DONE, SENT, REFUSED and TIMEOUT, which have the id of the request. LATE and STRAY have
+ * the id and the data of the response. I2C: LATE has the id of the transaction, and no data if nothing was read; STRAY
+ * has no id.
+ */
 typedef struct {
     icd_event_kind_t kind;
     uint8_t id;
     const uint8_t *data;
     size_t length;
-    const icd_link_t *link;    /**< DONE, REFUSED, TIMEOUT: link of the node; otherwise NULL. */
-    icd_direction_t direction; /**< DONE, REFUSED, TIMEOUT: direction of the request. */
-    uint32_t attempts;         /**< DONE, REFUSED, TIMEOUT: number of times the request was sent. */
+    const icd_link_t *link;    /**< Outcomes: link of the node; otherwise NULL. */
+    icd_direction_t direction; /**< Outcomes: direction of the request. */
+    uint32_t attempts;         /**< Outcomes: number of times the request was sent. */
     icd_reason_t reason;       /**< REFUSED: meaning of the error code. */
     int64_t code;              /**< REFUSED: error code, -1 if the bus does not report it. */
     int64_t parameter;         /**< REFUSED: index of the invalid parameter, -1 if the bus does not report it. */
@@ -1370,6 +1379,12 @@ typedef struct {
     uint32_t until;
 } icd_late_t;
 
+/* I2C: a transaction whose result is not yet reported. */
+typedef struct {
+    uint8_t id;
+    bool reads; /* telemetry of this id */
+} icd_transaction_t;
+
 typedef struct icd_client icd_client_t;
 
 /** A client: sends one request at a time and reports its outcome. Members without a description are internal. */
@@ -1404,7 +1419,8 @@ struct icd_client {
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame */
     uint32_t pending; /* to be sent: the request, this many times */
-    uint32_t owed;    /* I2C: transactions taken whose result is not yet reported */
+    uint8_t taken_count;
+    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* I2C: transactions, the oldest first */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -1446,7 +1462,7 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 
 /**
  * Start a request. The data are copied. `now` is in milliseconds. A telecommand without acknowledge is reported at once
- * as ICD_EVENT_DONE; `on_event` may be NULL to ignore this.
+ * as ICD_EVENT_SENT; `on_event` may be NULL to ignore this.
  * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request is in progress or its
  * output has not been taken completely, ICD_ERROR_LENGTH if the data have the wrong length, or ICD_ERROR_UNSUPPORTED if
  * the client is not initialized. After an error the client is unchanged.
@@ -1456,7 +1472,7 @@ ICDGEN_API icd_status_t icd_client_start(
 
 /**
  * Cancel the request without an event, and drop its remaining output. Another request may then be started; it waits if
- * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_STRAY.
+ * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_LATE.
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
@@ -1495,7 +1511,8 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
 
 /**
  * I2C: get the next transaction: write `*count` bytes from `*bytes`, then read `*read` bytes (0: write only). Return
- * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order.
+ * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order. There is
+ * none while the results of eight transactions are missing.
  */
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read);
 
@@ -1518,8 +1535,8 @@ ICDGEN_API void icd_client_packet(
 
 /**
  * I2C: pass the result of the oldest unfinished transaction to the client: the `count` bytes that were read, or NULL if
- * the transaction failed. After a successful write without read, pass any pointer except NULL. If the request has
- * already ended, the result is reported as ICD_EVENT_STRAY.
+ * the transaction failed. After a successful write without read, pass any pointer except NULL. If the time-out of the
+ * transaction has passed or its request has ended, the result is reported as ICD_EVENT_LATE.
  */
 ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);

@@ -20,7 +20,9 @@ static inline void session_on_event(void *context, const icd_event_t *event)
     session_t *const session = (session_t *)context;
     if (session->procedure != NULL) {
         icd_procedure_event(session->procedure, port_now(), event);
-    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT) {
+    } else if (
+        event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT || event->kind == ICD_EVENT_REFUSED ||
+        event->kind == ICD_EVENT_TIMEOUT) {
         session->outcome = *event;
         session->outcome.data = session->frame;
         session->ended = true;

@@ -30,12 +30,13 @@ typedef struct {
 /* As programs do it: the end of a request begins the next one. */
 static void on_event(void *context, const icd_event_t *event)
 {
-    static const char *const names[] = {"done", "refused", "timeout", "stray"};
+    static const char *const names[] = {"done", "sent", "timeout", "late"};
     program_t *const program = (program_t *)context;
     const common_reset_t reset = {0};
     printf("%s %u\n", event->kind == ICD_EVENT_DONE ? names[0]
-                       : event->kind == ICD_EVENT_REFUSED ? names[1]
-                       : event->kind == ICD_EVENT_TIMEOUT ? names[2] : names[3], event->id);
+                       : event->kind == ICD_EVENT_SENT ? names[1]
+                       : event->kind == ICD_EVENT_TIMEOUT ? names[2]
+                       : event->kind == ICD_EVENT_LATE ? names[3] : "?", event->id);
     if (event->kind == ICD_EVENT_TIMEOUT && program->resets) {
         assert(cubeacp_send_reset(&program->client, program->now, &reset, on_event, program) == ICD_OK);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
@@ -88,11 +89,11 @@ def test_a_transfer_that_outlasts_its_request_is_not_that_of_the_request_which_i
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.split("\n")[:-1] == [
         "timeout 146",
-        "stray 0",
+        "late 146",
         "done 147",
         "timeout 146",
-        "stray 0",
-        "done 1",
+        "late 146",
+        "sent 1",
     ]
 
 

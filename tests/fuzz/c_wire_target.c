@@ -60,7 +60,7 @@ static void on_event(void *context, const icd_event_t *event)
     note(seen, &kind, sizeof kind);
     note(seen, &event->id, sizeof event->id);
     note(seen, event->data, event->length);
-    seen->outcomes += event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT;
+    seen->outcomes += event->kind >= ICD_EVENT_DONE && event->kind <= ICD_EVENT_TIMEOUT;
 }
 
 static void on_uart(void *context, const icd_event_t *event)

@@ -165,7 +165,7 @@ class Streams:
         return client
 
     def ends(self, events) -> int:
-        ends = (self.wire.Done, self.wire.Refused, self.wire.Timeout)
+        ends = (self.wire.Done, self.wire.Sent, self.wire.Refused, self.wire.Timeout)
         for event in events:
             if isinstance(event, self.wire.Done):
                 _ = event.message

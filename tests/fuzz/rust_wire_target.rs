@@ -96,7 +96,7 @@ fn logs(link: &'static Link, size: usize, data: &[u8]) {
     }
 }
 
-/// A request and what is heard afterwards: it ends in at most one of the three outcomes, and some time it does.
+/// A request and what is heard afterwards: it ends in at most one of the outcomes, and some time it does.
 fn client(link: &'static Link, size: usize, id: u8, data: &[u8]) {
     let mut client = match Client::<LONGEST>::uart(link) {
         Ok(client) => client.with_checksums(),
@@ -108,7 +108,7 @@ fn client(link: &'static Link, size: usize, id: u8, data: &[u8]) {
         return;
     }
     let mut count = |event: Event<'_>| {
-        ends += usize::from(matches!(event, Event::Done { .. } | Event::Refused { .. } | Event::Timeout { .. }));
+        ends += usize::from(matches!(event, Event::Done { .. } | Event::Sent { .. } | Event::Refused { .. } | Event::Timeout { .. }));
     };
     for piece in data.chunks(size) {
         now = now.wrapping_add(100);

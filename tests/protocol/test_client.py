@@ -12,8 +12,8 @@ from icdgen_runtime.wire.errors import BusyError
 from icdgen_runtime.wire.events import (
     OUTCOMES,
     Done,
+    Late,
     Refused,
-    Stray,
     Timeout,
 )
 from icdgen_runtime.wire.i2c import i2c_write
@@ -79,7 +79,7 @@ def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(link):
     client.output()
     client.start(111, Request("telecommand", 31, b"\2"))
     assert client.output() == b""
-    assert client.received(150, line(link, 31, 0)) == [Stray(bytes([31, 0]))]
+    assert client.received(150, line(link, 31, 0)) == [Late(31, b"\0")]
     client.tick(210)
     assert client.output() == line(link, 31, 2)
     assert client.received(220, line(link, 31, 3)) == [Refused(31, 1, 3, "parameter")]

@@ -141,7 +141,7 @@ def test_a_cancellation_at_the_moment_that_bytes_come_loses_neither(wire, acp, t
         return await waiting
 
     (event,) = asyncio.run(talk())
-    assert event.data == bytes((146, *range(6)))
+    assert (event.id, event.data) == (146, bytes(range(6)))
 
 
 def test_a_cancelled_session_leaves_the_streams_to_whoever_reads_next(wire, acp):

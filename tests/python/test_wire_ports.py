@@ -95,8 +95,9 @@ def test_the_reply_to_a_cancelled_request_is_not_that_to_the_next(shipped, wire)
     client.cancel()
     client.request(2, acp.EstimatedAngularRates)
     assert client.output()
-    late = b"\x92" + bytes(6)
-    assert client.received(3, wire.uart_encode(acp.LINK, late)) == [wire.Stray(late)]
+    line = wire.uart_encode(acp.LINK, b"\x92" + bytes(6))
+    late = wire.Late(146, bytes(6), acp.EstimatedAttitudeAngles)
+    assert client.received(3, line) == [late]
     (done,) = client.received(4, wire.uart_encode(acp.LINK, b"\x93" + bytes(6)))
     assert done.id == 147
 
@@ -109,12 +110,55 @@ def test_a_transfer_that_was_not_taken_cannot_end(shipped, wire):
     client.cancel()
     client.send(1, acp.Reset())
     assert client.transferred(2, bytes(6)) == [
-        wire.Stray(bytes(6))
+        wire.Late(146, bytes(6), acp.EstimatedAttitudeAngles)
     ]  # of the frame: the reset is not written
     assert client.busy
     client.transfers()
-    (done,) = client.transferred(3, b"")
-    assert done.id == acp.Reset.ID
+    assert client.transferred(3, b"") == [wire.Sent(acp.Reset.ID)]
+
+
+def test_the_client_waits_with_a_transaction_while_eight_results_are_missing(
+    shipped, wire
+):
+    acp = shipped.module("cubeacp")
+    client = wire.Client(acp.LINK, "i2c")
+    for now in range(8):
+        client.request(now, acp.EstimatedAttitudeAngles)
+        assert client.transfers()
+        client.cancel()
+    client.request(8, acp.EstimatedAngularRates)
+    assert client.transfers() == [] and client.busy
+    (late,) = client.transferred(9, bytes(6))
+    assert (type(late), late.id) == (wire.Late, 146)
+    assert client.transfers()
+    for now in range(10, 17):
+        assert type(client.transferred(now, bytes(6))[0]) is wire.Late
+    (done,) = client.transferred(17, bytes(6))
+    assert (type(done), done.id) == (wire.Done, 147)
+    assert client.transferred(18, b"\1") == [wire.Stray(b"\1")]
+
+
+def test_a_telecommand_without_acknowledge_is_sent_and_not_done(shipped, wire):
+    acp = shipped.module("cubeacp")
+    for bus in ("uart", "can"):
+        events = wire.Client(acp.LINK, bus).send(0, acp.Reset())
+        assert events == [wire.Sent(acp.Reset.ID)]
+    outcomes = []
+    port = Port(packages.shipped(), "cubeacp")
+    talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
+    outcomes.append(talking.start(wire.Request("telecommand", acp.Reset.ID, b"\x5a")))
+    assert outcomes == [wire.Sent(acp.Reset.ID)]
+
+
+def test_a_damaged_frame_is_reported_whether_or_not_it_was_requested(shipped, wire):
+    acp = shipped.module("cubeacp")
+    for is_requested in (True, False):
+        client = wire.Client(acp.LINK, "uart")
+        if is_requested:
+            client.request(0, acp.EstimatedAttitudeAngles)
+        events = client.received(1, wire.uart_encode(acp.LINK, b"\x92" + bytes(5)))
+        assert events == [wire.LineError("length", 146)]
+        assert client.busy == is_requested
 
 
 @pytest.fixture

@@ -93,7 +93,7 @@ where
     let count = uart::encode(link, &[Identification::ID, 1, 2, 3, 4, 5, 6, 7, 8], &mut line).unwrap();
     client.received(1, &line[..count], |event| found = event.message::<Identification>());
     assert!(found.is_some());
-    assert_eq!(client.send(2, &Reset::default()), Ok(Started::Done));
+    assert_eq!(client.send(2, &Reset::default()), Ok(Started::Sent));
 }
 
 fn late() {
@@ -104,10 +104,10 @@ fn late() {
     client.cancel();
     client.send(1, &Reset::default()).unwrap();
     client.transferred(2, Some(&[0; 6]), |event| events.push(format!("{event:?}")));
-    assert!(events.remove(0).starts_with("Stray") && client.deadline().is_some(), "the reset is not even taken");
+    assert!(events.remove(0).starts_with("Late { id: 146") && client.deadline().is_some(), "the reset is not even taken");
     assert!(client.output_transaction().is_some());
     client.transferred(3, Some(&[]), |event| events.push(format!("{event:?}")));
-    assert!(events.remove(0).starts_with("Done"));
+    assert!(events.remove(0).starts_with("Sent { id: 1"));
 }
 
 fn cancelled() {
@@ -121,5 +121,5 @@ fn cancelled() {
     let (mut line, mut events) = ([0; 64], Vec::new());
     let count = uart::encode(&LINK, &[EstimatedAttitudeAngles::ID, 0, 0, 0, 0, 0, 0], &mut line).unwrap();
     client.received(2, &line[..count], |event| events.push(format!("{event:?}")));
-    assert!(events.remove(0).starts_with("Stray") && events.is_empty() && client.deadline().is_some());
+    assert!(events.remove(0).starts_with("Stray { id: Some(146)") && events.is_empty() && client.deadline().is_some());
 }

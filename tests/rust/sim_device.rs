@@ -1,6 +1,6 @@
 //! A session with a simulated node: in a hurry, and patient with what happens to acknowledges.
 
-use icd::wire::session::Failure;
+use icd::wire::session::{Failure, Outcome};
 use icd::wire::{NodeLink, Session, Settings, TelecommandOf};
 use icd::{Error, Telecommand};
 use std::net::TcpStream;
@@ -49,7 +49,7 @@ impl<const N: usize, T: 'static> Device<N, T> {
     }
 
     /// Sends a telecommand until it is acknowledged, or refused twice: an acknowledge may be lost or spoilt.
-    pub fn insist<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
+    pub fn insist<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<Outcome, Failure> {
         let mut refused = false;
         for _ in 1..TRIES {
             match self.send(message) {

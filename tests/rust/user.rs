@@ -154,7 +154,7 @@ fn requesting() {
 
 fn sending() {
     let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::can(&icd::cubeacp::LINK, 7).unwrap();
-    assert_eq!(client.send(0, &Reset::default()), Ok(Started::Done), "it is answered by a reset");
+    assert_eq!(client.send(0, &Reset::default()), Ok(Started::Sent), "it is answered by a reset");
     let packet = client.output_packet().unwrap();
     assert_eq!((packet.id, packet.data()), (0x0101_0701, &[90][..]));
     assert!(client.output_packet().is_none());

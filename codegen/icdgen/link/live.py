@@ -15,7 +15,6 @@ from icdgen_runtime.wire.events import (
     Late,
     LineError,
     Log,
-    Malformed,
     Outcome,
     Refused,
     Stray,
@@ -183,8 +182,6 @@ class Monitor:
         self.statistics.event(event)
         if isinstance(event, Late | Stray):
             self._reports.append(self._response_report(event))
-        elif isinstance(event, Malformed):
-            self.faults[event.id] = "wrong length"
         elif (
             isinstance(event, LineError)
             and event.id is not None
@@ -208,14 +205,12 @@ class Monitor:
     def _response_report(self, event: Late | Stray) -> dict[str, Any]:
         """Return a response without a request as JSON."""
         kind = type(event).__name__.lower()
-        message = None
-        if event.id is not None:
-            message = self.statistics.message_of(event.id, event.data)
-        if message is None:
+        if event.type is None:
             ids = {} if event.id is None else {"id": event.id}
             return {"event": kind, **ids, "bytes": event.data.hex()}
-        response = self._frame(message.name, event.data).to_json()
-        return {"message": message.name, "event": kind, "response": response}
+        name = event.type.NAME
+        response = self._frame(name, event.data).to_json()
+        return {"message": name, "event": kind, "response": response}
 
     def take_reports(self) -> list[dict[str, Any]]:
         """Return refusals and busy devices, and responses without a request, since the

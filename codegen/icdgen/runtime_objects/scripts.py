@@ -201,8 +201,6 @@ def _row(event: events.Event) -> Row:
             return {"event": "gap", "id": id, "missing": missing}
         case events.Log(data):
             row = {"bytes": data.hex()}
-        case events.Malformed(id):
-            row = {"id": id}
         case events.Done(id, attempts, data, _, reply):
             # A packet without a message has no id of telemetry.
             named = {} if reply is None else {"reply": reply}

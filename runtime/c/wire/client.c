@@ -123,18 +123,19 @@ static inline bool icdgen_client_waits_for(const icd_client_t *client, icd_direc
     return client->state == ICD_CLIENT_WAIT && client->direction == direction && client->message->id == id;
 }
 
-/* Return whether the request waits for this response. If not, it may be a late one, which can then no longer arrive. */
-static inline bool icdgen_client_is_response(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
+/* Return whether this is a response to a request that has ended, and count it. */
+static inline bool icdgen_client_is_late(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
 {
-    if (icdgen_client_waits_for(client, direction, id)) {
-        return true;
-    }
+    bool is_late = false;
     for (uint8_t i = 0; i < client->late_count; ++i) {
         icd_late_t *const late = &client->late[i];
-        late->responses -= (late->direction == direction && late->id == id) ? 1u : 0u;
+        if (late->direction == direction && late->id == id) {
+            late->responses--;
+            is_late = true;
+        }
     }
     icdgen_client_forget(client, now);
-    return false;
+    return is_late;
 }
 
 /* End the request, and remember the responses that may still arrive. They count from the last transmission. */
@@ -177,6 +178,13 @@ static inline void icdgen_client_timeout(icd_client_t *client, icd_event_fn *on_
     icdgen_client_end(client, &event, on_event, context);
 }
 
+/* End a telecommand to which nothing responds. */
+static inline void icdgen_client_sent(icd_client_t *client, icd_event_fn *on_event, void *context)
+{
+    icd_event_t event = icdgen_event(ICD_EVENT_SENT, 0);
+    icdgen_client_end(client, &event, on_event, context);
+}
+
 /* Send the request, for the first time or again. */
 static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
@@ -193,7 +201,7 @@ static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_ev
     } else if (is_answered) {
         client->awaited++;
     } else {
-        icdgen_client_done(client, NULL, 0, on_event, context);
+        icdgen_client_sent(client, on_event, context);
     }
 }
 
@@ -353,24 +361,30 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
 
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
 {
+    icd_transaction_t transaction;
     *read = 0;
-    if (client->bus == ICD_BUS_I2C && client->poll) {
-        client->poll = false;
-        client->owed++;
-        *bytes = &client->poll_id;
-        *count = 1;
-        return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
-    }
-    if (client->bus != ICD_BUS_I2C || client->pending == 0u) {
+    if (client->bus != ICD_BUS_I2C || client->taken_count == ICDGEN_MOST_AWAITED) {
         return false;
     }
-    client->pending--;
-    client->owed++;
-    *bytes = client->whole;
-    *count = client->whole_length;
-    if (client->direction == ICD_TELEMETRY) {
-        (void)icd_i2c_read_length(client->link, client->whole[0], client->checks_telemetry, read);
+    if (client->poll) {
+        client->poll = false;
+        *bytes = &client->poll_id;
+        *count = 1;
+        transaction.reads = true;
+    } else if (client->pending != 0u) {
+        client->pending--;
+        *bytes = client->whole;
+        *count = client->whole_length;
+        transaction.reads = client->direction == ICD_TELEMETRY;
+    } else {
+        return false;
     }
+    transaction.id = **bytes;
+    if (transaction.reads) {
+        (void)icd_i2c_read_length(client->link, transaction.id, client->checks_telemetry, read);
+    }
+    client->taken[client->taken_count] = transaction;
+    client->taken_count++;
     return true;
 }
 

@@ -41,6 +41,12 @@ typedef struct {
     uint32_t until;
 } icd_late_t;
 
+/* I2C: a transaction whose result is not yet reported. */
+typedef struct {
+    uint8_t id;
+    bool reads; /* telemetry of this id */
+} icd_transaction_t;
+
 typedef struct icd_client icd_client_t;
 
 /** A client: sends one request at a time and reports its outcome. Members without a description are internal. */
@@ -75,7 +81,8 @@ struct icd_client {
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame */
     uint32_t pending; /* to be sent: the request, this many times */
-    uint32_t owed;    /* I2C: transactions taken whose result is not yet reported */
+    uint8_t taken_count;
+    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* I2C: transactions, the oldest first */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -117,7 +124,7 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 
 /**
  * Start a request. The data are copied. `now` is in milliseconds. A telecommand without acknowledge is reported at once
- * as ICD_EVENT_DONE; `on_event` may be NULL to ignore this.
+ * as ICD_EVENT_SENT; `on_event` may be NULL to ignore this.
  * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request is in progress or its
  * output has not been taken completely, ICD_ERROR_LENGTH if the data have the wrong length, or ICD_ERROR_UNSUPPORTED if
  * the client is not initialized. After an error the client is unchanged.
@@ -127,7 +134,7 @@ ICDGEN_API icd_status_t icd_client_start(
 
 /**
  * Cancel the request without an event, and drop its remaining output. Another request may then be started; it waits if
- * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_STRAY.
+ * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_LATE.
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
@@ -166,7 +173,8 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
 
 /**
  * I2C: get the next transaction: write `*count` bytes from `*bytes`, then read `*read` bytes (0: write only). Return
- * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order.
+ * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order. There is
+ * none while the results of eight transactions are missing.
  */
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read);
 

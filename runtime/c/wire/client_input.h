@@ -31,8 +31,8 @@ ICDGEN_API void icd_client_packet(
 
 /**
  * I2C: pass the result of the oldest unfinished transaction to the client: the `count` bytes that were read, or NULL if
- * the transaction failed. After a successful write without read, pass any pointer except NULL. If the request has
- * already ended, the result is reported as ICD_EVENT_STRAY.
+ * the transaction failed. After a successful write without read, pass any pointer except NULL. If the time-out of the
+ * transaction has passed or its request has ended, the result is reported as ICD_EVENT_LATE.
  */
 ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);

@@ -657,7 +657,7 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
         icdgen_arrived(procedure, event->id, event->data, event->length);
     } else if (!procedure->is_requested) {
         /* of a request of the application */
-    } else if (event->kind == ICD_EVENT_DONE) {
+    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT) {
         icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
         icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);

@@ -488,6 +488,15 @@ def _i2c(
         s.request(0, wide), {"at": 1, "cancel": True}, s.ask(2, plain), {"at": 3, **old}, {"at": 4, "receive": ""}, {"at": 14},
         {"at": 15, "cancel": True}, s.request(16, wide), state(17, plain, 1), {"at": 18, **new},
     ]  # fmt: skip
+    unreported = [
+        row
+        for at in range(MOST_AWAITED)
+        for row in (s.request(at, wide), {"at": at, "cancel": True})
+    ]
+    yield "no transaction while the results of too many are missing", [
+        *unreported, s.request(20, near), {"at": 21, **failed}, *({"at": 21 + n, **old} for n in range(1, MOST_AWAITED)),
+        {"at": 40, **new},
+    ]  # fmt: skip
     yield "more transfers than requested", [
         s.request(0, wide), {"at": 1, **new}, {"at": 2, **old}, s.request(3, wide), {"at": 4, **new},
     ]  # fmt: skip

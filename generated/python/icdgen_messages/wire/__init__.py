@@ -42,7 +42,6 @@ __all__ = [
     "LogMessage",
     "LogReader",
     "LogWriter",
-    "Malformed",
     "OutcomeOf",
     "PacketData",
     "Procedure",
@@ -116,7 +115,6 @@ if TYPE_CHECKING:
     from .events import Late as Late
     from .events import LineError as LineError
     from .events import Log as Log
-    from .events import Malformed as Malformed
     from .events import OutcomeOf as OutcomeOf
     from .events import Progress as Progress
     from .events import Refused as Refused
@@ -184,7 +182,6 @@ _HOMES = {
         "Late",
         "LineError",
         "Log",
-        "Malformed",
         "OutcomeOf",
         "Progress",
         "Refused",

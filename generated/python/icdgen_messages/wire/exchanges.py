@@ -21,7 +21,7 @@ from .events import (
     Busy,
     Done,
     Event,
-    Malformed,
+    LineError,
     Outcome,
     OutcomeOf,
     R_co,
@@ -120,7 +120,7 @@ class Exchanges(Generic[N]):
             try:
                 message = event.message
             except IcdError:  # a counter in the frame does not match its length
-                self._report(Malformed(event.id))
+                self._report(LineError("length", event.id))
                 continue
             if message is not None:
                 yield message

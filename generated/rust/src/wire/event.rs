@@ -9,8 +9,9 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::ops::Deref;
 
-/// An event of a client. Each request ends with exactly one of `Done`, `Refused` and `Timeout`,
-/// unless it is cancelled.
+/// An event of a client. Each request ends with exactly one of `Done`, `Sent`, `Refused` and
+/// `Timeout`, unless it is cancelled. A telecommand without acknowledge that is sent at once is
+/// reported as [`Started::Sent`](super::Started::Sent) instead.
 ///
 /// ```
 /// use icd::wire::Event;
@@ -30,6 +31,13 @@ pub enum Event<'a> {
         attempts: u16,
         /// The telemetry frame; empty for a telecommand.
         data: &'a [u8],
+    },
+    /// The telecommand was sent, and nothing responds to it.
+    Sent {
+        /// The id.
+        id: u8,
+        /// Number of times the request was sent.
+        attempts: u16,
     },
     /// The node rejected the request (negative acknowledge).
     Refused {
@@ -51,8 +59,13 @@ pub enum Event<'a> {
         /// Number of times the request was sent.
         attempts: u16,
     },
-    /// A reply or a packet is invalid, for example of the wrong length.
+    /// CAN: an invalid packet of this message.
     Malformed {
+        /// The id.
+        id: u32,
+    },
+    /// Telemetry of the wrong length; the request continues.
+    Length {
         /// The id.
         id: u32,
     },
@@ -78,9 +91,16 @@ pub enum Event<'a> {
         /// The message; starts with its id.
         message: &'a [u8],
     },
-    /// An unexpected message, such as a late acknowledge.
+    /// A response to a request that has ended. I2C: the result of a transaction that came too late.
+    Late {
+        /// Id of the response; I2C: of the transaction.
+        id: u32,
+        /// Its data; I2C: empty if nothing was read.
+        data: &'a [u8],
+    },
+    /// A response without a request.
     Stray {
-        /// Id of the message, if the bus contains it.
+        /// Id of the response. I2C: None, and the bytes are of no transaction.
         id: Option<u32>,
         /// Its data.
         data: &'a [u8],

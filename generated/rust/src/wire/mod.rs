@@ -48,5 +48,5 @@ pub use self::message::{Linked, NodeLink, Refusals, TelecommandOf, TelemetryOf};
 pub use self::port::PortError;
 pub use self::request::{Direction, Request, Started};
 #[cfg(feature = "std")]
-pub use self::session::{Failure, Session};
+pub use self::session::{Failure, Outcome, Session};
 pub use self::time::DosTime;

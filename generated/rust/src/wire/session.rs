@@ -13,6 +13,15 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::time::Instant;
 use std::vec::Vec;
 
+/// How a request ended that did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The device executed it.
+    Done,
+    /// It was sent, and nothing responds to it.
+    Sent,
+}
+
 /// Failure of a request or procedure.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -223,7 +232,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// [`Failure`]
     pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
         self.client.request::<M>(self.port.now())?;
-        Ok(M::read(&self.outcome(Started::Waiting)?)?)
+        Ok(M::read(&self.outcome(Started::Waiting)?.1)?)
     }
 
     /// Send a telecommand or set a configuration, and wait for the acknowledge if it has one.
@@ -231,9 +240,9 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// # Errors
     ///
     /// [`Failure`]
-    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
+    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<Outcome, Failure> {
         let started = self.client.send(self.port.now(), message)?;
-        self.outcome(started).map(|_| ())
+        Ok(self.outcome(started)?.0)
     }
 
     /// Send any request, wait for its outcome, and return the received frame.
@@ -243,7 +252,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// [`Failure`]
     pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
         let started = self.client.start(self.port.now(), request)?;
-        self.outcome(started)
+        Ok(self.outcome(started)?.1)
     }
 
     /// Run a procedure to its end.
@@ -281,15 +290,15 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         self.wait(|_, _| {})
     }
 
-    fn outcome(&mut self, started: Started) -> Result<Vec<u8>, Failure> {
+    fn outcome(&mut self, started: Started) -> Result<(Outcome, Vec<u8>), Failure> {
         let outcome = match started {
-            Started::Done => self.flush().map(|()| Vec::new()),
+            Started::Sent => self.flush().map(|()| (Outcome::Sent, Vec::new())),
             Started::Waiting => self.awaited(),
         };
         self.cancelled(outcome)
     }
 
-    fn awaited(&mut self) -> Result<Vec<u8>, Failure> {
+    fn awaited(&mut self) -> Result<(Outcome, Vec<u8>), Failure> {
         let mut found = None;
         loop {
             self.wait(|_, event| found = found.take().or_else(|| outcome_of(event)))?;
@@ -336,9 +345,10 @@ fn came_to_nothing(error: &io::Error) -> bool {
 }
 
 /// What the event says of the request.
-fn outcome_of(event: &Event<'_>) -> Option<Result<Vec<u8>, Failure>> {
+fn outcome_of(event: &Event<'_>) -> Option<Result<(Outcome, Vec<u8>), Failure>> {
     match *event {
-        Event::Done { data, .. } => Some(Ok(data.to_vec())),
+        Event::Done { data, .. } => Some(Ok((Outcome::Done, data.to_vec()))),
+        Event::Sent { .. } => Some(Ok((Outcome::Sent, Vec::new()))),
         Event::Refused {
             id, code, reason, ..
         } => {

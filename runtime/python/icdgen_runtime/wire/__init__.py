@@ -41,7 +41,6 @@ __all__ = [
     "LogMessage",
     "LogReader",
     "LogWriter",
-    "Malformed",
     "OutcomeOf",
     "PacketData",
     "Procedure",
@@ -115,7 +114,6 @@ if TYPE_CHECKING:
     from .events import Late as Late
     from .events import LineError as LineError
     from .events import Log as Log
-    from .events import Malformed as Malformed
     from .events import OutcomeOf as OutcomeOf
     from .events import Progress as Progress
     from .events import Refused as Refused
@@ -183,7 +181,6 @@ _HOMES = {
         "Late",
         "LineError",
         "Log",
-        "Malformed",
         "OutcomeOf",
         "Progress",
         "Refused",

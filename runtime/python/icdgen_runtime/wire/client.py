@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
-from .._errors import IcdError, LengthError, UnknownIdError
+from .._errors import LengthError, UnknownIdError
 from .._hints import Buffer, N
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
 from .envelope import Direction
@@ -15,10 +15,11 @@ from .events import (
     Arrived,
     Done,
     Event,
+    Late,
     LineError,
     Log,
-    Malformed,
     Refused,
+    Sent,
     Stray,
     Timeout,
 )
@@ -49,7 +50,9 @@ class Request(NamedTuple):
 
 
 MOST_AWAITED = 8
-"""Largest number of requests whose responses are awaited or may still arrive late."""
+"""Largest number of requests whose responses are awaited or may still arrive late, and of
+I2C transactions whose results are awaited.
+"""
 
 
 @dataclass
@@ -68,6 +71,10 @@ class Client(Generic[N]):
     Pass received data to `received`, `packet` or `transferred`, and call `tick` at
     `deadline` at the latest. Take the data to send from `output`, `packets` or
     `transfers`. Times are in milliseconds of any monotonic clock.
+
+    Every request ends with one outcome: `Sent` if nothing responds to it, otherwise
+    `Done`, `Refused` or `Timeout`. Unsolicited telemetry is reported as `Arrived`, a
+    response to a request that has ended as `Late`, any other response as `Stray`.
 
     ``crc``: use optional checksums. ``address``: address of the client on CAN. Raise
     `UnsupportedError` for a bus that the ICD does not describe.
@@ -104,8 +111,8 @@ class Client(Generic[N]):
         self._stream: list[bytes] = []
         self._packets: list[CanPacket] = []
         self._transfers: list[I2cTransfer] = []
-        # I2C: number of transfers taken, but not yet passed to `transferred`
-        self._unreported = 0
+        # I2C: transactions taken whose results were not yet passed to `transferred`
+        self._taken: list[I2cTransfer] = []
         # hold: wait until no response to an earlier request can arrive. wait: for the
         # response. I2C only: pause until the next poll or attempt. poll: wait for the
         # result.
@@ -185,18 +192,20 @@ class Client(Generic[N]):
     def transfers(self) -> list[I2cTransfer]:
         """I2C: return the transactions to perform, each once.
 
-        Call `transferred` once for each transaction, in this order.
+        Call `transferred` once for each transaction, in this order. There are no more
+        while the results of eight transactions are missing.
         """
-        taken, self._transfers = self._transfers, []
-        self._untaken = 0
-        self._unreported += len(taken)
+        free = MOST_AWAITED - len(self._taken)
+        taken, self._transfers = self._transfers[:free], self._transfers[free:]
+        self._untaken = min(self._untaken, len(self._transfers))
+        self._taken += taken
         return taken
 
     def cancel(self) -> None:
         """Cancel the request without an event, and drop its remaining output.
 
         Another request may begin at once, except one to which a late response to the
-        cancelled one could belong: it waits. The late response is `Stray`.
+        cancelled one could belong: it waits. The late response is `Late`.
         """
         self._stream, self._packets, self._transfers = [], [], []
         self._owed -= self._untaken  # nothing responds to what was not sent
@@ -237,28 +246,29 @@ class Client(Generic[N]):
     def transferred(self, now: float, data: Optional[Buffer]) -> list[Event]:
         """I2C: process the bytes that were read; None if the transaction failed.
 
-        The result of a request that has already ended is reported as `Stray`.
+        The result of a transaction whose time-out has passed, or whose request has
+        ended, is reported as `Late`.
         """
-        is_awaited = self._unreported == 1 and self._awaits_transfer
-        self._unreported = max(0, self._unreported - 1)
+        is_awaited = len(self._taken) == 1 and self._awaits_transfer
+        transfer = self._taken.pop(0) if self._taken else None
         events = self.tick(now)  # may end the request of this transaction
         read = None if data is None else bytes(data)
-        if not (is_awaited and self._awaits_transfer):
+        if transfer is None:
             return [*events, Stray(read or b"")]
+        if not (is_awaited and self._awaits_transfer):
+            return [*events, self._late_transfer(transfer, read)]
         if self._state == "poll":
             return events + self._polled(now, read)
         if read is None:
             self._owed = 0
             return events + self._no_reply(now)
         if self._request.kind == "telemetry":
-            id = self._request.id
-            try:
-                frame = i2c_reply(self.link, id, read, self._checks_frames)
-            except IcdError:
-                return [*events, Malformed(id), *self._no_reply(now)]
+            frame, fault = self._read_frame(self._request.id, read)
+            if fault:
+                return [*events, fault, *self._no_reply(now)]
             return events + self._done(frame)
         if not self.link.commands[self._request.id].acknowledged:
-            return events + self._done()
+            return events + self._sent()
         self._is_written = True
         self._poll_end = self._latest = now + self.settings.poll_timeout
         return events + self._pause(now)
@@ -267,6 +277,23 @@ class Client(Generic[N]):
     def _awaits_transfer(self) -> bool:
         """I2C: whether the last transfer is taken and belongs to the request."""
         return self._state in ("wait", "poll") and not self._transfers
+
+    def _late_transfer(self, transfer: I2cTransfer, data: Optional[bytes]) -> Event:
+        """Return the event of a transaction whose result nothing awaits any more."""
+        id = transfer.write[0]
+        if data is None or not transfer.read:
+            return Late(id, b"")
+        frame, fault = self._read_frame(id, data)
+        return fault or Late(id, frame, self.link.TELEMETRY.which(id, frame))
+
+    def _read_frame(self, id: int, data: bytes) -> tuple[bytes, Optional[Event]]:
+        """I2C: return the frame in the bytes read, and the fault if it is damaged."""
+        try:
+            return i2c_reply(self.link, id, data, self._checks_frames), None
+        except ChecksumError:
+            return b"", LineError("checksum", id)
+        except LengthError:
+            return b"", LineError("length", id)
 
     def _transmit_or_hold(self, now: float) -> list[Event]:
         """Send the request, or wait while a late response could be taken for its own."""
@@ -324,7 +351,7 @@ class Client(Generic[N]):
             self._owed = int(is_telecommand and is_answered)
             return []
         if not is_answered:
-            return self._done()
+            return self._sent()
         self._owed += 1
         return []
 
@@ -372,10 +399,9 @@ class Client(Generic[N]):
         if data is None:
             return self._pause(now)
         form: Polled = need(self.link.polled, "i2c.acknowledge")
-        try:
-            frame = i2c_reply(self.link, form.telemetry, data, self._checks_frames)
-        except IcdError:
-            return [Malformed(form.telemetry), *self._pause(now)]
+        frame, fault = self._read_frame(form.telemetry, data)
+        if fault:
+            return [fault, *self._pause(now)]
         acknowledge = self.link.TELEMETRY[form.telemetry].from_bytes(frame)
         if getattr(acknowledge, form.id) != self._request.id or not getattr(
             acknowledge, form.processed
@@ -396,48 +422,54 @@ class Client(Generic[N]):
             type = link.TELEMETRY.which(telemetry, message[1:])
             return [Arrived(telemetry, message[1:], {}, type)]
         if kind == "reply":
-            return self._replied(now, id, message[1:]) or [Stray(message)]
+            return self._replied(id, message[1:])
         if kind == "acknowledge" and link.acknowledge:
-            id, code = (
-                message[link.acknowledge.id_at],
-                message[link.acknowledge.error_at],
-            )
-            if self._is_response("telecommand", id):
+            command = message[link.acknowledge.id_at]
+            code = message[link.acknowledge.error_at]
+            if self._waits_for("telecommand", command):
                 if code == link.errors.get("none", 0):
                     return self._done()
                 return self._refused(now, code)
-        return [Stray(message)]
+            if self._is_late("telecommand", command):
+                return [Late(id, message[1:])]
+        return [Stray(message[1:], id)]
 
     def _can_message(self, now: float, message: CanMessage) -> list[Event]:
-        id = message.id
-        stray: list[Event] = [Stray(bytes((id,)) + message.data)]
+        id, kind = message.id, message.kind
         if message.source != need(self.link.can, "can").node_address:
-            return stray
-        if message.kind == "reply":
-            return self._replied(now, id, message.data) or stray
-        if message.kind == "acknowledge" and self._is_response("telecommand", id):
-            return self._done()
-        if message.kind == "refusal" and self._is_response("telecommand", id):
-            return self._refused(now, None)
-        if message.kind == "request_refusal" and self._is_response("telemetry", id):
-            return self._refused(now, None)
-        return stray
+            return [Stray(message.data, id)]
+        if kind == "reply":
+            return self._replied(id, message.data)
+        if kind in ("acknowledge", "refusal", "request_refusal"):
+            request: Direction = (
+                "telemetry" if kind == "request_refusal" else "telecommand"
+            )
+            if self._waits_for(request, id):
+                is_done = kind == "acknowledge"
+                return self._done() if is_done else self._refused(now, None)
+            if self._is_late(request, id):
+                return [Late(id, message.data)]
+        return [Stray(message.data, id)]
 
-    def _replied(self, now: float, id: int, data: bytes) -> list[Event]:
-        """Process telemetry. Return no event if no request waits for it."""
+    def _replied(self, id: int, data: bytes) -> list[Event]:
+        """Process telemetry."""
+        if id not in self.link.frames:
+            return [Stray(data, id)]
         frame, fault = self._frame(id, data)
-        if fault is None:
-            is_response = self._is_response("telemetry", id)
-            return self._done(frame) if is_response else []
-        return [fault] if self._waits_for("telemetry", id) else []
+        if fault:
+            return [fault]
+        if self._waits_for("telemetry", id):
+            return self._done(frame)
+        kind = self.link.TELEMETRY.which(id, frame)
+        if self._is_late("telemetry", id):
+            return [Late(id, frame, kind)]
+        return [Stray(frame, id, kind)]
 
     def _frame(self, id: int, data: bytes) -> tuple[bytes, Optional[Event]]:
         """Return the frame in telemetry, and the fault if it is damaged.
 
         Its length shows whether it has a checksum.
         """
-        if id not in self.link.frames:
-            return b"", Malformed(id)
         form, length = self.link.checksum, self.link.frames[id]
         may_be_checked = form is not None and self.bus in form.telemetry_buses
         if form and may_be_checked and len(data) == length + form.bytes:
@@ -446,25 +478,20 @@ class Client(Generic[N]):
             except ChecksumError:
                 return b"", LineError("checksum", id)
         if len(data) != length:
-            return b"", Malformed(id)
+            return b"", LineError("length", id)
         return data, LineError("unchecked", id) if self._checks_frames else None
 
     def _waits_for(self, kind: Direction, id: int) -> bool:
         request = self._request
         return self._state == "wait" and (kind, id) == (request.kind, request.id)
 
-    def _is_response(self, kind: Direction, id: int) -> bool:
-        """Return whether the request waits for this response.
-
-        If not, it may be a late one, which can then no longer arrive.
-        """
-        if self._waits_for(kind, id):
-            return True
-        for late in self._late:
-            if (late.kind, late.id) == (kind, id):
-                late.responses -= 1
+    def _is_late(self, kind: Direction, id: int) -> bool:
+        """Return whether this is a response to a request that has ended, and count it."""
+        found = [late for late in self._late if (late.kind, late.id) == (kind, id)]
+        for late in found:
+            late.responses -= 1
         self._late = [late for late in self._late if late.responses]
-        return False
+        return bool(found)
 
     def _done(self, frame: bytes = b"") -> list[Event]:
         id, message = self._request.id, None
@@ -472,6 +499,10 @@ class Client(Generic[N]):
             message = self.link.TELEMETRY[id]
         self._end(is_answered=True)
         return [Done(id, self._attempts, frame, message)]
+
+    def _sent(self) -> list[Event]:
+        self._end()
+        return [Sent(self._request.id, self._attempts)]
 
     def _refused(
         self, now: float, code: Optional[int], parameter: Optional[int] = None

@@ -135,21 +135,16 @@ class Reply:
 
 @dataclass(frozen=True)
 class Late:
-    """A response to a request that has ended."""
+    """A response to a request that has ended.
+
+    ``id`` is that of the response, ``data`` its data without the id; ``type`` is the
+    class of telemetry. On I2C, the result of a transaction that came too late: ``data``
+    is empty if nothing was read.
+    """
 
     id: int
     data: bytes
     type: Optional[MessageClass] = None
-
-
-@dataclass(frozen=True)
-class Malformed:
-    """A reply does not have the length of the message.
-
-    The client still waits for a reply.
-    """
-
-    id: int
 
 
 @dataclass(frozen=True)
@@ -162,8 +157,9 @@ class Log:
 
 @dataclass(frozen=True)
 class Stray:
-    """A response without a matching request: with header and trailer, its data and its
-    id; on I2C, the bytes read; on other links, the message with its id.
+    """A response that no request can have caused.
+
+    ``id`` is None on I2C: ``data`` are bytes that no transaction read.
     """
 
     data: bytes
@@ -175,10 +171,10 @@ class Stray:
 class LineError:
     """An error that a decoder or the CAN joiner detected.
 
-    On CAN, and with header and trailer, ``id`` is the id of the message. ``checksum``:
-    the checksum of a frame is wrong. ``unchecked``: a required checksum is missing.
-    After these two, the client still waits for the frame. For the other errors see
-    `StreamEvent`, `UartEvent` and `CanEvent`.
+    ``id`` is the id of the message, if it is known. ``length``: the length of telemetry
+    is wrong. ``checksum``: the checksum of a frame is wrong. ``unchecked``: a required
+    checksum is missing. After these, the client still waits for the frame. For the other
+    errors see `StreamEvent`, `UartEvent` and `CanEvent`.
     """
 
     error: str
@@ -221,7 +217,6 @@ Event = Union[
     Progress,
     Reply,
     Late,
-    Malformed,
     Log,
     Stray,
     LineError,

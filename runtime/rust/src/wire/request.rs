@@ -59,6 +59,6 @@ impl<'a> Request<'a> {
 pub enum Started {
     /// The outcome is reported by an event.
     Waiting,
-    /// The request is done at once, because it has no acknowledge.
-    Done,
+    /// The request has ended, because nothing responds to it.
+    Sent,
 }

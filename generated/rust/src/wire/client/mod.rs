@@ -228,7 +228,7 @@ impl<T, const N: usize> Client<T, N> {
             },
             None => return Ok(false),
         };
-        if self.start(now, &request)? == Started::Done {
+        if self.start(now, &request)? == Started::Sent {
             procedure.event(now, Outcome::Done(&[]));
         }
         Ok(true)
@@ -275,21 +275,23 @@ impl<T, const N: usize> Client<T, N> {
     }
 
     /// I2C: return the next transaction; None if there is none. Call [`Client::transferred`]
-    /// exactly once for each transaction, in the same order.
+    /// exactly once for each transaction, in the same order. There is none while the results of
+    /// eight transactions are missing.
     pub fn output_transaction(&mut self) -> Option<Transaction<'_>> {
         let machine = &mut self.machine;
         if machine.bus != Bus::I2c {
             return None;
         }
         let output = machine.first()?;
+        let taken = machine.taken_as(output);
+        machine.taken.push(taken)?;
         machine.sent();
-        machine.owed = machine.owed.saturating_add(1);
         Some(machine.transaction(output))
     }
 
     /// Cancel the request without an event, and drop its remaining output. Another request may then
     /// be started; it waits if a late response to the cancelled one could be taken for its own. The
-    /// late response is reported as [`Event::Stray`].
+    /// late response is reported as [`Event::Late`].
     pub fn cancel(&mut self) {
         self.machine.cancel();
     }
@@ -337,8 +339,8 @@ impl<T, const N: usize> Client<T, N> {
     }
 
     /// I2C: pass the result of the oldest unfinished transaction to the client: the bytes that were
-    /// read, or None if the transaction failed. If the request has already ended, the result is
-    /// reported as [`Event::Stray`].
+    /// read, or None if the transaction failed. If the time-out of the transaction has passed or its
+    /// request has ended, the result is reported as [`Event::Late`].
     pub fn transferred(
         &mut self,
         now: u32,
@@ -346,11 +348,18 @@ impl<T, const N: usize> Client<T, N> {
         mut on_event: impl FnMut(NodeEvent<'_, T>),
     ) {
         let mut on_event = |event: Event<'_>| on_event(NodeEvent::new(event));
-        let awaited = self.machine.owed == 1 && self.machine.awaits_transfer();
-        self.machine.owed = self.machine.owed.saturating_sub(1);
+        let awaited = self.machine.taken.is_single() && self.machine.awaits_transfer();
+        let transaction = self.machine.taken.pop();
         self.pass(now, &mut on_event); // may end this request
         let awaited = awaited && self.machine.awaits_transfer();
-        self.machine.transferred(now, bytes, awaited, &mut on_event);
+        match transaction {
+            Some(_) if awaited => self.machine.transferred(now, bytes, &mut on_event),
+            Some(late) => self.machine.transferred_late(late, bytes, &mut on_event),
+            None => {
+                let (id, data) = (None, bytes.unwrap_or(&[]));
+                on_event(Event::Stray { id, data });
+            }
+        }
     }
 
     fn pass(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

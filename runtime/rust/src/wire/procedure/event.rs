@@ -49,6 +49,7 @@ impl<'a> From<&wire::Event<'a>> for Happened<'a> {
     fn from(event: &wire::Event<'a>) -> Self {
         Self::from(match *event {
             wire::Event::Done { data, .. } => Outcome::Done(data),
+            wire::Event::Sent { .. } => Outcome::Done(&[]),
             wire::Event::Refused { code, reason, .. } => Outcome::Refused {
                 may_be_damaged: code.is_some() && reason.is_none(),
             },

@@ -20,4 +20,6 @@ pub use self::judge::Event;
 pub use self::request::Request;
 pub use self::sender::Sender;
 #[cfg(feature = "std")]
-pub use self::session::{Outcome, Session};
+pub use self::session::Session;
+#[cfg(feature = "std")]
+pub use super::session::Outcome;

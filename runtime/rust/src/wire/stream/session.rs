@@ -4,7 +4,7 @@
 use super::{Client, Event, NodeEvent, Request, Values};
 use crate::wire::link::Settings;
 use crate::wire::procedure::{End, Procedure, Sink};
-use crate::wire::session::{Failure, Waiting};
+use crate::wire::session::{Failure, Outcome, Waiting};
 use crate::wire::{Error, Linked, TelecommandOf, TelemetryOf};
 use std::boxed::Box;
 use std::io::{Read, Write};
@@ -12,15 +12,6 @@ use std::vec;
 use std::vec::Vec;
 
 type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
-
-/// How a request ended that did not fail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// The device executed it.
-    Done,
-    /// It was sent, and nothing responds to it.
-    Sent,
-}
 
 /// Blocking client. `N` is the constant `LONGEST`, `S` the constant `SEQUENCES` and `T` the type
 /// `Node` of the module of the node.

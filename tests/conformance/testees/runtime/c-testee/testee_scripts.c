@@ -8,17 +8,17 @@ static void on_event(void *context, const icd_event_t *event)
 {
     static const char *const reasons[] = {"", "none", "unknown_id", "length", "parameter", "checksum"};
     const icd_event_kind_t kind = event->kind;
-    const bool outcome = kind == ICD_EVENT_DONE || kind == ICD_EVENT_REFUSED || kind == ICD_EVENT_TIMEOUT;
-    (void)context;
+    const bool outcome = kind >= ICD_EVENT_DONE && kind <= ICD_EVENT_TIMEOUT;
+    const icd_bus_t bus = ((const icd_client_t *)context)->bus;
     put_row(event_name(kind));
-    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE) || kind >= ICD_EVENT_CHECKSUM ||
-        kind == ICD_EVENT_ARRIVED) {
+    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE) || kind == ICD_EVENT_ARRIVED ||
+        (kind >= ICD_EVENT_LATE && !(kind == ICD_EVENT_STRAY && bus == ICD_BUS_I2C))) {
         put_number("id", event->id);
     }
     if (outcome) {
         put_number("attempts", event->attempts);
     }
-    if (kind == ICD_EVENT_DONE || kind == ICD_EVENT_ARRIVED || kind == ICD_EVENT_LOG || kind == ICD_EVENT_STRAY) {
+    if (kind == ICD_EVENT_DONE || (kind >= ICD_EVENT_ARRIVED && kind <= ICD_EVENT_STRAY)) {
         put_octets("bytes", event->data, event->length);
     }
     if (kind == ICD_EVENT_REFUSED) {
@@ -44,7 +44,7 @@ static void start(icd_client_t *client, uint32_t now, icd_direction_t direction)
         request.data = octets.data;
         request.length = octets.length;
     }
-    status = icd_client_start(client, now, &request, on_event, NULL);
+    status = icd_client_start(client, now, &request, on_event, client);
     if (status == ICD_ERROR_LENGTH) {
         put_row("error");
         put_word("error", "length");
@@ -64,19 +64,19 @@ static void happen(icd_client_t *client, uint32_t now, const char *what)
         start(client, now, ICD_TELEMETRY);
     } else if (is_word(what, "received")) {
         const octets_t octets = next_octets();
-        icd_client_received(client, now, octets.data, octets.length, on_event, NULL);
+        icd_client_received(client, now, octets.data, octets.length, on_event, client);
     } else if (is_word(what, "transferred")) {
         const octets_t octets = next_octets();
-        icd_client_transferred(client, now, octets.data, octets.length, on_event, NULL);
+        icd_client_transferred(client, now, octets.data, octets.length, on_event, client);
     } else if (is_word(what, "failed")) {
-        icd_client_transferred(client, now, NULL, 0, on_event, NULL);
+        icd_client_transferred(client, now, NULL, 0, on_event, client);
     } else if (is_word(what, "packet")) {
         const icd_can_packet_t packet = next_packet();
-        icd_client_packet(client, now, &packet, on_event, NULL);
+        icd_client_packet(client, now, &packet, on_event, client);
     } else if (is_word(what, "cancel")) {
         icd_client_cancel(client);
     } else {
-        icd_client_tick(client, now, on_event, NULL);
+        icd_client_tick(client, now, on_event, client);
     }
 }
 
@@ -219,7 +219,7 @@ static void take_event(icd_procedure_t *procedure, uint32_t now, const char *nam
         {"refused", ICD_EVENT_REFUSED, ICD_STREAM_REFUSED, true},
         {"damaged", ICD_EVENT_REFUSED, ICD_STREAM_REFUSED, true},
         {"timeout", ICD_EVENT_TIMEOUT, ICD_STREAM_TIMEOUT, true},
-        {"sent", ICD_EVENT_DONE, ICD_STREAM_SENT, false},
+        {"sent", ICD_EVENT_SENT, ICD_STREAM_SENT, true},
         {"busy", ICD_EVENT_TIMEOUT, ICD_STREAM_BUSY, false},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -253,8 +253,8 @@ static void take_event(icd_procedure_t *procedure, uint32_t now, const char *nam
 
 static void put_step(icd_procedure_t *procedure, uint32_t now)
 {
-    static const char *const results[] = {"",       "done",   "refused",  "busy",   "timeout",
-                                          "failed", "length", "checksum", "rounds", "limit"};
+    static const char *const results[] = {
+        "", "done", "refused", "busy", "timeout", "failed", "length", "checksum", "rounds", "limit"};
     icd_request_t request;
     uint32_t deadline;
     const bool asks = icd_procedure_next(procedure, now, &request);

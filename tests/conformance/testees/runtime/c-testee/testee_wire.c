@@ -16,9 +16,10 @@ icd_bus_t next_bus(void)
 const char *event_name(icd_event_kind_t kind)
 {
     static const char *const names[] = {
-        "message",   "unexpected_start", "protocol_error", "overrun",      "empty", "duplicate", "incomplete",
-        "malformed", "busy",             "unknown_type",   "done",         "refused", "timeout", "arrived",
-        "log",       "stray",            "checksum",       "unchecked",
+        "message",    "unexpected_start", "protocol_error", "overrun",      "empty", "duplicate",
+        "incomplete", "malformed",        "busy",           "unknown_type", "done",  "sent",
+        "refused",    "timeout",          "arrived",        "log",          "late",  "stray",
+        "length",     "checksum",         "unchecked",
     };
     return names[kind];
 }
@@ -76,9 +77,5 @@ static void identify(void)
 }
 
 const testee_op_t testee_wire_ops[] = {
-    {"crc8", crc8},
-    {"crc16", crc16},
-    {"link_data", link_data},
-    {"identify", identify},
-    {NULL, NULL},
+    {"crc8", crc8}, {"crc16", crc16}, {"link_data", link_data}, {"identify", identify}, {NULL, NULL},
 };

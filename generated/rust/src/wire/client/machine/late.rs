@@ -38,14 +38,17 @@ impl Late {
         self.retain(|entry| !reached(now, entry.until));
     }
 
-    /// Count a response that no request waits for.
-    pub(super) fn count(&mut self, direction: Direction, id: u32) {
+    /// Count a response that no request waits for. Return whether its request has ended.
+    pub(super) fn count(&mut self, direction: Direction, id: u32) -> bool {
+        let mut is_late = false;
         for entry in self.0.iter_mut().flatten() {
             if entry.direction == direction && u32::from(entry.id) == id {
                 entry.responses -= 1;
+                is_late = true;
             }
         }
         self.retain(|entry| entry.responses > 0);
+        is_late
     }
 
     /// Return until when a request must not be sent; None: it may be sent. A late response could be

@@ -6,7 +6,7 @@ use super::super::super::bits::{head, part};
 use super::super::super::can::{self, Splitter};
 use super::super::super::{i2c, Direction};
 use super::super::{Output, Transaction};
-use super::{Machine, QUEUE};
+use super::{taken, Machine, QUEUE};
 
 impl<const N: usize> Machine<N> {
     /// What is to be sent next.
@@ -71,6 +71,21 @@ impl<const N: usize> Machine<N> {
             data: part(&self.message, 1, self.length.saturating_sub(1)),
         };
         Splitter::new(self.link, &message).ok()
+    }
+
+    /// I2C: return what `taken` stores of a transaction.
+    pub(in crate::wire::client) fn taken_as(&self, output: Output) -> taken::Transaction {
+        let [poll_id] = self.poll;
+        match output {
+            Output::Request => taken::Transaction {
+                id: self.id,
+                reads: self.direction == Direction::Telemetry,
+            },
+            Output::Poll => taken::Transaction {
+                id: poll_id,
+                reads: true,
+            },
+        }
     }
 
     pub(in crate::wire::client) fn transaction(&self, output: Output) -> Transaction<'_> {

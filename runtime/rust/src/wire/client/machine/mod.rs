@@ -3,6 +3,7 @@
 mod input;
 mod late;
 mod output;
+mod taken;
 
 use super::super::bits::reached;
 use super::super::event::Event;
@@ -13,6 +14,7 @@ use super::super::uart::Encoder;
 use super::super::Error;
 use super::{Output, State};
 use late::Late;
+use taken::Taken;
 
 /// Bytes of a piece of UART output.
 const PIECE: usize = 64;
@@ -41,7 +43,7 @@ pub(super) struct Machine<const N: usize> {
     pub(super) message: [u8; N], // the request, with id and checksum
     pub(super) length: usize,
     poll: [u8; 1],
-    pub(super) owed: u16, // I2C: transactions taken of which nothing was told
+    pub(super) taken: Taken, // I2C: transactions whose results are missing
     queue: [Option<Output>; QUEUE],
     repeats: u16,            // so often more the first one of the queue is sent
     pub(super) begun: usize, // packets of it that were taken
@@ -74,7 +76,7 @@ impl<const N: usize> Machine<N> {
             message: [0; N],
             length: 0,
             poll: [poll],
-            owed: 0,
+            taken: Taken::NONE,
             queue: [None; QUEUE],
             repeats: 0,
             begun: 0,
@@ -117,7 +119,7 @@ impl<const N: usize> Machine<N> {
         self.owed_responses = 0;
         self.send_or_hold(now, &mut |_| {});
         Ok(if self.state == State::Idle {
-            Started::Done
+            Started::Sent
         } else {
             Started::Waiting
         })
@@ -181,16 +183,6 @@ impl<const N: usize> Machine<N> {
         self.state == State::Wait && self.direction == direction && u32::from(self.id) == id
     }
 
-    /// Return whether the request waits for this response. If not, it may be a late one, which can
-    /// then no longer arrive.
-    fn is_response(&mut self, direction: Direction, id: u32) -> bool {
-        let waits = self.waits_for(direction, id);
-        if !waits {
-            self.late.count(direction, id);
-        }
-        waits
-    }
-
     /// Sends the request, for the first time or again.
     fn send(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
         self.attempts = self.attempts.saturating_add(1);
@@ -208,13 +200,19 @@ impl<const N: usize> Machine<N> {
         } else if answered {
             self.owed_responses = self.owed_responses.saturating_add(1);
         } else {
-            self.done(&[], on_event);
+            self.ended_sent(on_event);
         }
     }
 
     fn done(&mut self, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let (id, attempts) = self.end(1);
         on_event(Event::Done { id, attempts, data });
+    }
+
+    /// End a telecommand to which nothing responds.
+    fn ended_sent(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
+        let (id, attempts) = self.end(0);
+        on_event(Event::Sent { id, attempts });
     }
 
     fn timeout(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {

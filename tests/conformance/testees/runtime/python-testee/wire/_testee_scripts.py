@@ -19,7 +19,6 @@ from .events import (
     LineError,
     Refused,
     Sent,
-    Stray,
     Timeout,
 )
 from .link import Bus, Link, Settings
@@ -158,8 +157,6 @@ def _shown(event: Event, is_of_stream: bool = False) -> str:
     hidden = ["type", "log", "handle", "values"]
     if isinstance(event, (Refused, Busy)):
         hidden += ["reason", "parameter", "data"] if is_of_stream else ["data"]
-    if isinstance(event, Stray) and not is_of_stream:
-        hidden.append("id")
     known = [one.name for one in fields(event) if one.name not in hidden]
     facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
     return row(type(event).__name__.lower(), **facts)

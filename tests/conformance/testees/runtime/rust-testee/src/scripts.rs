@@ -73,7 +73,7 @@ fn happen(
 fn begun(started: Result<Started, Error>, id: u8) -> String {
     match started {
         Ok(Started::Waiting) => String::new(),
-        Ok(Started::Done) => format!(" done id={id} attempts=1 bytes="),
+        Ok(Started::Sent) => format!(" sent id={id} attempts=1"),
         Err(error) => format!(" error error={}", explained(&error)),
     }
 }
@@ -129,19 +129,21 @@ fn shown(event: &Event<'_>) -> String {
             });
             format!(" refused id={id} attempts={attempts}{code}{reason}{parameter}")
         }
+        Event::Sent { id, attempts } => format!(" sent id={id} attempts={attempts}"),
         Event::Timeout { id, attempts } => format!(" timeout id={id} attempts={attempts}"),
         Event::Arrived { id, data } => format!(" arrived id={id} bytes={}", hex(data)),
         Event::Log { message } => format!(" log bytes={}", hex(message)),
+        Event::Late { id, data } => format!(" late id={id} bytes={}", hex(data)),
         Event::Stray { id, data } => {
-            let id = id.and_then(|id| u8::try_from(id).ok());
-            let id = id.map_or_else(String::new, |id| hex(&[id]));
-            format!(" stray bytes={id}{}", hex(data))
+            let id = id.map_or_else(String::new, |id| format!(" id={id}"));
+            format!(" stray{id} bytes={}", hex(data))
         }
         Event::UnexpectedStart => " unexpected_start".into(),
         Event::ProtocolError => " protocol_error".into(),
         Event::Overrun => " overrun".into(),
         Event::Empty => " empty".into(),
         Event::Malformed { id } => of("malformed", id),
+        Event::Length { id } => of("length", id),
         Event::Checksum { id } => of("checksum", id),
         Event::Unchecked { id } => of("unchecked", id),
         Event::Duplicate { id } => of("duplicate", id),
