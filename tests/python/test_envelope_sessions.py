@@ -188,6 +188,35 @@ def test_tasks_ask_together_and_one_listens(wire, node):
     talk(wire, node, talking, *answers, (3, node.NavigationClock(clock_bias=2)))
 
 
+def test_a_program_that_is_slow_has_the_last_messages_and_hears_how_many_it_lost(
+    wire, node
+):
+    async def talking(session, device, reader):
+        reported, taken = [], []
+        session._on_event = reported.append
+        messages = session.messages(node.EndOfEpoch, limit=2)
+        async for message in messages:
+            taken.append(message.time_of_week)
+            if len(taken) == 1:  # now another task reads
+                clock = node.NavigationClock()
+                for number in range(2, 7):
+                    end_of_epoch = node.EndOfEpoch(time_of_week=number)
+                    reader.feed_data(device.line(end_of_epoch) + device.line(clock))
+                    await session.wait()
+            if len(taken) == 3:
+                break
+        await messages.aclose()
+        assert taken == [1, 5, 6]
+        lost = [event for event in reported if isinstance(event, wire.Lost)]
+        assert lost == [wire.Lost(3)]
+
+    async def fed(session, device, reader):
+        reader.feed_data(device.line(node.EndOfEpoch(time_of_week=1)))
+        await talking(session, device, reader)
+
+    talk(wire, node, fed)
+
+
 @pytest.mark.parametrize("given_up", [0, 1])
 def test_a_task_that_is_given_up_leaves_the_others_going_on(wire, node, given_up):
     """Whichever of them reads for both."""

@@ -202,6 +202,15 @@ class Arrived:
 
 
 @dataclass(frozen=True)
+class Lost:
+    """`AsyncSession.messages` discarded ``count`` messages, the oldest first, because the
+    program did not take them in time.
+    """
+
+    count: int
+
+
+@dataclass(frozen=True)
 class Gap:
     """``missing`` messages were lost before the next one; 0 if a message was repeated."""
 
@@ -223,4 +232,5 @@ Event = Union[
     LineError,
     Arrived,
     Gap,
+    Lost,
 ]

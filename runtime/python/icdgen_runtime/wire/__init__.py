@@ -41,6 +41,7 @@ __all__ = [
     "LogMessage",
     "LogReader",
     "LogWriter",
+    "Lost",
     "OutcomeOf",
     "PacketData",
     "Procedure",
@@ -114,6 +115,7 @@ if TYPE_CHECKING:
     from .events import Late as Late
     from .events import LineError as LineError
     from .events import Log as Log
+    from .events import Lost as Lost
     from .events import OutcomeOf as OutcomeOf
     from .events import Progress as Progress
     from .events import Refused as Refused
@@ -181,6 +183,7 @@ _HOMES = {
         "Late",
         "LineError",
         "Log",
+        "Lost",
         "OutcomeOf",
         "Progress",
         "Refused",

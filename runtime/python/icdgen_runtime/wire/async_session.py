@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections import deque
 from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import NamedTuple, Optional, overload
+from typing import NamedTuple, Optional, TypeVar, overload
 
 from .._base import Message
 from .._hints import N
 from .client import Request
 from .envelope_client import EnvelopeClient
-from .events import Event, Outcome, OutcomeOf
+from .events import Arrived, Event, Lost, Outcome, OutcomeOf
 from .exchanges import (
     Exchange,
     Exchanges,
@@ -28,12 +29,54 @@ from .link import Link, Settings
 from .message_ids import M, NodeMessage, NodeMessageClass, class_of, message_of
 
 _PIECE = 4096  # maximum bytes of a read
+B = TypeVar("B", bound="_Box")
 
 
 class _Locks(NamedTuple):
     turn: asyncio.Lock  # for requests that cannot run concurrently
     read: asyncio.Lock
     write: asyncio.Lock
+
+
+class _Box:
+    """Events that any reading task has read for one task."""
+
+    def __init__(self) -> None:
+        self._events: deque[Event] = deque()
+
+    def __bool__(self) -> bool:
+        return bool(self._events)
+
+    def add(self, event: Event) -> None:
+        self._events.append(event)
+
+    def take(self) -> list[Event]:
+        """Remove all events and return them."""
+        events = [*self._events]
+        self._events.clear()
+        return events
+
+
+class _MessageBox(_Box):
+    """The last ``limit`` unsolicited messages of these classes."""
+
+    def __init__(self, kinds: tuple[object, ...], limit: int) -> None:
+        super().__init__()
+        self._kinds, self._limit, self._lost = kinds, limit, 0
+
+    def add(self, event: Event) -> None:
+        if isinstance(event, Arrived) and (
+            not self._kinds or event.type in self._kinds
+        ):
+            super().add(event)
+        if len(self._events) > self._limit:
+            self._events.popleft()
+            self._lost += 1
+
+    def take_lost(self) -> int:
+        """Return the number of messages lost since the previous call."""
+        lost, self._lost = self._lost, 0
+        return lost
 
 
 class AsyncSession(Exchanges[N]):
@@ -65,7 +108,7 @@ class AsyncSession(Exchanges[N]):
         super().__init__(client_of(link, crc, settings, values), on_event, clock)
         self._reader, self._writer = reader, writer
         self._locks: Optional[_Locks] = None
-        self._boxes: dict[object, list[Event]] = {}  # events by waiting task
+        self._boxes: dict[object, _Box] = {}  # events by waiting task
         self._read_before: Optional[asyncio.Future[bytes]] = None
 
     async def get(self, message: NodeMessageClass[N, M]) -> M:
@@ -109,7 +152,7 @@ class AsyncSession(Exchanges[N]):
 
     @overload
     def messages(
-        self, *, seconds: Optional[float] = None
+        self, *, seconds: Optional[float] = None, limit: int = 1000
     ) -> AsyncIterator[Message]: ...
 
     @overload
@@ -119,20 +162,30 @@ class AsyncSession(Exchanges[N]):
         /,
         *more_kinds: NodeMessageClass[N, M],
         seconds: Optional[float] = None,
+        limit: int = 1000,
     ) -> AsyncIterator[M]: ...
 
     async def messages(
-        self, *kinds: NodeMessageClass[N, Message], seconds: Optional[float] = None
+        self,
+        *kinds: NodeMessageClass[N, Message],
+        seconds: Optional[float] = None,
+        limit: int = 1000,
     ) -> AsyncIterator[Message]:
         """Iterate over unsolicited messages, without end or for this number of seconds.
 
         ``kinds`` selects message classes; without it, all are returned. Other events
         are passed to ``on_event``.
+
+        While the program processes a message, other tasks may receive more. Of these,
+        the last ``limit`` are kept; `Lost` is passed to ``on_event`` for the others.
         """
         end = None if seconds is None else self._now() + 1000 * seconds
-        with self._box() as box:
+        with self._box(_MessageBox(kinds, limit)) as box:
             while end is None or self._now() < end:
-                for message in self._messages_in(await self._next(box, end), kinds):
+                events = await self._next(box, end)
+                if lost := box.take_lost():
+                    self._report(Lost(lost))
+                for message in self._messages_in(events, kinds):
                     yield message
 
     async def start(self, request: Request) -> Outcome:
@@ -149,28 +202,26 @@ class AsyncSession(Exchanges[N]):
         Without ``until``, wait until the deadline of the client, but at most one
         second.
         """
-        with self._box() as box:
+        with self._box(_Box()) as box:
             return await self._next(box, until)
 
     @contextmanager
-    def _box(self) -> Iterator[list[Event]]:
-        """Return the list to which any reading task adds events for this task."""
+    def _box(self, box: B) -> Iterator[B]:
+        """Let any reading task add events for this task to the box."""
         key = object()
-        box: list[Event] = []
         self._boxes[key] = box
         try:
             yield box
         finally:
             del self._boxes[key]
 
-    async def _next(self, box: list[Event], until: Optional[float]) -> list[Event]:
+    async def _next(self, box: _Box, until: Optional[float]) -> list[Event]:
         """Return the events of a task, or wait for the next. One task reads for all."""
         await self._flush()
         async with self._lock.read:
             if not box:
                 await self._receive(until)
-        events, box[:] = box[:], []
-        return events
+        return box.take()
 
     async def _receive(self, until: Optional[float]) -> None:
         # Another task may send a request meanwhile, whose deadline is earlier.
@@ -183,7 +234,8 @@ class AsyncSession(Exchanges[N]):
         else:
             raise ConnectionResetError("the other side closed the connection")
         for box in self._boxes.values():
-            box += events
+            for event in events:
+                box.add(event)
         self._report_unsolicited(events)
         await self._flush()
 
@@ -200,7 +252,7 @@ class AsyncSession(Exchanges[N]):
             return await self._ended(exchange)
 
     async def _ended(self, exchange: Exchange[T]) -> T:
-        with self._box() as box:
+        with self._box(_Box()) as box:
             try:
                 step = next(exchange)
                 while True:
