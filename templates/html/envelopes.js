@@ -1,5 +1,5 @@
 "use strict";
-/* Bytes in the envelope that an ICD describes -> the messages in them, and what was dropped, as generated decoders find them. */
+/* Bytes in the packets that an ICD describes -> the messages in them, and what was dropped, as generated decoders find them. */
 const icdgenEnvelopes = ((frames) => {
   const DIRECTIONS = ["telecommand", "telemetry"];
   const ENDS = { slip: [0xc0, 0xdb], hdlc: [0x7e, 0x7d], cobs: [0x00, -1] };
@@ -267,9 +267,9 @@ const icdgenEnvelopes = ((frames) => {
 
   const chosen = (values) => Object.entries(values).map(([role, value]) => `${role} ${value}`).join(", ");
 
-  /** What is said of a message that was in an envelope. */
+  /** What is said of a message whose header and trailer were removed. */
   function removed(form, { id, values }) {
-    return `envelope with id ${idText(form, id)} removed${chosen(values) ? `; it has ${chosen(values)}` : ""}`;
+    return `header with id ${idText(form, id)} removed${chosen(values) ? `; it has ${chosen(values)}` : ""}`;
   }
 
   /** What is said of the bytes around the messages. */

@@ -30,7 +30,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     return given >= least && given <= length && (given - least) % step === 0;
   }
 
-  /** Where frames differ in length one in its envelope can be as long as another without: a checksum tells. */
+  /** Where frames differ in length one in its packet can be as long as another without: a checksum tells. */
   function surelyEnveloped(wire, length, bytes) {
     if (!wire.lengths || !wire.stream || !isChecked(wire)) return null;
     try {
@@ -40,7 +40,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     }
   }
 
-  /** The first message of this kind in its envelope; null if there is none. Throws an Error where one is damaged, another one's, or has no data. */
+  /** The first message of this kind in its packet; null if there is none. Throws an Error where one is damaged, another one's, or has no data. */
   function ofEnvelopes(wire, length, bytes) {
     const form = wire.stream;
     const able = (what) => form[what].length || (what === "telecommand" && form.request?.ids.length);
@@ -66,7 +66,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
       throw new Error(dataless.event === "request" ? "a request of this message, which carries no data" : `a packet ${name}, which carries no message`);
     }
     const other = events.find(({ event, is, id, what }) => (event === "message" ? id !== idIn(wire, what) : event === "unknown_id" && is === "proven"));
-    if (other) throw new Error(`in an envelope with id ${envelopes.idText(form, other.id)}, which is another message's`);
+    if (other) throw new Error(`in a packet with id ${envelopes.idText(form, other.id)}, which is another message's`);
     return null;
   }
 

@@ -77,7 +77,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     const placesOf = (one) => JSON.stringify(one.read.map(({ span }) => span));
     const best = likeliest.filter((one) => one.speaker !== likeliest[0].speaker || placesOf(one) === placesOf(likeliest[0]));
     const requests = requestsOf(found);
-    const choose = (span, candidates) => decided(asked(requests, span, candidates), "a frame in an envelope");
+    const choose = (span, candidates) => decided(asked(requests, span, candidates), "a packet");
     const chosen = Array.from({ length: most }, (_, at) => {
       const { span } = best[0].read[at];
       return [span, choose(span, best.flatMap((one) => one.read[at].candidates))];

@@ -83,7 +83,7 @@ def test_ids_of_two_bytes_are_written_as_the_protocol_writes_them(icdgen):
     )
     told = icdgen("decode", "--icd", LINKS / "ubx.yaml", frame.replace("A0", "CB"))
     assert "receiver: End of Epoch (telemetry 01 61), 4 bytes" in told.out
-    assert "envelope with id 01 61 removed" in told.out
+    assert "header with id 01 61 removed" in told.out
     named = icdgen(
         "decode", "--icd", LINKS / "ubx.yaml", "receiver", "01 61", "01 00 00 00"
     )

@@ -144,7 +144,7 @@ def test_the_id_of_messages_that_share_it_names_the_one_that_the_frame_is(
 def test_an_envelope_comes_off_where_its_bytes_could_be_text_of_the_message_too(icd):
     frame = sent(icd, "telemetry", 261, b"ready")
     (found,) = recognize(icd, frame, "pack", "Log")
-    assert found.data == b"ready" and "envelope with id 01 05 removed" in found.remarks
+    assert found.data == b"ready" and "header with id 01 05 removed" in found.remarks
     (plain,) = recognize(icd, b"ready".hex(), "pack", "Log")
     assert plain.data == b"ready" and plain.remarks == ()
     (other,) = recognize(icd, LIMIT, "pack", "Log")

@@ -1,5 +1,5 @@
-"""Frames in envelopes, as people paste them: the envelope comes off, and what is wrong
-with it is said.
+"""Framed messages, as people paste them: header and trailer come off, and what is wrong
+with them is said.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def test_a_frame_is_found_with_its_node_direction_and_message(
         id,
         data,
     )
-    assert found.frame.data == data and "envelope with id" in found.remarks[0]
+    assert found.frame.data == data and "header with id" in found.remarks[0]
 
 
 def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_said():

@@ -320,12 +320,12 @@ def test_a_value_of_no_field_of_the_envelope_is_refused():
         "Poll Clock",
         "--port",
         "tcp://127.0.0.1:1",
-        "--envelope",
+        "--header",
         "source=1",
     )
     assert (
         wrong.returncode == 2
-        and "the envelope of receiver has no field `source`" in wrong.stderr
+        and "no packet of receiver has a field `source`" in wrong.stderr
     )
     wrong = icdgen(
         "send",
@@ -336,7 +336,7 @@ def test_a_value_of_no_field_of_the_envelope_is_refused():
         "base=1",
         "--port",
         "tcp://127.0.0.1:1",
-        "--envelope",
+        "--header",
         "source=256",
     )
     assert wrong.returncode == 2 and "from 0 to 255" in wrong.stderr

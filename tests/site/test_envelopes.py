@@ -195,7 +195,7 @@ def test_the_page_of_a_message_takes_its_envelope_off():
     )
     assert found[0] == [
         "00000000",
-        "envelope with id 01 61 removed; 1 other frame left out",
+        "header with id 01 61 removed; 1 other frame left out",
     ]
     assert (
         found[1][0] == "4ab37b0f"
@@ -221,7 +221,7 @@ def test_the_page_takes_the_envelope_off_where_its_bytes_could_be_data_of_the_me
     ]
 
 
-def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):
+def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
     file = tmp_path / "odd.yaml"
     hostile = "</script><img src=x>"
     content = (LINKS / "mavlink2.yaml").read_text().replace("x25", f'"{hostile}"')
@@ -235,7 +235,7 @@ def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):
     for words in (
         "sync header, bits 0 to 7 begins a message 253 (0xFD)",
         "source header, bits 40 to 47 says who sends 255 (0xFF) in telecommands, 1 (0x1) in telemetry",
-        "A message ends where its length says.",
+        "A packet ends where its length says.",
         "Covers from the length to the data",
         "Heartbeat 50",
         "Polynomial 0x1021",

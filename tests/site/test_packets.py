@@ -254,11 +254,11 @@ def test_a_refusal_names_its_reason_and_a_response_without_id_needs_no_message(r
         "a packet refusal of Relay with the id 09 99 is a refusal, reason Locked: "
         "no message has this id"
     )
-    assert shown[4] == ["request", "Counters", "envelope with id 02 03 removed"]
+    assert shown[4] == ["request", "Counters", "header with id 02 03 removed"]
     assert shown[5] == [
         "telemetry",
         "Temperature",
-        "envelope with id 01 02 removed; it has status 1",
+        "header with id 01 02 removed; it has status 1",
     ]
     assert shown[6] == ["acknowledge", "Blink", "packet taken"]
 
@@ -401,7 +401,7 @@ def test_the_page_of_a_message_shows_its_request_and_the_packet_in_which_it_is_s
 def test_a_link_with_one_format_shows_it_without_a_name(tmp_path):
     write(make([LINKS / "ubx.yaml"]), tmp_path)
     text = (tmp_path / "receiver" / "protocol.html").read_text("utf-8")
-    assert text.count('aria-label="A message in its envelope"') == 1
+    assert text.count('aria-label="A packet"') == 1
     assert "Sent by" not in text and "Packet " not in plain(
         tmp_path / "receiver" / "protocol.html"
     )

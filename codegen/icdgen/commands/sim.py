@@ -147,7 +147,7 @@ class _Sim(click.Command):
     help="Period of telemetry on framed links, in s; 0: none (default: the ICD's, otherwise 1).",
 )
 @click.option(
-    "--envelope",
+    "--header",
     "chosen",
     multiple=True,
     metavar="ROLE=NUMBER",

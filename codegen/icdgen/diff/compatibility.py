@@ -152,7 +152,7 @@ def _frames(
             now = _counterpart(comparison, message, new.get(number, []))
             verdict, reasons = _verdict(comparison, key, message, now, judge)
             if verdict != NO and key.removesuffix("_id") in changed_formats:
-                verdict, reasons = NO, ("its envelope is another",)
+                verdict, reasons = NO, ("its packet format is another",)
             # Nodes that include the same ICD share its messages.
             if (id(message), verdict) in seen:
                 continue

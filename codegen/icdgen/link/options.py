@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options --port, --crc, --address, --envelope, --timeout and --retries."""
+    """Add the options --port, --crc, --address, --header, --timeout and --retries."""
     options = [
         click.option(
             "--port",
@@ -39,7 +39,7 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             help="Address of the client on CAN.",
         ),
         click.option(
-            "--envelope",
+            "--header",
             "chosen",
             multiple=True,
             metavar="ROLE=NUMBER",

@@ -148,7 +148,7 @@ def readings(
         asked = [
             each for each in candidates if before and _answers(each, before[-1])
         ] or candidates
-        return match.most_likely(asked, "a frame in an envelope", selection)
+        return match.most_likely(asked, "a packet", selection)
 
     chosen = {}
     for at in range(-fewer):
@@ -385,7 +385,7 @@ def _reading(
 def _note(endpoint: Endpoint, event: StreamEvent) -> str:
     """Return the text about header and trailer of a packet."""
     chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
-    note = f"envelope with id {id_text(endpoint.facts.stream, event.id or 0)} removed"
+    note = f"header with id {id_text(endpoint.facts.stream, event.id or 0)} removed"
     return note + (f"; it has {chosen}" if chosen else "")
 
 

@@ -22,7 +22,7 @@ def values_of(facts: Facts, chosen: Sequence[str]) -> dict[str, int]:
         if field is None:
             has = f"it has {', '.join(fields)}" if fields else "it has none to choose"
             raise UserError(
-                f"`{text}`: the envelope of {facts.node.name} has no field `{role.strip()}`",
+                f"`{text}`: no packet of {facts.node.name} has a field `{role.strip()}`",
                 has,
             )
         if value is None or not 0 <= value <= field.mask:

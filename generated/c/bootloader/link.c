@@ -477,7 +477,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         ICDGEN_OF_FILES(&packed_time), /* packed times */
         ICDGEN_OF_FILES(&index_entry), /* index of files */
         &identification, /* identification */
-        NULL, /* envelope */
+        NULL, /* framing */
     };
     /* clang-format on */
     return &link;

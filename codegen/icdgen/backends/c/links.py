@@ -150,7 +150,7 @@ class _Tables(TableSet):
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
             Row(self.report("identification", link.identification), "identification"),
-            Row(self.stream(), "envelope"),
+            Row(self.stream(), "framing"),
         ]
         assumed = (
             (key, why)

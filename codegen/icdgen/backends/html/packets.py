@@ -83,7 +83,7 @@ def packet_urls(relations: Relations, node: Node) -> dict[str, str]:
 
 def _anchor(packet: str, node: Node, taken: set[str]) -> str:
     if not packet:
-        return "envelope"
+        return "packets"
     return free_name(f"packet-{slug(packet, node.vocabulary)}", taken)
 
 

@@ -56,7 +56,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     ]
     return {
         "node": node,
-        "envelope": _envelope(relations, node, node_facts),
+        "framed": _framed(relations, node, node_facts),
         "lines": lines(section),
         "framing": _framing(node_facts),
         "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
@@ -159,7 +159,7 @@ def _framing(node_facts: Facts) -> list[Box]:
     return _row([(text, about, share, "") for text, about, share in pieces])
 
 
-def _envelope(relations: Relations, node: Node, node_facts: Facts) -> dict[str, object]:
+def _framed(relations: Relations, node: Node, node_facts: Facts) -> dict[str, object]:
     """Return the description of the packet formats; empty without one."""
     if node_facts.stream is None:
         return {}
@@ -266,14 +266,14 @@ def entries(
         ),
         (
             node_facts.stream,
-            "envelope stream header trailer sync length sequence delimiter framing checksum",
-            "Envelope",
-            "envelope",
+            "packet framed link header trailer sync length sequence delimiter framing checksum",
+            "Packets",
+            "packets",
         ),
         *(
             (
                 True,
-                f"packet format envelope header trailer request response {name}",
+                f"packet format header trailer request response {name}",
                 f"Packet {name}",
                 url.partition("#")[2],
             )

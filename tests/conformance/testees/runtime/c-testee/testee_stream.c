@@ -1,4 +1,4 @@
-/* Requests about messages in an envelope. */
+/* Requests about messages of a framed link. */
 
 #include "testee_wire.h"
 

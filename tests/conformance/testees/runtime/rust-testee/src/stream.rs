@@ -1,4 +1,4 @@
-//! Requests about messages in an envelope.
+//! Requests about messages of a framed link.
 
 use crate::line::{hex, Answer, Words};
 use crate::nodes::LONGEST;
