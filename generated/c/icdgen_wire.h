@@ -393,7 +393,7 @@ typedef struct {
     uint8_t trailer_bytes;
     icd_packet_content_t content;
     bool is_sent[2];   /**< Whether there are such packets in the direction of telecommands, and of telemetry. */
-    uint16_t reserved; /**< Number of data bytes of packets without a message. */
+    uint16_t reserved; /**< Number of data bytes of packets without a message. They are zero. */
 } icd_packet_form_t;
 
 /** What a response means for its telecommand. */
@@ -482,8 +482,7 @@ typedef struct {
 /** The request of telemetry by a packet with its id and `reserved` bytes. */
 typedef struct {
     const icd_exchange_t *exchange;
-    const uint8_t *data; /**< The reserved bytes; NULL if there are none. */
-    uint8_t packet;      /**< Index of the packet format. */
+    uint8_t packet; /**< Index of the packet format. */
 } icd_telemetry_request_t;
 
 /** Framing of messages in a stream of bytes or in packets. */
@@ -933,6 +932,23 @@ ICDGEN_API icd_status_t icd_stream_encode_request(
     size_t capacity,
     size_t *written);
 
+/**
+ * Encode a packet without a message, such as an acknowledge or a refusal, as a device sends it. `packet` is the index
+ * of its format in `link->stream->packets`, `id` the value of its id field. For the other parameters see
+ * icd_stream_encode().
+ * Return ICD_ERROR_RANGE if there is no such packet without a message in this direction, or if the id or a value does
+ * not fit into its field, ICD_ERROR_LENGTH if the buffer is too small.
+ */
+ICDGEN_API icd_status_t icd_stream_encode_packet(
+    const icd_link_t *link,
+    icd_direction_t direction,
+    size_t packet,
+    uint32_t id,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
 /** Encoder of the messages of one direction, with sequence numbers. */
 typedef struct {
     const icd_link_t *link;
@@ -970,6 +986,20 @@ ICDGEN_API icd_status_t icd_stream_send(
  */
 ICDGEN_API icd_status_t icd_stream_send_request(
     icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written);
+
+/**
+ * Encode a packet without a message, with the next sequence number. `values`: header and trailer values of this packet
+ * in place of those of the sender, except for the sequence if the sender counts the packet; NULL for those of the
+ * sender. For the other parameters and errors see icd_stream_encode_packet().
+ */
+ICDGEN_API icd_status_t icd_stream_send_packet(
+    icd_stream_sender_t *sender,
+    size_t packet,
+    uint32_t id,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
 
 typedef enum {
     ICD_STREAM_MESSAGE = 0,

@@ -223,12 +223,7 @@ def link_data(link: AnyLink, request: Request) -> Response:
 
 def stream_encode(link: AnyLink, request: Request) -> Response:
     need(link.stream, "stream")
-    id, data, values = number(request, "id"), octets(request), request.get("values", {})
-    if not isinstance(values, dict) or not set(values) <= set(GIVEN):
-        raise Refusal(
-            "request", detail="`values` has the fields that the sender chooses, by role"
-        )
-    chosen = {role: number(values, role) for role in values}
+    id, data, chosen = number(request, "id"), octets(request), _chosen(request)
     with naming_the_field():
         if request.get("direction") == "request":
             line = stream.stream_encode_request(link, id, **chosen)
@@ -237,6 +232,25 @@ def stream_encode(link: AnyLink, request: Request) -> Response:
                 link, id, data, choice(request, "direction", DIRECTIONS), **chosen
             )
     return {"bytes": line.hex()}
+
+
+def stream_encode_packet(link: AnyLink, request: Request) -> Response:
+    need(link.stream, "stream")
+    packet, id = number(request, "packet"), number(request, "id")
+    direction, chosen = choice(request, "direction", DIRECTIONS), _chosen(request)
+    with naming_the_field():
+        line = stream.stream_encode_packet(link, packet, id, direction, **chosen)
+    return {"bytes": line.hex()}
+
+
+def _chosen(request: Request) -> dict[str, int]:
+    """Return the values of the fields that the sender chooses."""
+    values = request.get("values", {})
+    if not isinstance(values, dict) or not set(values) <= set(GIVEN):
+        raise Refusal(
+            "request", detail="`values` has the fields that the sender chooses, by role"
+        )
+    return {role: number(values, role) for role in values}
 
 
 def stream_events(link: AnyLink, request: Request) -> Response:
@@ -273,5 +287,5 @@ def _stream_row(event: stream.StreamEvent) -> Response:
 OPERATIONS: tuple[Operation, ...] = (
     crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
     log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
-    link_data, stream_encode, stream_events,
+    link_data, stream_encode, stream_encode_packet, stream_events,
 )  # fmt: skip

@@ -150,7 +150,10 @@ static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
     }
 }
 
-/* Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed. */
+/*
+ * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
+ * for zeros.
+ */
 static inline uint32_t icdgen_envelope_check(
     const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
@@ -159,11 +162,18 @@ static inline uint32_t icdgen_envelope_check(
     size_t length,
     const uint8_t *trailer)
 {
+    static const uint8_t zero = 0;
     const icd_check_form_t *const given = packet->check;
     icdgen_check_t check;
     icdgen_check_begin(&check, given);
     icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(packet->header_bytes) - given->covered_from);
-    icdgen_check_feed(&check, data, length);
+    if (data != NULL) {
+        icdgen_check_feed(&check, data, length);
+    } else {
+        for (size_t i = 0; i < length; ++i) {
+            icdgen_check_feed(&check, &zero, 1);
+        }
+    }
     icdgen_check_feed(&check, trailer, given->covered_trailer);
     if (given->is_seeded && row != NULL) {
         icdgen_check_feed(&check, &row->seed, 1);

@@ -390,9 +390,7 @@ static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 /* Return the packet that is sent for a request. */
 static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
 {
-    const icdgen_outgoing_t outgoing = {
-        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length, NULL, NULL};
-    return outgoing;
+    return icdgen_outgoing_row(client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length);
 }
 
 ICDGEN_API icd_status_t
@@ -551,7 +549,7 @@ ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *b
     icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
     outgoing.exchange = slot->awaited.exchange;
     outgoing.sources = slot->awaited.sources;
-    if (icdgen_outgoing_send(&outgoing, &client->sender, buffer, capacity, written) != ICD_OK) {
+    if (icdgen_outgoing_send(&outgoing, &client->sender, &client->sender.values, buffer, capacity, written) != ICD_OK) {
         return false;
     }
     icd_stream_awaited_t *const awaited = &slot->awaited;

@@ -93,10 +93,11 @@ static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
     }
 }
 
+/* Write bytes; zeros if `bytes` is NULL. */
 static inline void icdgen_line_write(icdgen_line_t *line, const uint8_t *bytes, size_t length)
 {
     for (size_t i = 0; i < length; ++i) {
-        icdgen_line_put(line, bytes[i]);
+        icdgen_line_put(line, bytes != NULL ? bytes[i] : 0u);
     }
 }
 
@@ -133,28 +134,54 @@ static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, 
     return values != NULL && (values->of[field->role] != ICD_ENVELOPE_DEFAULT || field->bits == 32u);
 }
 
+/* A packet that is to be encoded. */
+typedef struct {
+    const icd_stream_form_t *form;
+    icd_direction_t direction;
+    const icd_packet_form_t *packet;
+    uint32_t id;
+    const icd_stream_row_t *row; /* the message, or the telemetry that the packet requests; NULL without either */
+    bool is_message;
+    const uint8_t *data; /* NULL: zeros */
+    size_t length;
+    const icd_exchange_t *exchange; /* its responses; NULL if they do not matter */
+    uint32_t *sources;              /* of `exchange`: the numbers in the header are written here */
+} icdgen_outgoing_t;
+
+/* Return the part of an id that belongs into a field. If the id is too large, its topmost part does not fit. */
+static inline uint32_t icdgen_envelope_part(
+    const icd_packet_form_t *packet, const icd_envelope_field_t *field, uint32_t id)
+{
+    const uint32_t shift = field->values[0];
+    uint32_t bits = 0;
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        bits += packet->fields[i].role == ICD_ENVELOPE_ID ? packet->fields[i].bits : 0u;
+    }
+    const uint32_t part = id >> shift;
+    return shift + field->bits < bits ? part & icdgen_envelope_mask(field) : part;
+}
+
 /* Write all fields except the checksum. Return false if a value does not fit. */
 static inline bool icdgen_envelope_fill(
-    const icd_packet_form_t *packet,
-    icd_direction_t direction,
-    const icd_stream_row_t *row,
+    const icdgen_outgoing_t *outgoing,
     size_t length,
     const icd_envelope_values_t *values,
     uint8_t *header,
     uint8_t *trailer)
 {
+    const icd_packet_form_t *const packet = outgoing->packet;
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
-        uint32_t value = field->values[direction];
+        uint32_t value = field->values[outgoing->direction];
         if (field->role == ICD_ENVELOPE_CHECKSUM) {
             continue;
         }
         if (field->role == ICD_ENVELOPE_ID) {
-            value = (row->id >> value) & icdgen_envelope_mask(field);
+            value = icdgen_envelope_part(packet, field, outgoing->id);
         } else if (field->role == ICD_ENVELOPE_LENGTH) {
             value = icdgen_envelope_counted(field, length);
-        } else if (field->role == ICD_ENVELOPE_RESPONSE_LENGTH) {
-            value = icdgen_envelope_counted(field, row->most);
+        } else if (field->role == ICD_ENVELOPE_RESPONSE_LENGTH && outgoing->row != NULL) {
+            value = icdgen_envelope_counted(field, outgoing->row->most);
         } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
@@ -178,55 +205,75 @@ static inline size_t icdgen_without_zeros(const uint8_t *data, size_t length)
     return left;
 }
 
-/* A packet that is to be encoded. */
-typedef struct {
-    const icd_stream_form_t *form;
-    icd_direction_t direction;
-    const icd_stream_row_t *row; /* the message; as a telecommand also telemetry, for the packet that requests it */
-    const uint8_t *data;
-    size_t length;
-    const icd_exchange_t *exchange; /* its responses; NULL if they do not matter */
-    uint32_t *sources;              /* of `exchange`: the numbers in the header are written here */
-} icdgen_outgoing_t;
-
-static inline bool icdgen_outgoing_requests(const icdgen_outgoing_t *outgoing)
+/* Prepare a message; as a telecommand also the packet that requests telemetry, with the row of the telemetry. */
+static inline icdgen_outgoing_t icdgen_outgoing_row(
+    const icd_stream_form_t *form,
+    icd_direction_t direction,
+    const icd_stream_row_t *row,
+    const uint8_t *data,
+    size_t length)
 {
-    return outgoing->direction == ICD_TELECOMMAND && (outgoing->row->flags & ICD_STREAM_REQUESTED) != 0u;
+    const bool requests = direction == ICD_TELECOMMAND && (row->flags & ICD_STREAM_REQUESTED) != 0u;
+    const icd_packet_form_t *const packet = &form->packets[requests ? form->request->packet : row->packet];
+    const icdgen_outgoing_t outgoing = {form, direction, packet, row->id, row, !requests, data, length, NULL, NULL};
+    return outgoing;
 }
 
-static inline const icd_packet_form_t *icdgen_outgoing_packet(const icdgen_outgoing_t *outgoing)
+/* Prepare the message with this id. */
+static inline icd_status_t icdgen_outgoing_message(
+    icdgen_outgoing_t *outgoing,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length)
 {
-    const icd_stream_form_t *const form = outgoing->form;
-    return &form->packets[icdgen_outgoing_requests(outgoing) ? form->request->packet : outgoing->row->packet];
-}
-
-/* Find the message with this id. */
-static inline icd_status_t icdgen_outgoing_message(icdgen_outgoing_t *outgoing, const icd_link_t *link, uint32_t id)
-{
-    outgoing->form = link->stream;
-    if (outgoing->form == NULL) {
+    const icd_stream_form_t *const form = link->stream;
+    if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    outgoing->row = icdgen_stream_row(outgoing->form, outgoing->direction, id);
-    if (outgoing->row == NULL) {
+    const icd_stream_row_t *const row = icdgen_stream_row(form, direction, id);
+    if (row == NULL) {
         return ICD_ERROR_UNKNOWN_ID;
     }
-    const bool fits = outgoing->length >= outgoing->row->least && outgoing->length <= outgoing->row->most;
-    return fits ? ICD_OK : ICD_ERROR_LENGTH;
+    if (length < row->least || length > row->most) {
+        return ICD_ERROR_LENGTH;
+    }
+    *outgoing = icdgen_outgoing_row(form, direction, row, data, length);
+    return ICD_OK;
 }
 
-/* Find the telemetry with this id that a packet requests. */
+/* Prepare the packet that requests the telemetry with this id. */
 static inline icd_status_t icdgen_outgoing_request(icdgen_outgoing_t *outgoing, const icd_link_t *link, uint32_t id)
 {
     const icd_stream_form_t *const form = link->stream;
     if (form == NULL || form->request == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    outgoing->form = form;
-    outgoing->row = icdgen_stream_row(form, ICD_TELEMETRY, id);
-    outgoing->data = form->request->data;
-    outgoing->length = form->packets[form->request->packet].reserved;
-    return outgoing->row != NULL && icdgen_outgoing_requests(outgoing) ? ICD_OK : ICD_ERROR_UNKNOWN_ID;
+    const icd_stream_row_t *const row = icdgen_stream_row(form, ICD_TELEMETRY, id);
+    if (row == NULL || (row->flags & ICD_STREAM_REQUESTED) == 0u) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    *outgoing = icdgen_outgoing_row(form, ICD_TELECOMMAND, row, NULL, form->packets[form->request->packet].reserved);
+    return ICD_OK;
+}
+
+/* Prepare a packet without a message, with its reserved bytes. */
+static inline icd_status_t icdgen_outgoing_packet(
+    icdgen_outgoing_t *outgoing, const icd_link_t *link, icd_direction_t direction, size_t packet, uint32_t id)
+{
+    const icd_stream_form_t *const form = link->stream;
+    if (form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    if (packet >= form->packet_count || form->packets[packet].content != ICD_PACKET_NOTHING ||
+        !form->packets[packet].is_sent[direction]) {
+        return ICD_ERROR_RANGE;
+    }
+    const icdgen_outgoing_t prepared = {
+        form, direction, &form->packets[packet], id, NULL, false, NULL, form->packets[packet].reserved, NULL, NULL};
+    *outgoing = prepared;
+    return ICD_OK;
 }
 
 static inline icd_status_t icdgen_outgoing_encode(
@@ -236,19 +283,18 @@ static inline icd_status_t icdgen_outgoing_encode(
     size_t capacity,
     size_t *written)
 {
-    const icd_packet_form_t *const packet = icdgen_outgoing_packet(outgoing);
-    const icd_stream_row_t *const row = outgoing->row;
+    const icd_packet_form_t *const packet = outgoing->packet;
     const uint8_t *const data = outgoing->data;
-    const bool cuts_zeros = (row->flags & ICD_STREAM_CUTS_ZEROS) != 0u && !icdgen_outgoing_requests(outgoing);
+    const bool cuts_zeros = outgoing->is_message && (outgoing->row->flags & ICD_STREAM_CUTS_ZEROS) != 0u;
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
     uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (!icdgen_envelope_fill(packet, outgoing->direction, row, length, values, header, trailer)) {
+    if (!icdgen_envelope_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
     const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
-        const uint32_t sum = icdgen_envelope_check(packet, row, header, data, length, trailer);
+        const uint32_t sum = icdgen_envelope_check(packet, outgoing->row, header, data, length, trailer);
         icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
     }
     if (outgoing->exchange != NULL) {
@@ -279,8 +325,8 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length, NULL, NULL};
-    const icd_status_t status = icdgen_outgoing_message(&outgoing, link, id);
+    icdgen_outgoing_t outgoing;
+    const icd_status_t status = icdgen_outgoing_message(&outgoing, link, direction, id, data, length);
     return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
 
@@ -292,8 +338,23 @@ ICDGEN_API icd_status_t icd_stream_encode_request(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u, NULL, NULL};
+    icdgen_outgoing_t outgoing;
     const icd_status_t status = icdgen_outgoing_request(&outgoing, link, telemetry);
+    return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
+}
+
+ICDGEN_API icd_status_t icd_stream_encode_packet(
+    const icd_link_t *link,
+    icd_direction_t direction,
+    size_t packet,
+    uint32_t id,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    icdgen_outgoing_t outgoing;
+    const icd_status_t status = icdgen_outgoing_packet(&outgoing, link, direction, packet, id);
     return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
 
@@ -316,24 +377,34 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     return link->stream != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }
 
-/* Encode a packet with the next sequence number. */
+/* Encode a packet with these values and the next sequence number. */
 static inline icd_status_t icdgen_outgoing_send(
-    const icdgen_outgoing_t *outgoing, icd_stream_sender_t *sender, uint8_t *buffer, size_t capacity, size_t *written)
+    const icdgen_outgoing_t *outgoing,
+    icd_stream_sender_t *sender,
+    const icd_envelope_values_t *chosen,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
 {
-    const icd_stream_form_t *const form = outgoing->form;
-    const icd_envelope_field_t *const field =
-        icdgen_envelope_field(icdgen_outgoing_packet(outgoing), ICD_ENVELOPE_SEQUENCE);
-    const size_t counter = form->per_id ? ICDGEN_SIZE(outgoing->row - form->rows[outgoing->direction]) : 0u;
-    /* With a sequence for each id, packets that request telemetry have no counter. */
-    const bool is_counted =
-        field != NULL && counter < sender->sequence_count && !(form->per_id && icdgen_outgoing_requests(outgoing));
-    icd_envelope_values_t values = sender->values;
-    if (is_counted && sender->sequences[counter] != ICDGEN_NO_SEQUENCE) {
-        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[counter] + 1u) & icdgen_envelope_mask(field);
-    } else if (is_counted && values.of[ICD_ENVELOPE_SEQUENCE] == ICD_ENVELOPE_DEFAULT) {
-        values.of[ICD_ENVELOPE_SEQUENCE] = field->values[sender->direction];
-    } else {
-        /* the value that the sender chose */
+    const bool per_id = outgoing->form->per_id;
+    const icd_envelope_field_t *const field = icdgen_envelope_field(outgoing->packet, ICD_ENVELOPE_SEQUENCE);
+    size_t counter = 0;
+    if (per_id && outgoing->is_message) {
+        counter = ICDGEN_SIZE(outgoing->row - outgoing->form->rows[outgoing->direction]);
+    }
+    /* With a sequence for each id, only messages have a counter. */
+    const bool is_counted = field != NULL && counter < sender->sequence_count && (outgoing->is_message || !per_id);
+    icd_envelope_values_t values = *chosen;
+    if (is_counted) {
+        uint32_t number = sender->values.of[ICD_ENVELOPE_SEQUENCE];
+        if (sender->sequences[counter] != ICDGEN_NO_SEQUENCE) {
+            number = (sender->sequences[counter] + 1u) & icdgen_envelope_mask(field);
+        } else if (number == ICD_ENVELOPE_DEFAULT) {
+            number = field->values[sender->direction];
+        } else {
+            /* the first number of the sender */
+        }
+        values.of[ICD_ENVELOPE_SEQUENCE] = number;
     }
     const icd_status_t status = icdgen_outgoing_encode(outgoing, &values, buffer, capacity, written);
     if (status == ICD_OK && is_counted) {
@@ -351,17 +422,34 @@ ICDGEN_API icd_status_t icd_stream_send(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length, NULL, NULL};
-    const icd_status_t status = icdgen_outgoing_message(&outgoing, sender->link, id);
-    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
+    icdgen_outgoing_t outgoing;
+    const icd_status_t status = icdgen_outgoing_message(&outgoing, sender->link, sender->direction, id, data, length);
+    return status != ICD_OK ? status
+                            : icdgen_outgoing_send(&outgoing, sender, &sender->values, buffer, capacity, written);
 }
 
 ICDGEN_API icd_status_t icd_stream_send_request(
     icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u, NULL, NULL};
+    icdgen_outgoing_t outgoing;
     const icd_status_t status = icdgen_outgoing_request(&outgoing, sender->link, telemetry);
-    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
+    return status != ICD_OK ? status
+                            : icdgen_outgoing_send(&outgoing, sender, &sender->values, buffer, capacity, written);
+}
+
+ICDGEN_API icd_status_t icd_stream_send_packet(
+    icd_stream_sender_t *sender,
+    size_t packet,
+    uint32_t id,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    icdgen_outgoing_t outgoing;
+    const icd_envelope_values_t *const chosen = values != NULL ? values : &sender->values;
+    const icd_status_t status = icdgen_outgoing_packet(&outgoing, sender->link, sender->direction, packet, id);
+    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, chosen, buffer, capacity, written);
 }
 
 #endif /* ICDGEN_WIRE_STREAM_ENCODE_C */

@@ -88,7 +88,7 @@ typedef struct {
     uint8_t trailer_bytes;
     icd_packet_content_t content;
     bool is_sent[2];   /**< Whether there are such packets in the direction of telecommands, and of telemetry. */
-    uint16_t reserved; /**< Number of data bytes of packets without a message. */
+    uint16_t reserved; /**< Number of data bytes of packets without a message. They are zero. */
 } icd_packet_form_t;
 
 /** What a response means for its telecommand. */
@@ -177,8 +177,7 @@ typedef struct {
 /** The request of telemetry by a packet with its id and `reserved` bytes. */
 typedef struct {
     const icd_exchange_t *exchange;
-    const uint8_t *data; /**< The reserved bytes; NULL if there are none. */
-    uint8_t packet;      /**< Index of the packet format. */
+    uint8_t packet; /**< Index of the packet format. */
 } icd_telemetry_request_t;
 
 /** Framing of messages in a stream of bytes or in packets. */

@@ -132,6 +132,7 @@ class Front:
             if refusal.details["error"] == "range" and op not in (
                 "dos_time",
                 "stream_encode",
+                "stream_encode_packet",
             ):
                 raise Refusal("range") from None
             raise

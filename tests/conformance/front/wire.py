@@ -227,18 +227,25 @@ def stream_encode(to: Asking, request: Request) -> Answer:
     # 2: the packet that requests telemetry of the id
     is_request = request.get("direction") == "request"
     direction = len(DIRECTIONS) if is_request else _direction(request)
-    id, data, values = (
-        number(request, "id"),
-        octets(request).hex(),
-        request.get("values", {}),
-    )
+    id, data, chosen = number(request, "id"), octets(request).hex(), _chosen(request)
+    return typed(to.ask("stream_encode", direction, id, data, *chosen).facts)
+
+
+def stream_encode_packet(to: Asking, request: Request) -> Answer:
+    packet, id = number(request, "packet"), number(request, "id")
+    words = (_direction(request), packet, id, *_chosen(request))
+    return typed(to.ask("stream_encode_packet", *words).facts)
+
+
+def _chosen(request: Request) -> list[object]:
+    """Return the values of the fields that the sender chooses, in the order of the roles."""
+    values = request.get("values", {})
     if not isinstance(values, dict) or not set(values) <= set(GIVEN):
         raise Refusal(
             "request",
             detail="`values` are those of fields that the sender chooses, by role",
         )
-    chosen = [number(values, role) if role in values else "" for role in GIVEN]
-    return typed(to.ask("stream_encode", direction, id, data, *chosen).facts)
+    return [number(values, role) if role in values else "" for role in GIVEN]
 
 
 def stream_events(to: Asking, request: Request) -> Answer:
@@ -274,6 +281,6 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
-        link_data, stream_encode, stream_events,
+        link_data, stream_encode, stream_encode_packet, stream_events,
     )
 }  # fmt: skip

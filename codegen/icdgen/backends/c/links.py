@@ -331,10 +331,8 @@ class _Tables(TableSet):
         )
         request = "NULL"
         if form.request:
-            zeros = ("0u" for _ in range(form.packets[form.request.packet].reserved))
-            data = self.numbers("reserved", "uint8_t", zeros, 16)
             exchange = exchanges[form.request.exchange]
-            row = Row(f"{exchange}, {data}, {form.request.packet}u")
+            row = Row(f"{exchange}, {form.request.packet}u")
             request = self.add("request", "icd_telemetry_request_t", [row])
         delimiter = "packet" if form.delimited_by == DATAGRAM else form.delimited_by
         around = (

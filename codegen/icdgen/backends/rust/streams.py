@@ -65,7 +65,6 @@ def _request(form: Stream, indices: Mapping[Exchange, int]) -> Brackets | None:
         "RequestForm",
         packet=request.packet,
         exchange=indices[request.exchange],
-        data=f"&[0; {form.packets[request.packet].reserved}]",
     )
 
 
@@ -82,7 +81,7 @@ def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
         part("fields", rows(map(_field, packet.fields))),
         part("check", some(_check(packet.check, tables) if packet.check else None)),
         part("content", f"link::Content::{content}"),
-        part("reserved", spelled(packet.reserved)),
+        part("reserved", f"&[0; {packet.reserved}]"),
     )
 
 

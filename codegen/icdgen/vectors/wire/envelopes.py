@@ -54,6 +54,8 @@ def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests
         yield "no such telemetry to request", _encode("request", unknown, b"")
     lines: dict[Direction, list[bytes]] = {direction: [] for direction in DIRECTIONS}
     lines["telecommand"] += [stream_encode_request(link, row.id) for row in requested]
+    if len(form.packets) > 1:
+        yield from _packets(form, source)
     for number, packet in enumerate(form.packets):
         if packet.content != NOTHING:
             continue
@@ -81,6 +83,52 @@ def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests
             yield f"a packet without a message, {why}", _events(
                 direction, [damaged, *sent]
             )
+
+
+def _packets(form: Stream, source: Random) -> Requests:
+    """Yield requests that encode packets without a message, and such as must be
+    refused.
+    """
+    for number, packet in enumerate(form.packets):
+        for direction in DIRECTIONS:
+            if packet.content != NOTHING or direction not in packet.directions:
+                yield f"{packet.name} of the {direction} is no packet without a message", _encode_packet(
+                    direction, number, 0
+                )
+                continue
+            id_bits = sum(field.bits for field in packet.fields if field.role == "id")
+            greatest = (1 << id_bits) - 1
+            for id in sorted({0, source.randint(0, greatest), greatest}):
+                yield f"{packet.name} of id {id}", _encode_packet(direction, number, id)
+            if 0 < id_bits < 32:
+                yield f"{packet.name} of an id that does not fit", _encode_packet(
+                    direction, number, greatest + 1
+                )
+            for field in packet.fields:
+                if field.role not in GIVEN:
+                    continue
+                for value in sorted({0, 1, field.mask}):
+                    yield f"{packet.name}: {field.role} {value}", _encode_packet(
+                        direction, number, greatest, **{field.role: value}
+                    )
+                if field.bits < 32:
+                    too_large = {field.role: field.mask + 1}
+                    yield f"{packet.name}: a {field.role} that does not fit", (
+                        _encode_packet(direction, number, 0, **too_large)
+                    )
+    yield "no such packet", _encode_packet(DIRECTIONS[1], len(form.packets), 0)
+
+
+def _encode_packet(
+    direction: str, packet: int, id: int, **values: int
+) -> dict[str, object]:
+    return {
+        "op": "stream_encode_packet",
+        "direction": direction,
+        "packet": packet,
+        "id": id,
+        "values": values,
+    }
 
 
 def _encode(direction: str, id: int, data: bytes, **values: int) -> dict[str, object]:

@@ -12,8 +12,15 @@ from .._hints import Buffer
 from .envelope import Direction
 from .errors import UnsupportedError, need
 from .link import Link
-from .stream import stream_encode, stream_encode_packet, stream_encode_request
+from .stream import (
+    packet_without_message,
+    stream_encode,
+    stream_encode_packet,
+    stream_encode_request,
+)
 from .stuffing import stuffed
+
+_NO_VALUES: Mapping[str, int] = {}
 
 
 class Sender:
@@ -74,36 +81,36 @@ class Sender:
         """Encode a packet without a message. Raise as `stream_encode_packet`.
 
         ``values`` take precedence over those of the sender, except for the sequence
-        number.
+        number if the sender counts the packet.
         """
+        packet_without_message(self._form, packet, self._direction)
 
-        def encoded(own: Mapping[str, int]) -> bytes:
-            chosen = {**own, **values}
-            if "sequence" in own:
-                chosen["sequence"] = own["sequence"]
+        def encoded(chosen: Mapping[str, int]) -> bytes:
             return stream_encode_packet(
                 self._link, packet, id, self._direction, **chosen
             )
 
-        return self._numbered(packet, None, encoded)
+        return self._numbered(packet, None, encoded, values)
 
     def _numbered(
         self,
         packet: int,
         id: Optional[int],
         encoded: Callable[[Mapping[str, int]], bytes],
+        values: Mapping[str, int] = _NO_VALUES,
     ) -> bytes:
-        """Return what ``encoded`` makes with the next sequence number, if the packet has
-        one. ``id``: of a message; None for other packets, which have no number if each
-        id has its own.
+        """Return what ``encoded`` makes with the values of the sender, these values and
+        the next sequence number, if the packet is counted. ``id``: of a message; None
+        for other packets, which are not counted if each id has its own sequence.
         """
+        chosen = {**self._values, **values}
         field = self._form.packets[packet].of("sequence")
         if field is None or (self._form.per_id and id is None):
-            return self._line(packet, encoded(self._values))
+            return self._line(packet, encoded(chosen))
         key = id if self._form.per_id else None
         first = field.values[self._direction == "telemetry"]
         number = self._next.get(key, self._values.get("sequence", first))
-        frame = encoded({**self._values, "sequence": number})
+        frame = encoded({**chosen, "sequence": number})
         self._next[key] = (number + 1) & ((1 << field.bits) - 1)
         return self._line(packet, frame)
 

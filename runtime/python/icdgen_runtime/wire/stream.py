@@ -141,6 +141,17 @@ def stream_encode_packet(
     """
     form = need(link.stream, "stream")
     _check_roles("stream_encode_packet", values)
+    packet_form = packet_without_message(form, packet, direction)
+    data = bytes(packet_form.reserved)
+    return _encoded(form, packet_form, direction, id, data, values, None)
+
+
+def packet_without_message(
+    form: Stream, packet: int, direction: Direction
+) -> PacketForm:
+    """Return a packet format by its index. Raise `RangeError` if such packets have a
+    message or the other direction.
+    """
     sent = [
         index
         for index, each in enumerate(form.packets)
@@ -148,9 +159,7 @@ def stream_encode_packet(
     ]
     if packet not in sent:
         raise RangeError("packet", f"one of {', '.join(map(str, sent))}", packet)
-    packet_form = form.packets[packet]
-    data = bytes(packet_form.reserved)
-    return _encoded(form, packet_form, direction, id, data, values, None)
+    return form.packets[packet]
 
 
 def _check_roles(function: str, values: Mapping[str, int]) -> None:

@@ -4,7 +4,7 @@
 
 use super::check;
 use crate::wire::bits::head;
-use crate::wire::link::{Delimiter, EnvelopeRole, Link, PacketForm, Stream, StreamRow};
+use crate::wire::link::{Content, Delimiter, EnvelopeRole, Link, PacketForm, Stream, StreamRow};
 use crate::wire::{Direction, Error};
 
 pub(super) const SLIP_END: u8 = 0xc0;
@@ -48,6 +48,20 @@ pub struct Values {
 }
 
 impl Values {
+    /// Return these values, and those of `other` for the fields without a value.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            sequence: self.sequence.or(other.sequence),
+            source: self.source.or(other.source),
+            destination: self.destination.or(other.destination),
+            kind: self.kind.or(other.kind),
+            flags: self.flags.or(other.flags),
+            time: self.time.or(other.time),
+            status: self.status.or(other.status),
+            reason: self.reason.or(other.reason),
+        }
+    }
+
     /// Check that each value fits its field in the packets of the host.
     pub(super) fn check(mut self, form: &Stream) -> Result<(), Error> {
         let packets = form.packets_of(Direction::Telecommand);
@@ -141,7 +155,7 @@ pub(super) fn encoded(
         packet,
         direction,
         id,
-        row,
+        row: Some(row),
         data,
     };
     message.encode(form.delimited_by, values, out)
@@ -174,22 +188,68 @@ pub(super) fn encoded_request(
     let request = form.request.as_ref().ok_or(Error::Unsupported)?;
     let row = form.row(Direction::Telemetry, id).map(|(_, row)| row);
     let row = row.filter(|row| row.is_requested);
+    let packet = form.packets.get(request.packet).ok_or(Error::Unsupported)?;
     let message = Message {
-        packet: form.packets.get(request.packet).ok_or(Error::Unsupported)?,
+        packet,
         direction: Direction::Telecommand,
         id,
-        row: row.ok_or(Error::UnknownId { id })?,
-        data: request.data,
+        row: Some(row.ok_or(Error::UnknownId { id })?),
+        data: packet.reserved,
     };
     message.encode(form.delimited_by, values, out)
 }
 
-/// A message to encode.
+/// Encode a packet without a message, such as an acknowledge or a refusal, as a device sends it, and
+/// return the number of bytes written to `out`.
+///
+/// `packet` is the index of its format in [`Stream::packets`], `id` the value of its id field.
+///
+/// # Errors
+///
+/// [`Error::Unsupported`] if the ICD describes no framing, [`Error::Range`] if there is no such
+/// packet without a message in this direction, or if the id or a value does not fit into its field,
+/// [`Error::Length`] if `out` is too small.
+pub fn encode_packet(
+    link: &Link,
+    direction: Direction,
+    packet: usize,
+    id: u32,
+    values: &Values,
+    out: &mut [u8],
+) -> Result<usize, Error> {
+    encoded_packet(link, direction, packet, id, values, out).map(|(size, _)| size)
+}
+
+/// As [`encode_packet`]; also return the header.
+pub(super) fn encoded_packet(
+    link: &Link,
+    direction: Direction,
+    packet: usize,
+    id: u32,
+    values: &Values,
+    out: &mut [u8],
+) -> Result<(usize, Header), Error> {
+    let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+    let mut packets = form.packets_of(direction);
+    let found = packets.find(|(index, _)| *index == packet);
+    let found = found.filter(|(_, packet)| packet.content == Content::Nothing);
+    let (_, packet) = found.ok_or_else(|| Error::range("packet"))?;
+    let message = Message {
+        packet,
+        direction,
+        id,
+        row: None,
+        data: packet.reserved,
+    };
+    message.encode(form.delimited_by, values, out)
+}
+
+/// A packet to encode.
 struct Message<'a> {
     packet: &'a PacketForm,
     direction: Direction,
     id: u32,
-    row: &'a StreamRow,
+    row: Option<&'a StreamRow>, // the message, or the telemetry that is requested
     data: &'a [u8],
 }
 
@@ -206,9 +266,12 @@ impl Message<'_> {
         for field in packet.fields {
             let value = match field.role {
                 EnvelopeRole::Checksum => continue,
-                EnvelopeRole::Id => i64::from(field.part(self.id)),
+                EnvelopeRole::Id => i64::from(packet.part(field, self.id)),
                 EnvelopeRole::Length => field.counted(data.len()),
-                EnvelopeRole::ResponseLength => field.counted(self.row.most),
+                EnvelopeRole::ResponseLength => self.row.map_or_else(
+                    || i64::from(field.value(self.direction)),
+                    |row| field.counted(row.most),
+                ),
                 role => {
                     let chosen = values.place(role).and_then(|value| *value);
                     i64::from(chosen.unwrap_or_else(|| field.value(self.direction)))
@@ -225,7 +288,7 @@ impl Message<'_> {
             field.put(into, value);
         }
         if let (Some(field), Some(check)) = (packet.field(EnvelopeRole::Checksum), &packet.check) {
-            let sum = check::whole(packet, check, Some(self.row), [&header, data, &trailer]);
+            let sum = check::whole(packet, check, self.row, [&header, data, &trailer]);
             let into = if field.in_trailer {
                 &mut trailer
             } else {

@@ -23,11 +23,6 @@ impl EnvelopeField {
         }
     }
 
-    /// Return the part of an id that it has.
-    pub(super) const fn part(&self, id: u32) -> u32 {
-        id.wrapping_shr(self.id_shift) & self.mask()
-    }
-
     /// Return the number of data bytes that a value of a length says; None if it is invalid.
     pub(super) fn bytes_of(&self, value: u32) -> Option<usize> {
         let bytes = i64::from(value).checked_mul(i64::from(self.unit))?;
@@ -144,6 +139,20 @@ impl PacketForm {
     /// Return the size of header and trailer in bytes.
     pub(super) const fn around(&self) -> usize {
         self.header_bytes + self.trailer_bytes
+    }
+
+    /// Return the part of an id that belongs into a field. If the id is too large, its topmost part
+    /// does not fit.
+    pub(super) fn part(&self, field: &EnvelopeField, id: u32) -> u32 {
+        let parts = self.fields.iter();
+        let parts = parts.filter(|part| part.role == EnvelopeRole::Id);
+        let bits = parts.fold(0_u32, |bits, part| bits.wrapping_add(part.bits));
+        let part = id.wrapping_shr(field.id_shift);
+        if field.id_shift.wrapping_add(field.bits) < bits {
+            part & field.mask()
+        } else {
+            part
+        }
     }
 
     /// Return the id in a frame; None if the packet has none.

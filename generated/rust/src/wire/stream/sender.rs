@@ -2,7 +2,7 @@
 
 //! Sender that does not wait for replies.
 
-use super::encoder::{encoded, encoded_request, Header, Values};
+use super::encoder::{encoded, encoded_packet, encoded_request, Header, Values};
 use crate::wire::link::{EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
@@ -15,7 +15,8 @@ pub(super) enum Sent {
     Request(u32),
 }
 
-/// Encodes telecommands of node `T` with header and trailer. `S` is the number of sequence
+/// Encodes telecommands of node `T` with header and trailer; for the tests of a driver also
+/// telemetry and packets without a message, as the device sends them. `S` is the number of sequence
 /// counters: `SEQUENCES` of the module of the node.
 ///
 /// ```
@@ -35,17 +36,30 @@ pub struct Sender<T, const S: usize> {
     /// number.
     pub values: Values,
     link: &'static Link,
+    direction: Direction,
     next: [Option<u32>; S],
     node: PhantomData<fn() -> T>,
 }
 
 impl<T, const S: usize> Sender<T, S> {
-    /// Create a sender with the values of the ICD.
+    /// Create a sender of telecommands with the values of the ICD.
     ///
     /// # Errors
     ///
     /// [`Error::Unsupported`] if the ICD describes no framing.
     pub fn new(link: &'static impl Linked<Node = T>) -> Result<Self, Error> {
+        Self::with_direction(link, Direction::Telecommand)
+    }
+
+    /// Create a sender with the values of the ICD. A device sends [`Direction::Telemetry`].
+    ///
+    /// # Errors
+    ///
+    /// See [`Sender::new`].
+    pub fn with_direction(
+        link: &'static impl Linked<Node = T>,
+        direction: Direction,
+    ) -> Result<Self, Error> {
         let link = link.link();
         if link.stream.is_none() {
             return Err(Error::Unsupported);
@@ -53,6 +67,7 @@ impl<T, const S: usize> Sender<T, S> {
         Ok(Self {
             values: Values::default(),
             link,
+            direction,
             next: [None; S],
             node: PhantomData,
         })
@@ -62,26 +77,31 @@ impl<T, const S: usize> Sender<T, S> {
     ///
     /// # Errors
     ///
-    /// See [`Sender::put`]; also [`Error::Range`] if a value does not fit into its field.
+    /// See [`Sender::put`]; also [`Error::Range`] if a value does not fit into its field, and
+    /// [`Error::UnknownId`] if the sender sends telemetry.
     pub fn send<M: TelecommandOf<T>>(
         &mut self,
         message: &M,
         out: &mut [u8],
     ) -> Result<usize, Error> {
+        if self.direction != Direction::Telecommand {
+            let id = M::TELECOMMAND_ID;
+            return Err(Error::UnknownId { id });
+        }
         let data = message.to_bytes()?;
         self.put(M::TELECOMMAND_ID, data.as_ref(), out)
     }
 
-    /// Encode a telecommand with these data and return the number of bytes written to `out`.
+    /// Encode the message with this id and these data, and return the number of bytes written to
+    /// `out`. It is a message of the direction of the sender.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is no such telecommand, [`Error::Length`] if the data have the
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the data have the
     /// wrong length or `out` is too small, [`Error::Range`] if a header or trailer value does not
     /// fit into its field.
     pub fn put(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
-        let sent = self.put_packet(Sent::Telecommand(id), data, out);
-        sent.map(|(size, _)| size)
+        self.message(id, data, out).map(|(size, _)| size)
     }
 
     /// Encode a request of the telemetry with this id and return the number of bytes written to
@@ -91,46 +111,88 @@ impl<T, const S: usize> Sender<T, S> {
     ///
     /// See [`crate::wire::stream::encode_request`].
     pub fn put_request(&mut self, id: u32, out: &mut [u8]) -> Result<usize, Error> {
-        let sent = self.put_packet(Sent::Request(id), &[], out);
+        self.request(id, out).map(|(size, _)| size)
+    }
+
+    /// Encode a packet without a message, such as an acknowledge or a refusal, and return the number
+    /// of bytes written to `out`.
+    ///
+    /// `packet` is the index of its format in [`Stream::packets`](crate::wire::link::Stream), `id`
+    /// the value of its id field. `values` take precedence over those of the sender, except for the
+    /// sequence if the sender counts the packet.
+    ///
+    /// # Errors
+    ///
+    /// See [`crate::wire::stream::encode_packet`].
+    pub fn put_packet(
+        &mut self,
+        packet: usize,
+        id: u32,
+        values: &Values,
+        out: &mut [u8],
+    ) -> Result<usize, Error> {
+        let (link, direction) = (self.link, self.direction);
+        let sent = self.numbered(packet, None, values, |values| {
+            encoded_packet(link, direction, packet, id, values, out)
+        });
         sent.map(|(size, _)| size)
     }
 
-    /// Encode a packet with the next sequence number. Return its size and its header.
-    pub(super) fn put_packet(
+    /// Encode what is sent for a request. Return its size and its header.
+    pub(super) fn put_sent(
         &mut self,
         sent: Sent,
         data: &[u8],
         out: &mut [u8],
     ) -> Result<(usize, Header), Error> {
+        match sent {
+            Sent::Telecommand(id) => self.message(id, data, out),
+            Sent::Request(id) => self.request(id, out),
+        }
+    }
+
+    fn message(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<(usize, Header), Error> {
+        let (link, direction) = (self.link, self.direction);
+        let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+        let row = form.row(direction, id);
+        let (place, row) = row.ok_or(Error::UnknownId { id })?;
+        let (packet, none) = (usize::from(row.packet), Values::default());
+        self.numbered(packet, Some(place), &none, |values| {
+            encoded(link, direction, id, data, values, out)
+        })
+    }
+
+    fn request(&mut self, id: u32, out: &mut [u8]) -> Result<(usize, Header), Error> {
+        let link = self.link;
+        let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+        let request = form.request.as_ref().ok_or(Error::Unsupported)?;
+        self.numbered(request.packet, None, &Values::default(), |values| {
+            encoded_request(link, id, values, out)
+        })
+    }
+
+    /// Encode a packet with the next sequence number, if the sender counts it. `place`: index of a
+    /// message among those of its direction.
+    fn numbered(
+        &mut self,
+        packet: usize,
+        place: Option<usize>,
+        values: &Values,
+        encode: impl FnOnce(&Values) -> Result<(usize, Header), Error>,
+    ) -> Result<(usize, Header), Error> {
         let form = self.link.stream.as_ref().ok_or(Error::Unsupported)?;
-        let (place, packet) = match sent {
-            Sent::Telecommand(id) => {
-                let row = form.row(Direction::Telecommand, id);
-                let (place, row) = row.ok_or(Error::UnknownId { id })?;
-                (Some(place), usize::from(row.packet))
-            }
-            Sent::Request(_) => {
-                let request = form.request.as_ref().ok_or(Error::Unsupported)?;
-                (None, request.packet)
-            }
-        };
+        let packet = form.packets.get(packet);
+        let field = packet.and_then(|packet| packet.field(EnvelopeRole::Sequence));
         // Only messages have a counter for each id.
         let key = if form.per_id { place } else { Some(0) };
         let counter = key.and_then(|key| self.next.get_mut(key));
-        let mut values = self.values;
-        if let Some(Some(next)) = counter {
-            values.sequence = Some(*next);
+        let mut values = values.or(self.values);
+        if let Some(next) = &counter {
+            values.sequence = next.or(self.values.sequence);
         }
-        let written = match sent {
-            Sent::Telecommand(id) => {
-                encoded(self.link, Direction::Telecommand, id, data, &values, out)
-            }
-            Sent::Request(id) => encoded_request(self.link, id, &values, out),
-        }?;
-        let packet = form.packets.get(packet);
-        let field = packet.and_then(|packet| packet.field(EnvelopeRole::Sequence));
+        let written = encode(&values)?;
         if let (Some(field), Some(counter)) = (field, counter) {
-            let default = field.value(Direction::Telecommand);
+            let default = field.value(self.direction);
             let number = values.sequence.unwrap_or(default);
             *counter = Some(number.wrapping_add(1) & field.mask());
         }

@@ -255,8 +255,8 @@ pub struct PacketForm {
     pub check: Option<CheckForm>,
     /// What it carries.
     pub content: Content,
-    /// Number of data bytes of packets without a message.
-    pub reserved: usize,
+    /// The data bytes of packets without a message: zeros.
+    pub reserved: &'static [u8],
 }
 
 /// Packets that request telemetry.
@@ -266,8 +266,6 @@ pub struct RequestForm {
     pub packet: usize,
     /// Index of the responses in [`Stream::exchanges`].
     pub exchange: usize,
-    /// The data, which have no meaning.
-    pub data: &'static [u8],
 }
 
 /// Framing of messages in a stream of bytes or in packets of the transport.

@@ -188,7 +188,7 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     /// [`Error::Length`] if `line` is too small; call again with a larger one.
     pub fn output<'a>(&mut self, line: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> {
         let sender = &mut self.sender;
-        let put = |sent, data: &[u8]| sender.put_packet(sent, data, line);
+        let put = |sent, data: &[u8]| sender.put_sent(sent, data, line);
         let size = self.slots.output(put)?;
         Ok(size.and_then(move |size| line.get(..size)))
     }

@@ -306,20 +306,14 @@ impl Judge {
         }
         let id = self.id(frame);
         match self.packet.content {
-            Content::Nothing => Ok(self.packet.reserved),
             Content::Requested => Ok(self.sizes().1),
-            Content::Request => Ok(self.reserved()),
+            Content::Nothing | Content::Request => Ok(self.packet.reserved.len()),
             Content::Message => match self.message(id) {
                 Some((_, row)) => Ok(row.most),
-                None if self.requested(id).is_some() => Ok(self.reserved()),
+                None if self.requested(id).is_some() => Ok(self.packet.reserved.len()),
                 None => Err(Some(id)),
             },
         }
-    }
-
-    /// Return the number of data bytes of a request.
-    fn reserved(&self) -> usize {
-        self.form.request.map_or(0, |request| request.data.len())
     }
 
     /// Return the least and most data bytes of telemetry in packets without its id.
@@ -414,13 +408,13 @@ impl Judge {
         }
         let length = data.len();
         let is_right = match (message, row) {
-            _ if packet.content == Content::Nothing => length == packet.reserved,
+            _ if packet.content == Content::Nothing => length == packet.reserved.len(),
             _ if packet.content == Content::Requested => {
                 let (least, most) = self.sizes();
                 (least..=most).contains(&length)
             }
             (Some((_, row)), _) => (row.least..=row.most).contains(&length),
-            (None, Some(row)) => length == self.reserved() && self.awaits(row, frame),
+            (None, Some(row)) => length == packet.reserved.len() && self.awaits(row, frame),
             (None, None) => {
                 on_event(Event::UnknownId { id });
                 return Verdict::Proven;

@@ -15,7 +15,7 @@ mod slots;
 
 pub use self::client::{Client, NodeEvent};
 pub use self::decoder::Decoder;
-pub use self::encoder::{encode, encode_request, Values};
+pub use self::encoder::{encode, encode_packet, encode_request, Values};
 pub use self::judge::Event;
 pub use self::request::Request;
 pub use self::sender::Sender;

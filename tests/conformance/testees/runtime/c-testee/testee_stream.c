@@ -13,11 +13,27 @@ static icd_direction_t next_direction(void)
     return next_number() == 0u ? ICD_TELECOMMAND : ICD_TELEMETRY;
 }
 
+/* The bits of the id in all its fields. */
+static unsigned id_bits(const icd_packet_form_t *packet)
+{
+    unsigned bits = 0;
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        bits += packet->fields[i].role == ICD_ENVELOPE_ID ? packet->fields[i].bits : 0u;
+    }
+    return bits;
+}
+
 /* The field that does not hold its value. */
-static void refuse_range(const icd_packet_form_t *packet, const icd_envelope_values_t *values)
+static void refuse_range(const icd_packet_form_t *packet, uint32_t id, const icd_envelope_values_t *values)
 {
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *field = &packet->fields[i];
+        if (field->role == ICD_ENVELOPE_ID && field->values[0] + field->bits == id_bits(packet) &&
+            ((uint64_t)id >> id_bits(packet)) != 0u) {
+            refuse("range");
+            put_text("field", "id");
+            return;
+        }
         if (field->role < ICD_ENVELOPE_CONSTANT && values->of[field->role] != ICD_ENVELOPE_DEFAULT &&
             ((uint64_t)values->of[field->role] >> field->bits) != 0u) {
             refuse("range");
@@ -55,6 +71,15 @@ static icd_status_t stream_line(const icd_link_t *link, bool requests, icd_direc
                     : icd_stream_encode(link, direction, id, data.data, data.length, values, line, capacity, written);
 }
 
+static icd_envelope_values_t next_values(const icd_link_t *link, icd_direction_t direction)
+{
+    icd_envelope_values_t values = icd_envelope_values(link, direction);
+    for (size_t i = 0; i < ICD_ENVELOPE_VALUES; ++i) {
+        values.of[i] = next_or(values.of[i]);
+    }
+    return values;
+}
+
 static void stream_encode(void)
 {
     const icd_link_t *link = next_link();
@@ -66,14 +91,11 @@ static void stream_encode(void)
     const size_t capacity = 2u * data.length + 300u;
     uint8_t *line = memory(capacity);
     size_t written = 0;
-    icd_envelope_values_t values = icd_envelope_values(link, direction);
-    for (size_t i = 0; i < ICD_ENVELOPE_VALUES; ++i) {
-        values.of[i] = next_or(values.of[i]);
-    }
+    const icd_envelope_values_t values = next_values(link, direction);
     const icd_status_t status = stream_line(link, requests, direction, id, data, &values, line, capacity, &written);
     if (status == ICD_ERROR_RANGE) {
         const size_t packet = requests ? link->stream->request->packet : row_of(link, direction, id)->packet;
-        refuse_range(&link->stream->packets[packet], &values);
+        refuse_range(&link->stream->packets[packet], id, &values);
     } else if (status == ICD_ERROR_LENGTH) {
         refuse_length("length", nearest(link, direction, id, data.length), data.length);
     } else if (answers(status)) {
@@ -83,6 +105,39 @@ static void stream_encode(void)
         if (stream_line(link, requests, direction, id, data, &values, exact, written, &again) != ICD_OK || again != written ||
             (written != 0u && stream_line(link, requests, direction, id, data, &values, exact, written - 1u, &again) !=
                                   ICD_ERROR_LENGTH)) {
+            refuse("room"); /* it takes just as many bytes as it says */
+        }
+    }
+}
+
+static void stream_encode_packet(void)
+{
+    const icd_link_t *link = next_link();
+    const icd_direction_t direction = next_direction();
+    const uint32_t packet = next_number();
+    const uint32_t id = next_number();
+    const icd_envelope_values_t values = next_values(link, direction);
+    size_t written = 0;
+    const size_t capacity = 300u + (packet < link->stream->packet_count ? 2u * link->stream->packets[packet].reserved : 0u);
+    uint8_t *line = memory(capacity);
+    const icd_status_t status =
+        icd_stream_encode_packet(link, direction, packet, id, &values, line, capacity, &written);
+    if (status == ICD_ERROR_RANGE) {
+        if (packet >= link->stream->packet_count || link->stream->packets[packet].content != ICD_PACKET_NOTHING ||
+            !link->stream->packets[packet].is_sent[direction]) {
+            refuse("range");
+            put_text("field", "packet");
+        } else {
+            refuse_range(&link->stream->packets[packet], id, &values);
+        }
+    } else if (answers(status)) {
+        uint8_t *exact = memory(written);
+        size_t again = 0;
+        put_octets("bytes", line, written);
+        if (icd_stream_encode_packet(link, direction, packet, id, &values, exact, written, &again) != ICD_OK ||
+            again != written ||
+            icd_stream_encode_packet(link, direction, packet, id, &values, exact, written - 1u, &again) !=
+                ICD_ERROR_LENGTH) {
             refuse("room"); /* it takes just as many bytes as it says */
         }
     }
@@ -268,6 +323,7 @@ static void stream_client(void)
 
 const testee_op_t testee_stream_ops[] = {
     {"stream_encode", stream_encode},
+    {"stream_encode_packet", stream_encode_packet},
     {"stream_events", stream_events},
     {"stream_client", stream_client},
     {NULL, NULL},

@@ -27,7 +27,13 @@ from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
 from .link import CanKind, Link
 from .logs import LogFrame, LogMessage, LogReader, LogWriter
-from .stream import StreamDecoder, StreamEvent, stream_encode, stream_encode_request
+from .stream import (
+    StreamDecoder,
+    StreamEvent,
+    stream_encode,
+    stream_encode_packet,
+    stream_encode_request,
+)
 from .times import DosTime, dos_time_pack, dos_time_unpack
 from .uart import UartDecoder, uart_encode, uart_kind
 
@@ -214,12 +220,24 @@ _REQUEST = len(_DIRECTIONS)
 
 def _stream_encode(link: Link, words: Words) -> str:
     direction, id, data = number(words), number(words), octets(words)
-    given = {role: maybe(words) for role in CHOSEN_ROLES}
-    values = {role: value for role, value in given.items() if value is not None}
+    values = _values(words)
     if direction == _REQUEST:
         return f" bytes={stream_encode_request(link, id, **values).hex()}"
     line = stream_encode(link, id, data, _DIRECTIONS[direction], **values)
     return f" bytes={line.hex()}"
+
+
+def _stream_encode_packet(link: Link, words: Words) -> str:
+    direction, packet, id = number(words), number(words), number(words)
+    line = stream_encode_packet(
+        link, packet, id, _DIRECTIONS[direction], **_values(words)
+    )
+    return f" bytes={line.hex()}"
+
+
+def _values(words: Words) -> dict[str, int]:
+    given = {role: maybe(words) for role in CHOSEN_ROLES}
+    return {role: value for role, value in given.items() if value is not None}
 
 
 def _stream_events(link: Link, words: Words) -> str:
@@ -263,6 +281,7 @@ _OPERATIONS = {
     "identify": _identify,
     "link_data": _link_data,
     "stream_encode": _stream_encode,
+    "stream_encode_packet": _stream_encode_packet,
     "stream_events": _stream_events,
     "stream_client": _testee_scripts.stream_client,
     "client": _testee_scripts.client,

@@ -5,7 +5,7 @@ use crate::nodes::LONGEST;
 use crate::wire::explained;
 use icd::wire::link::Link;
 use icd::wire::stream::{
-    encode, encode_request, Client, Decoder, Event, NodeEvent, Request, Values,
+    encode, encode_packet, encode_request, Client, Decoder, Event, NodeEvent, Request, Values,
 };
 use icd::wire::{Direction, Error, Settings};
 use std::fmt::Write;
@@ -26,6 +26,21 @@ pub fn stream_encode(link: &'static Link, words: &mut Words) -> Answer {
         _ => None, // the packet that requests telemetry
     };
     let (id, data) = (words.number(), words.octets());
+    let values = chosen_values(words);
+    exactly(|out| match direction {
+        Some(direction) => encode(link, direction, id, &data, &values, out),
+        None => encode_request(link, id, &values, out),
+    })
+}
+
+pub fn stream_encode_packet(link: &'static Link, words: &mut Words) -> Answer {
+    let direction = direction(words);
+    let (packet, id) = (words.number(), words.number());
+    let values = chosen_values(words);
+    exactly(|out| encode_packet(link, direction, packet, id, &values, out))
+}
+
+fn chosen_values(words: &mut Words) -> Values {
     let mut values = Values::default();
     for place in [
         &mut values.sequence,
@@ -39,10 +54,10 @@ pub fn stream_encode(link: &'static Link, words: &mut Words) -> Answer {
     ] {
         *place = words.maybe();
     }
-    let encoded = |out: &mut [u8]| match direction {
-        Some(direction) => encode(link, direction, id, &data, &values, out),
-        None => encode_request(link, id, &values, out),
-    };
+    values
+}
+
+fn exactly(encoded: impl Fn(&mut [u8]) -> Result<usize, Error>) -> Answer {
     let mut out = vec![0; 2 * LONGEST + 300];
     let size = encoded(&mut out)?;
     // It takes just as many bytes as it says.

@@ -55,6 +55,7 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         "link_data" => |link, _| Ok(link_data(link)),
         "client" => scripts::client,
         "stream_encode" => stream::stream_encode,
+        "stream_encode_packet" => stream::stream_encode_packet,
         "stream_events" => stream::stream_events,
         "stream_client" => stream::stream_client,
         "procedure" => return procedures::procedure(words.number(), words),
