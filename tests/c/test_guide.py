@@ -13,6 +13,7 @@ import pytest
 from tests import documents
 from tests.c import harness
 from tests.conformance import ROOT
+from tests.conformance.icds import read
 from tests.sim.device import simulator
 
 EXAMPLE = ROOT / "examples" / "loop.c"
@@ -110,3 +111,18 @@ def test_the_first_lines_of_the_guide_decode_and_encode(tmp_path):
         f"-I{tmp_path / 'generated' / 'c'}",
         output=tmp_path / "o",
     )
+
+
+def test_the_guide_plays_a_device_that_acknowledges_and_refuses(tmp_path):
+    section = documents.text("guides/driver-in-c").split(
+        "## Play the device in your tests"
+    )[1]
+    (code,) = documents.blocks(section, "c")
+    source = tmp_path / "test_meter.c"
+    source.write_text(code)
+    headers = harness.generate(
+        read(ROOT / "examples" / "links" / "modbus.yaml"), tmp_path
+    )
+    flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
+    program = harness.compile(source, *flags, output=tmp_path / "test_meter")
+    subprocess.run([program], check=True)
