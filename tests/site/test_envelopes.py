@@ -236,7 +236,7 @@ def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
         "sync header, bits 0 to 7 begins a message 253 (0xFD)",
         "source header, bits 40 to 47 says who sends 255 (0xFF) in telecommands, 1 (0x1) in telemetry",
         "A packet ends where its length says.",
-        "Covers from the length to the data",
+        ", from the length to the data",
         "Heartbeat 50",
         "Polynomial 0x1021",
     ):

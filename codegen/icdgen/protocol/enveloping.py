@@ -138,19 +138,18 @@ def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
 
 
 def declaration_of(packet: Packet, checksums: Section) -> Section:
-    """Return the declaration of the checksum of a packet, with what it covers; empty
-    without one.
-    """
-    row = place_of(packet.rows, "checksum") or {}
-    declaration: Section = checksums.get(row.get("checksum", ""), {})
-    return {**declaration, "covers": row["covers"]} if declaration else {}
+    """Return the declaration of the checksum of a packet; empty without one."""
+    row = place_of(packet.rows, "checksum")
+    declaration: Section = checksums[row["checksum"]] if row else {}
+    return declaration
 
 
 def check_of(packet: Packet, checksums: Section) -> Check | None:
     """Return the checksum of a packet; None without one."""
-    declaration = declaration_of(packet, checksums)
-    if not declaration:
+    field = place_of(packet.rows, "checksum")
+    if field is None:
         return None
+    declaration, covers = checksums[field["checksum"]], field["covers"]
     kind = declaration["kind"]
     width, polynomial, init, xor_out = (
         declaration.get(key, 0) for key in ("width", "polynomial", "init", "xor_out")
@@ -159,8 +158,8 @@ def check_of(packet: Packet, checksums: Section) -> Check | None:
         "reflect_out", False
     )
     crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
-    first = _covered(packet.header, declaration["covers"]["from"], False)
-    last = _covered(packet.trailer, declaration["covers"]["to"], True)
+    first = _covered(packet.header, covers["from"], False)
+    last = _covered(packet.trailer, covers["to"], True)
     return Check(
         kind,
         crc,

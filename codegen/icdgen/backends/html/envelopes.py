@@ -286,8 +286,7 @@ def _unit(row: Section) -> str:
 
 def _holds(row: Section) -> str:
     if row["role"] == "checksum":
-        covers = row.get("covers")
-        return str(row["checksum"]) + (f", {_covered(covers)}" if covers else "")
+        return f"{row['checksum']}, {_covered(row['covers'])}"
     if "enum" in row:
         return str(row["enum"])
     value = row.get("value")
@@ -313,7 +312,7 @@ def sums(section: Section, node_facts: Facts) -> list[Sum]:
     checks = _checks(section, node_facts)
     for name, declaration in section.get("link", {}).get("checksums", {}).items():
         form = checks.get(name)
-        kind, covers = declaration["kind"], declaration.get("covers")
+        kind = declaration["kind"]
         rows = [
             (
                 "Kind",
@@ -329,8 +328,6 @@ def sums(section: Section, node_facts: Facts) -> list[Sum]:
             for key in _PARAMETERS
             if key in declaration
         ]
-        if covers:
-            rows.append(("Covers", _covered(covers)))
         if declaration.get("seeds"):
             seeds = ", ".join(
                 f"{message} {seed}" for message, seed in declaration["seeds"].items()
