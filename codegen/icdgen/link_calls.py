@@ -18,6 +18,7 @@ from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import (
     MESSAGE,
     EnvelopeField,
+    Escaping,
     PacketFormat,
     Stream,
     StreamRow,
@@ -298,13 +299,15 @@ def _stream(form: Stream) -> Call:
     parts["packets"] = tuple(map(_packet, form.packets))
     parts["telecommands"] = _stream_rows(form.telecommands, form.exchanges)
     parts["telemetry"] = _stream_rows(form.telemetry, ())
-    request = parts.pop("request")
+    request, escaping = parts.pop("request"), parts.pop("escaping")
     if isinstance(request, TelemetryRequest):
         exchange = form.exchanges.index(request.exchange)
         parts["request"] = _row("TelemetryRequest", request.packet, exchange)
     if form.exchanges:
         parts["exchanges"] = tuple(map(_exchange, form.exchanges))
         parts["confirming"] = form.confirming
+    if isinstance(escaping, Escaping):
+        parts["escaping"] = _call("Escaping", **_members(escaping))
     return _call("Stream", **parts)
 
 

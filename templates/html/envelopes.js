@@ -173,7 +173,10 @@ const icdgenEnvelopes = ((frames) => {
     else {
       const read = unstuffed(form, bytes);
       for (const { frame, size, fault } of read.frames) {
-        if (fault) refuse(fault, Uint8Array.from(frame), size);
+        if (fault === "noise") {
+          end += size;
+          found.lost += size;
+        } else if (fault) refuse(fault, Uint8Array.from(frame), size);
         else take(Uint8Array.from(frame), size);
       }
       found.lost += read.left;
@@ -223,8 +226,12 @@ const icdgenEnvelopes = ((frames) => {
     return row && boundsOf(form, packet, row)[1];
   }
 
-  /** `{ frames, left }` between delimiters: what stood there, of so many bytes, and its fault; `left` bytes follow. */
+  /**
+   * `{ frames, left, open }` between delimiters: what stood there, of so many bytes, and its fault; `left` bytes follow, which are
+   * the beginning `open` of a frame. The fault `noise` is that of bytes in no frame.
+   */
   function unstuffed(form, bytes) {
+    if (form.escaping) return unescaped(form, bytes);
     const [end, escape] = ENDS[form.delimited_by];
     const isCobs = form.delimited_by === "cobs";
     const found = [];
@@ -259,7 +266,56 @@ const icdgenEnvelopes = ((frames) => {
         }
       }
     }
-    return { frames: found, left: now.size };
+    return { frames: found, left: now.size, open: now.frame };
+  }
+
+  /** Whether a byte after the escape byte begins a packet. */
+  function isStart({ escape, start, end, data }, byte) {
+    return start === undefined ? ![escape, end, data].includes(byte) : byte === start;
+  }
+
+  function unescaped(form, bytes) {
+    const { escape, start, end, data, ignores_other: ignoresOther } = form.escaping;
+    const found = [];
+    const outside = () => ({ frame: [], size: 0, fault: null, inside: false });
+    let [now, escaped] = [outside(), false];
+    const noise = (size) => found.push({ frame: [], size, fault: "noise" });
+    function put(byte) {
+      if (now.fault) return;
+      if (now.frame.length === form.longest) now.fault = "overrun";
+      else now.frame.push(byte);
+    }
+    for (const byte of bytes) {
+      now.size += 1;
+      if (!escaped && byte === escape) {
+        escaped = true;
+      } else if (!escaped && now.inside) {
+        put(byte);
+      } else if (!escaped) {
+        noise(1);
+        now = outside();
+      } else if (isStart(form.escaping, byte)) {
+        if (now.inside) found.push({ ...now, size: now.size - 2, fault: now.fault ?? "framing" });
+        [now, escaped] = [{ ...outside(), size: 2, inside: true }, false];
+        if (start === undefined) put(byte);
+      } else if (!now.inside) {
+        escaped = byte === escape;
+        noise(escaped ? 1 : 2);
+        now = { ...outside(), size: escaped ? 1 : 0 };
+      } else {
+        escaped = false;
+        if (byte === end) {
+          found.push(now);
+          now = outside();
+        } else if (byte === data) {
+          put(escape);
+        } else if (!ignoresOther) {
+          now.fault ??= "framing";
+          escaped = byte === escape;
+        }
+      }
+    }
+    return { frames: found, left: now.size, open: now.frame };
   }
 
   /** Whether each packet shows that it is one, by a constant or a checksum. */
@@ -304,7 +360,19 @@ const icdgenEnvelopes = ((frames) => {
   // Packets that cannot be decoded
 
   const count = (number) => `${number} byte${number === 1 ? "" : "s"}`;
-  const isDelimitedAhead = (form) => ["slip", "hdlc"].includes(form.delimited_by);
+  const isDelimitedAhead = (form) => ["slip", "hdlc", "escape"].includes(form.delimited_by);
+
+  /** The delimiter in front of packets. */
+  function opening({ escaping, delimited_by: by }) {
+    return escaping ? [escaping.escape, ...(escaping.start === undefined ? [] : [escaping.start])] : [ENDS[by][0]];
+  }
+
+  /** What is said of the missing end of a packet; nothing without a delimiter. */
+  function closingText({ escaping, delimited_by: by }) {
+    if (escaping) return `the bytes ${frames.hex([escaping.escape, escaping.end])} that end it are missing`;
+    return ENDS[by] ? `the byte ${frames.hex([ENDS[by][0]])} that ends it is missing` : "";
+  }
+
   const ahead = (packet) => packet.constants.filter(({ field }) => !field.in_trailer);
   const syncBits = (packet) => ahead(packet).reduce((bits, { field }) => bits + field.bits, 0);
   const BITS_OF_SYNC = 8; // constants of fewer bits are in any data
@@ -314,13 +382,15 @@ const icdgenEnvelopes = ((frames) => {
 
   /** Whether bytes begin as packets of a direction do: with the delimiter, or with the constants of the header. */
   function begins(form, direction, bytes) {
-    if (isDelimitedAhead(form)) return bytes[0] === ENDS[form.delimited_by][0];
+    if (isDelimitedAhead(form) && !opening(form).every((byte, at) => bytes[at] === byte)) return false;
+    if (form.escaping) return bytes.length > 1 && isStart(form.escaping, bytes[1]);
+    if (isDelimitedAhead(form)) return true;
     return bytes.length > 0 && packetsOf(form, direction).some((packet) => syncBits(packet) >= BITS_OF_SYNC && bitsOfConstants(packet, bytes) > 0);
   }
 
   /** `A5 5A`: bytes that the packets of a direction begin with; none for those whose first byte is not constant. */
   function syncTexts(form, direction) {
-    if (isDelimitedAhead(form)) return [frames.hex([ENDS[form.delimited_by][0]])];
+    if (isDelimitedAhead(form)) return [frames.hex(opening(form))];
     return packetsOf(form, direction).map(syncText).filter(Boolean);
   }
 
@@ -361,10 +431,10 @@ const icdgenEnvelopes = ((frames) => {
       const needed = packet && sizeOf(form, packet, bytes);
       return { frame: bytes.slice(0, needed < 0 ? 0 : needed), whole: needed !== undefined && bytes.length >= needed };
     }
-    const [first] = unstuffed(form, bytes).frames;
+    const read = unstuffed(form, bytes);
+    const first = read.frames.find(({ fault }) => fault !== "noise");
     if (first) return { frame: Uint8Array.from(first.frame), whole: !first.fault };
-    const [open] = unstuffed(form, [...bytes, ENDS[form.delimited_by][0]]).frames;
-    return { frame: Uint8Array.from(open?.frame ?? []), whole: false };
+    return { frame: Uint8Array.from(read.open), whole: false };
   }
 
   /**
@@ -402,9 +472,7 @@ const icdgenEnvelopes = ((frames) => {
     if (form.delimited_by === "length" && !packet.lengths.length && isNone) return noMessage(form, direction, packet, bytes, whole);
     if (!isWhole || needed > bytes.length) {
       let wanted = needed === undefined ? `its header has ${packet.header}` : `${needed} are needed`;
-      if (needed === undefined && bytes.length >= packet.header && ENDS[form.delimited_by]) {
-        wanted = `the byte ${frames.hex([ENDS[form.delimited_by][0]])} that ends it is missing`;
-      }
+      if (needed === undefined && bytes.length >= packet.header) wanted = closingText(form) || wanted;
       return fault(0, `is cut off: ${count(bytes.length)} came, ${wanted}`, isCertain);
     }
     return wholeFault(form, direction, packet, bytes, whole);

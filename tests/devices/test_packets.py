@@ -20,8 +20,8 @@ from icdgen.runtime_objects.links import link_of
 from tests.conftest import ROOT
 
 LINKS = ROOT / "examples" / "links"
-JBD, TFMINI, DALY = (
-    load([LINKS / f"{name}.yaml"]).icd for name in ("jbd", "tfmini", "daly")
+JBD, TFMINI, DALY, TSIP = (
+    load([LINKS / f"{name}.yaml"]).icd for name in ("jbd", "tfmini", "daly", "tsip")
 )
 
 # Frames of batteries in public logs.
@@ -55,6 +55,39 @@ def test_the_frames_of_jbd_batteries_are_received():
         for field in reading.frame.to_json()["fields"]
     }
     assert values["Total Voltage"] == 13.2 and values["State of Charge"] == 65
+
+
+def test_the_packets_of_a_gps_clock_are_received_though_doubled_bytes_precede_an_end():
+    # Of a Thunderbolt, in a public mailing list.
+    recorded = [
+        "10 8F AB 00 03 92 88 06 F9 00 10 10 03 2C 01 11 19 03 07 DE 10 03",
+        "10 8F AB 00 03 CC 16 06 F9 00 10 10 03 12 07 15 19 03 07 DE 10 03",
+    ]
+    for packet, time in zip(recorded, [(17, 1, 44), (21, 7, 18)], strict=True):
+        (reading,) = recognize(TSIP, packet)
+        values = {
+            field["name"]: field.get("value", field["raw"])
+            for field in reading.frame.to_json()["fields"]
+        }
+        assert values["UTC Offset"] == 16 and values["UTC Time"]
+        assert (values["Year"], values["Month"], values["Day"]) == (2014, 3, 25)
+        assert (values["Hour"], values["Minute"], values["Second"]) == time
+        seconds = values["Time of Week"] - values["UTC Offset"]
+        hour, minute, second = time
+        assert seconds == 2 * 86400 + hour * 3600 + minute * 60 + second  # a Tuesday
+
+
+def test_a_gps_clock_is_requested_and_answers_or_cannot_read_the_request():
+    client = EnvelopeClient(link_to(TSIP))
+    version, request = 0x45, bytes.fromhex("10 1F 10 03")
+    client.start(0, Request("telemetry", version))
+    assert client.output() == request
+    (done,) = client.received(10, bytes.fromhex("10 45 030001056403 00 01 05 64 10 03"))
+    assert isinstance(done, Done) and done.reply == version
+    client.start(20, Request("telemetry", version))
+    assert client.output() == request
+    (refused,) = client.received(30, bytes.fromhex("10 13 1F 10 03"))
+    assert isinstance(refused, Refused)
 
 
 def test_a_jbd_battery_is_requested_and_answers_or_refuses():

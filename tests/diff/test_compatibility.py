@@ -227,6 +227,13 @@ def test_nobody_finds_messages_in_another_envelope(
     )
 
 
+def test_nobody_finds_messages_between_other_escape_characters(tmp_path):
+    escaped = "framing: {by: escape, escape: 0x10, start: 0x02, end: 0x03}"
+    base = ENVELOPED.replace("framing: {by: length}", escaped)
+    got = answers(tmp_path, ("end: 0x03", "end: 0x04"), base)
+    assert (got["telemetry"].verdict, got["telecommands"].verdict) == ("no", "no")
+
+
 def test_an_order_that_is_stated_now_and_held_before_breaks_nothing(tmp_path):
     new = ENVELOPED.replace(
         "bits: 16, role: length", "bits: 16, role: length, byte_order: little"

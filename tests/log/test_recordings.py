@@ -367,7 +367,7 @@ def _read(value: object) -> object:
 
 
 @pytest.mark.parametrize(
-    "name", ["slip", "cobs", "hdlc", "mavlink2", "sbp", "ccsds", "kiss"]
+    "name", ["slip", "cobs", "hdlc", "tsip", "mavlink2", "sbp", "ccsds", "kiss"]
 )
 def test_every_delimiter(name, tmp_path):
     file = LINKS / f"{name}.yaml"

@@ -22,6 +22,7 @@ FILES = {
     "Sync bytes, a length and a CRC": "sbp",
     "SLIP": "slip",
     "COBS": "cobs",
+    "Escape characters": "tsip",
     "CCSDS space packets.": "ccsds",
     "MAVLink 2.": "mavlink2",
 }

@@ -52,6 +52,7 @@ TASKS = {  # what somebody types -> the page for the task
     "describe a device": "guides/describe-a-device",
     "my device sends SLIP": "guides/serial-link",
     "cobs": "guides/serial-link",
+    "dle etx": "guides/serial-link",
     "crc of a frame": "guides/serial-link",
     "I have a DBC, I want Rust": "guides/import-can",
     "import dbc": "guides/import-can",

@@ -41,11 +41,11 @@ CONFORMANCE = ROOT / "tests" / "conformance" / "links"
 FILES = [*sorted(LINKS.glob("*.yaml")), *sorted(CONFORMANCE.glob("*.yaml"))]
 NAMED = {path.stem: path.read_text("utf-8") for path in FILES}
 # The relay with other delimiters, where no length says where a packet ends.
+DELIMITERS = {name: name for name in ("length", "slip", "cobs", "datagram")}
+DELIMITERS["escape"] = "escape, escape: 0x10, start: 0x02, end: 0x03"
 RELAYS = {
-    f"relay_{delimiter}": RELAY.replace(
-        "framing: {by: length}", f"framing: {{by: {delimiter}}}"
-    )
-    for delimiter in ("length", "slip", "cobs", "datagram")
+    f"relay_{name}": RELAY.replace("framing: {by: length}", f"framing: {{by: {text}}}")
+    for name, text in DELIMITERS.items()
 }
 ICDS = {
     name: text

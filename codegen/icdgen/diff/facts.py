@@ -169,4 +169,4 @@ def _form(icd: Icd, node: Node, direction: str) -> object:
         ]
         named = replace(packet, name="", directions=(), fields=tuple(fields))
         packets.append(astuple(named))
-    return stream.delimited_by, packets
+    return stream.delimited_by, stream.escaping, packets

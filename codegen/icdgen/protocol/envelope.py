@@ -14,11 +14,12 @@ from icdgen.icd import checksum
 from icdgen.protocol.exchange import Exchange
 from icdgen.protocol.sections import Crc
 
-LENGTH, SLIP, COBS, HDLC, DATAGRAM = DELIMITERS = (
+LENGTH, SLIP, COBS, HDLC, ESCAPE, DATAGRAM = DELIMITERS = (
     "length",
     "slip",
     "cobs",
     "hdlc",
+    "escape",
     "datagram",
 )
 """Delimiters of messages; `datagram`: the packet that carries the message."""
@@ -134,6 +135,17 @@ class PacketFormat:
         return self.header_bytes + self.trailer_bytes
 
 
+@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
+class Escaping:
+    """Escape byte that delimits packets, and the bytes that follow it."""
+
+    escape: int
+    end: int
+    data: int  # stands for the escape byte itself
+    start: int | None  # None: the first byte of a packet begins it
+    ignores_other: bool  # whether an escape byte and any other byte are skipped
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class TelemetryRequest:
     """Request of telemetry by a packet with its id."""
@@ -152,6 +164,7 @@ class Stream:
     telecommands: tuple[StreamRow, ...]  # in ascending order of ids
     telemetry: tuple[StreamRow, ...]
     request: TelemetryRequest | None = None  # None: only telecommands request
+    escaping: Escaping | None = None  # if escape characters delimit packets
 
     @property
     def exchanges(self) -> tuple[Exchange, ...]:
@@ -248,8 +261,11 @@ class Stream:
         """Largest number of transmitted bytes of a message, with delimiters and byte
         stuffing.
         """
-        # Worst case: each byte is escaped (SLIP, HDLC), or a code byte for each 254
-        # bytes (COBS).
+        # Worst case: each byte is escaped (SLIP, HDLC, escape characters), or a code
+        # byte for each 254 bytes (COBS).
+        if self.escaping:
+            # Without a start byte, the first byte of a packet is not escaped.
+            return 2 * self.longest + (2 if self.escaping.start is None else 4)
         if self.delimited_by in (SLIP, HDLC):
             return 2 * self.longest + 2
         return self.longest + (

@@ -22,6 +22,7 @@ from icdgen.icd.places import raw_fields_in
 from icdgen.icd.variants import Ids, Variant
 from icdgen.protocol.envelope import (
     DATA,
+    ESCAPE,
     MESSAGE,
     NOTHING,
     REQUEST,
@@ -29,6 +30,7 @@ from icdgen.protocol.envelope import (
     ROLES,
     Check,
     EnvelopeField,
+    Escaping,
     PacketFormat,
     Stream,
     StreamRow,
@@ -207,6 +209,19 @@ def packet_of(
     )
 
 
+def escaping_of(framing: Section) -> Escaping | None:
+    """Return the escape characters of a link; None if another delimiter is used."""
+    if framing["by"] != ESCAPE:
+        return None
+    return Escaping(
+        escape=framing["escape"],
+        end=framing["end"],
+        data=framing.get("data", framing["escape"]),
+        start=framing.get("start"),
+        ignores_other=framing.get("other") == "ignore",
+    )
+
+
 def stream_of(
     node: Node,
     section: Section,
@@ -251,6 +266,7 @@ def stream_of(
         telecommands=telecommands,
         telemetry=(),
         request=request,
+        escaping=escaping_of(section["framing"]),
     )
     unrequested = {row.requests for row in telecommands if row.requests is not None}
     unrequested |= {*stream.confirming}

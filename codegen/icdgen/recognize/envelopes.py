@@ -53,6 +53,10 @@ class _RecordingDecoder(StreamDecoder):
         self.packets: dict[int, tuple[Span, bytes]] = {}  # by the index of the event
         self._at = self._end = 0
 
+    def _skip(self, size: int) -> None:
+        self._end += size
+        super()._skip(size)
+
     def _frame(
         self, frame: bytes, size: int, fault: str | None, events: list[StreamEvent]
     ) -> None:
@@ -218,7 +222,7 @@ def sync_of(endpoint: Endpoint) -> str:
             filter(
                 None,
                 dict.fromkeys(
-                    faults.sync_text(form.delimited_by, packet, direction)
+                    faults.sync_text(form, packet, direction)
                     for direction in DIRECTIONS
                     for packet in form.packets_of(direction)
                 ),

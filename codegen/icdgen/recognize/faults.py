@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 from icdgen_runtime.wire.envelope import (
-    Delimiter,
     Direction,
     EnvelopeField,
     PacketForm,
@@ -22,16 +21,17 @@ from icdgen_runtime.wire.stream import (
     _id_of,
     _received_packets,
 )
-from icdgen_runtime.wire.stuffing import Unstuffer
+from icdgen_runtime.wire.stuffing import unstuffer
 
 from icdgen.describe.ids import id_text
 from icdgen.describe.numbers import byte_count
-from icdgen.protocol.envelope import COBS, DATAGRAM, HDLC, LENGTH, SLIP
+from icdgen.protocol.envelope import COBS, DATAGRAM, ESCAPE, HDLC, LENGTH, SLIP
 from icdgen.recognize.reading import Endpoint
 from icdgen.values.errors import BadLength, NotFound
 
 _DATA_ALONE = "if these are the data of a message alone, name it: `icdgen decode {} MESSAGE FRAME`"
 _ENDS = {SLIP: "C0", HDLC: "7E", COBS: "00"}
+_DELIMITED_AHEAD = (SLIP, HDLC, ESCAPE)  # packets also begin with a delimiter
 _BITS_OF_SYNC = 8  # constants of fewer bits occur in any data
 
 
@@ -63,7 +63,7 @@ class Fault(NamedTuple):
 
 def has_sync(form: Stream, direction: Direction) -> bool:
     """Return whether packets begin with a delimiter or with at least 8 constant bits."""
-    return form.delimited_by in (SLIP, HDLC) or all(
+    return form.delimited_by in _DELIMITED_AHEAD or all(
         _sync_bits(packet) >= _BITS_OF_SYNC for packet in form.packets_of(direction)
     )
 
@@ -80,8 +80,11 @@ def _sync_bits(packet: PacketForm) -> int:
 
 def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
     """Return whether bytes begin with the delimiter or the constants of a direction."""
-    if form.delimited_by in (SLIP, HDLC):
-        return data[:1].hex().upper() == _ENDS[form.delimited_by]
+    if form.escaping and form.escaping.start is None:
+        has_escape = data[:1] == bytes((form.escaping.escape,))
+        return has_escape and len(data) > 1 and form.escaping.begins(data[1])
+    if form.delimited_by in _DELIMITED_AHEAD:
+        return data.startswith(_opening(form))
     return any(
         _sync_bits(packet) >= _BITS_OF_SYNC
         and _bits_of_constants(packet, direction, data) > 0
@@ -90,13 +93,30 @@ def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
     )
 
 
-def sync_text(delimiter: Delimiter, form: PacketForm, direction: Direction) -> str:
+def _opening(form: Stream) -> bytes:
+    """Return the delimiter in front of packets."""
+    if form.escaping:
+        start = form.escaping.start
+        return bytes((form.escaping.escape, *([] if start is None else [start])))
+    return bytes.fromhex(_ENDS[form.delimited_by])
+
+
+def _closing_text(form: Stream) -> str:
+    """Return the delimiter that ends packets; empty without one."""
+    if form.escaping:
+        ending = bytes((form.escaping.escape, form.escaping.end)).hex(" ").upper()
+        return f"bytes {ending} that end"
+    end = _ENDS.get(form.delimited_by)
+    return f"byte {end} that ends" if end else ""
+
+
+def sync_text(stream: Stream, form: PacketForm, direction: Direction) -> str:
     """Return the constant first bytes of packets, such as ``A5 5A``.
 
     It may be empty.
     """
-    if delimiter in (SLIP, HDLC):
-        return _ENDS[delimiter]
+    if stream.delimited_by in _DELIMITED_AHEAD:
+        return _opening(stream).hex(" ").upper()
     constants = {
         field.at: field
         for field in form.fields
@@ -203,7 +223,7 @@ def _fault_in(
     if received.lengths and needed is not None:
         is_certain = row is not None and least <= needed - form.overhead <= most
     else:
-        is_certain = row is not None and delimiter in (SLIP, HDLC)
+        is_certain = row is not None and delimiter in _DELIMITED_AHEAD
     # Without a length field, only the message of the id says where the packet ends.
     is_unmeasured = delimiter == LENGTH and not received.lengths
     if is_unmeasured and row is None and form.tells_message:
@@ -213,8 +233,10 @@ def _fault_in(
         expected = (
             f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
         )
-        if needed is None and count >= form.header_bytes and delimiter in _ENDS:
-            expected = f"the byte {_ENDS[delimiter]} that ends it is missing"
+        ending = _closing_text(stream)
+        if needed is None and count >= form.header_bytes and ending:
+            is_are = "are" if stream.escaping else "is"
+            expected = f"the {ending} it {is_are} missing"
         text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
         help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
         return Fault(
@@ -410,13 +432,12 @@ def packet_begun(
         )
         needed = next(sizes, None)
         return data[:needed], needed is not None and len(data) >= needed
-    end = bytes.fromhex(_ENDS[form.delimited_by])
-    line = Unstuffer(form.delimited_by, endpoint.link.longest)
-    frames = line.feed(data)
+    line = unstuffer(form, endpoint.link.longest)
+    assert line
+    frames = [frame for frame in line.feed(data) if frame.fault != "noise"]
     if frames:
         return frames[0].bytes, frames[0].fault is None
-    frames = line.feed(end)
-    return (frames[0].bytes if frames else b""), False
+    return line.begun, False
 
 
 def packet_size(stream: Stream, received: ReceivedPacket, packet: bytes) -> int | None:

@@ -219,6 +219,9 @@ def _renumber(messages: list[Child], style: Style) -> None:
     unused ids.
     """
     ranges = _ranges(style.protocol)
+    framing = style.protocol.get("link", {}).get("framing", {})
+    # Without a start byte, an id cannot be an escape character.
+    escapes = [framing.get(key) for key in ("escape", "end", "data")]
     used = {
         (direction, message[key])
         for message in style.messages
@@ -232,7 +235,9 @@ def _renumber(messages: list[Child], style: Style) -> None:
             free = [
                 id
                 for id in candidates
-                if first <= id <= last and (direction, id) not in used
+                if first <= id <= last
+                and (direction, id) not in used
+                and id not in escapes
             ]
             entries[key].value = (
                 Text(free[0], str(free[0])) if free else entries[key].value

@@ -183,6 +183,7 @@ typedef struct {
     size_t pending;     /**< Received bytes that may still become part of a message. */
     uint64_t discarded; /**< Number of received bytes that are not part of a message. */
     bool escaped;
+    bool inside;  /* escape characters: whether a packet has begun */
     bool zero;    /* COBS: whether a zero follows the block */
     uint8_t left; /* COBS: remaining bytes of the block */
     bool faulty;

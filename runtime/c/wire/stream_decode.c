@@ -39,6 +39,7 @@ static inline void icdgen_stream_clear(icd_stream_decoder_t *decoder)
 {
     decoder->length = 0;
     decoder->escaped = false;
+    decoder->inside = false;
     decoder->zero = false;
     decoder->left = 0;
     decoder->faulty = false;
@@ -454,7 +455,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     }
     if (decoder->faulty) {
         icdgen_stream_tell(listener, decoder->fault);
-    } else if (decoder->length != 0u) {
+    } else if (decoder->length != 0u || decoder->inside) {
         taken = icdgen_stream_frame(decoder, decoder->buffer, decoder->length, listener);
     } else {
         taken = true; /* empty frame between two delimiters */
@@ -462,6 +463,94 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     decoder->discarded += taken ? 0u : decoder->pending;
     decoder->pending = 0;
     icdgen_stream_clear(decoder);
+}
+
+/* Process bytes between two escape bytes. */
+static inline void icdgen_stream_plain(icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count)
+{
+    if (!decoder->inside) {
+        decoder->discarded += count;
+        return;
+    }
+    decoder->pending += count;
+    if (!decoder->faulty) {
+        const size_t room = decoder->capacity - decoder->length;
+        const size_t piece = count < room ? count : room;
+        (void)memcpy(decoder->buffer + decoder->length, bytes, piece);
+        decoder->length += piece;
+        if (piece < count) {
+            icdgen_stream_fail(decoder, ICD_STREAM_OVERRUN);
+        }
+    }
+}
+
+/* Return whether a byte that follows the escape byte begins a packet. */
+static inline bool icdgen_stream_begins(const icd_escaping_t *escaping, uint8_t byte)
+{
+    if (escaping->has_start) {
+        return byte == escaping->start;
+    }
+    return byte != escaping->escape && byte != escaping->end && byte != escaping->data;
+}
+
+/* Process the byte after an escape byte. */
+static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t byte, const icdgen_listener_t *listener)
+{
+    const icd_escaping_t *const escaping = decoder->form->escaping;
+    decoder->escaped = false;
+    decoder->pending++;
+    if (icdgen_stream_begins(escaping, byte)) {
+        if (decoder->inside) { /* the end of the packet before was lost */
+            decoder->pending -= 2u;
+            icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+            icdgen_stream_end(decoder, listener);
+        }
+        decoder->inside = true;
+        decoder->pending = 2;
+        if (!escaping->has_start) {
+            icdgen_stream_put(decoder, byte);
+        }
+    } else if (!decoder->inside) {
+        /* The last one of several escape bytes can begin a packet. */
+        decoder->escaped = byte == escaping->escape;
+        decoder->pending = decoder->escaped ? 1u : 0u;
+        decoder->discarded += 2u - decoder->pending;
+    } else if (byte == escaping->end) {
+        icdgen_stream_end(decoder, listener);
+    } else if (byte == escaping->data) {
+        if (!decoder->faulty) {
+            icdgen_stream_put(decoder, escaping->escape);
+        }
+    } else if (!escaping->ignores_other) {
+        icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+        decoder->escaped = byte == escaping->escape;
+    } else {
+        /* both bytes are ignored */
+    }
+}
+
+/* Process bytes of a stream with escape characters. */
+static inline void icdgen_stream_unescape(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
+{
+    const uint8_t escape = decoder->form->escaping->escape;
+    size_t at = 0;
+    while (at < count) {
+        if (decoder->escaped) {
+            icdgen_stream_escaped(decoder, bytes[at], listener);
+            at++;
+        } else {
+            const uint8_t *const found = ICDGEN_CAST(const uint8_t *, memchr(bytes + at, escape, count - at));
+            const size_t end = found != NULL ? ICDGEN_SIZE(found - bytes) : count;
+            icdgen_stream_plain(decoder, bytes + at, end - at);
+            at = end;
+            if (found != NULL) {
+                decoder->escaped = true;
+                decoder->pending++;
+                at++;
+            }
+        }
+    }
 }
 
 ICDGEN_API void icd_stream_feed(
@@ -485,6 +574,10 @@ ICDGEN_API void icd_stream_feed(
                                                             : 0u;
     if (delimiter == ICD_DELIMITED_BY_LENGTH) {
         icdgen_stream_append(decoder, bytes, count, &listener);
+        return;
+    }
+    if (delimiter == ICD_DELIMITED_BY_ESCAPE) {
+        icdgen_stream_unescape(decoder, bytes, count, &listener);
         return;
     }
     for (size_t i = 0; i < count; ++i) {

@@ -17,6 +17,7 @@
 /* Output buffer for a message with its delimiters. */
 typedef struct {
     icd_delimiter_t delimiter;
+    const icd_escaping_t *escaping;
     uint8_t *buffer;
     size_t capacity;
     size_t count;
@@ -70,6 +71,9 @@ static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
     } else if (line->delimiter == ICD_DELIMITED_BY_HDLC && (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
         icdgen_line_byte(line, ICDGEN_HDLC_ESCAPE);
         icdgen_line_byte(line, byte ^ ICDGEN_HDLC_FLIP);
+    } else if (line->delimiter == ICD_DELIMITED_BY_ESCAPE && byte == line->escaping->escape) {
+        icdgen_line_byte(line, byte);
+        icdgen_line_byte(line, line->escaping->data);
     } else {
         icdgen_line_byte(line, byte);
     }
@@ -88,6 +92,15 @@ static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
             icdgen_line_block(line);
         }
         icdgen_line_byte(line, 0);
+    } else if (line->delimiter == ICD_DELIMITED_BY_ESCAPE) {
+        icdgen_line_byte(line, line->escaping->escape);
+        if (!begins) {
+            icdgen_line_byte(line, line->escaping->end);
+        } else if (line->escaping->has_start) {
+            icdgen_line_byte(line, line->escaping->start);
+        } else {
+            /* the first byte of the packet follows */
+        }
     } else {
         /* delimited by its length only */
     }
@@ -304,7 +317,8 @@ static inline icd_status_t icdgen_outgoing_encode(
             outgoing->sources[i] = icdgen_stream_number(&exchange->sources[i], 0, header, packet->header_bytes);
         }
     }
-    icdgen_line_t line = {outgoing->form->delimited_by, buffer, capacity, 0, 0, false, false};
+    const icd_stream_form_t *const form = outgoing->form;
+    icdgen_line_t line = {form->delimited_by, form->escaping, buffer, capacity, 0, 0, false, false};
     icdgen_line_delimiter(&line, true);
     icdgen_line_write(&line, header, packet->header_bytes);
     icdgen_line_write(&line, data, length);

@@ -12,8 +12,19 @@ typedef enum {
     ICD_DELIMITED_BY_SLIP = 1,
     ICD_DELIMITED_BY_COBS = 2,
     ICD_DELIMITED_BY_HDLC = 3,
-    ICD_DELIMITED_BY_PACKET = 4
+    ICD_DELIMITED_BY_PACKET = 4,
+    ICD_DELIMITED_BY_ESCAPE = 5
 } icd_delimiter_t;
+
+/** The escape byte that delimits packets, and the bytes that follow it. */
+typedef struct {
+    uint8_t escape;
+    uint8_t start; /**< Begins a packet, if `has_start`; otherwise, the first byte of the packet does. */
+    uint8_t end;
+    uint8_t data; /**< Stands for the escape byte itself. */
+    bool has_start;
+    bool ignores_other; /**< Within a packet: whether an escape byte and any other byte are skipped. */
+} icd_escaping_t;
 
 /** Role of a header or trailer field. The sender chooses the values of the first ICD_ENVELOPE_VALUES roles. */
 typedef enum {
@@ -192,6 +203,7 @@ typedef struct {
     uint16_t confirming_count;
     const uint32_t *confirming; /**< Ids of telemetry that only responds to telecommands, and is not requested. */
     const icd_telemetry_request_t *request; /**< NULL if only telecommands request telemetry. */
+    const icd_escaping_t *escaping;         /**< NULL unless escape characters delimit packets. */
 } icd_stream_form_t;
 
 #endif /* ICDGEN_WIRE_STREAM_FORM_H */

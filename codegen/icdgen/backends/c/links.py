@@ -30,6 +30,7 @@ from icdgen.protocol.envelope import (
     DATAGRAM,
     DIRECTIONS,
     NOTHING,
+    Escaping,
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, Response
@@ -334,6 +335,11 @@ class _Tables(TableSet):
             exchange = exchanges[form.request.exchange]
             row = Row(f"{exchange}, {form.request.packet}u")
             request = self.add("request", "icd_telemetry_request_t", [row])
+        escaping = "NULL"
+        if form.escaping:
+            escaping = self.add(
+                "escaping", "icd_escaping_t", [Row(_escaping(form.escaping))]
+            )
         delimiter = "packet" if form.delimited_by == DATAGRAM else form.delimited_by
         around = (
             max((packet.overhead for packet in form.packets_of(each)), default=-1)
@@ -357,6 +363,7 @@ class _Tables(TableSet):
                 "telemetry that only responds",
             ),
             Row(request, "request of telemetry"),
+            Row(escaping, "escape characters"),
         ]
         return self.add(
             "stream", "icd_stream_form_t", parts, self.assumed.of_section("link")
@@ -500,4 +507,12 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
 def _count(name: str, messages: list[SentMessage]) -> str:
     return (
         f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
+    )
+
+
+def _escaping(escaping: Escaping) -> str:
+    start = escaping.start
+    return (
+        f"{escaping.escape:#04x}u, {start or 0:#04x}u, {escaping.end:#04x}u, {escaping.data:#04x}u,"
+        f" {boolean(start is not None)}, {boolean(escaping.ignores_other)}"
     )

@@ -47,6 +47,21 @@ ENDS = {
     COBS: "at the byte 00; zeros in the message are stuffed (COBS)",
     DATAGRAM: "with the packet that carries it",
 }
+
+
+def end_of(form: Stream) -> str:
+    """Return where a message ends, as a part of a sentence."""
+    escaping = form.escaping
+    if escaping is None:
+        return ENDS[form.delimited_by]
+    escape, end, data = (
+        f"{byte:02X}" for byte in (escaping.escape, escaping.end, escaping.data)
+    )
+    start = escaping.start
+    begin = "its first byte" if start is None else f"{start:02X}"
+    return f"at the bytes {escape} {end}, and begins with {escape} and {begin}; in between, {escape} is sent as {escape} {data}"
+
+
 _ROLES = {
     "sync": "begins a message",
     "constant": "is always the same",
@@ -111,6 +126,13 @@ def script_facts(
         "given": GIVEN,
         "packets": [_packet(packet) for packet in form.packets],
     }
+    if form.escaping:
+        known = {
+            key: value
+            for key, value in asdict(form.escaping).items()
+            if value is not None
+        }
+        script_data["escaping"] = known
     if size := pair_bytes(form):
         script_data["id_pairs"] = size
     for direction in DIRECTIONS:

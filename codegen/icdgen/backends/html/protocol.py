@@ -165,7 +165,7 @@ def _framed(relations: Relations, node: Node, node_facts: Facts) -> dict[str, ob
         return {}
     views = packets.packet_views(relations, node, node_facts.stream)
     return {
-        "ends": envelopes.ENDS[node_facts.stream.delimited_by],
+        "ends": envelopes.end_of(node_facts.stream),
         "packets": [(view, _row(view.boxes)) for view in views],
         "is_named": any(view.name for view in views),
         "is_measured": node_facts.stream.delimited_by != LENGTH

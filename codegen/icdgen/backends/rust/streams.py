@@ -43,10 +43,7 @@ def stream_of(form: Stream) -> Brackets:
     tables = crc_tables(form)
     return struct(
         "Stream",
-        part(
-            "delimited_by",
-            f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)}",
-        ),
+        part("delimited_by", _delimiter(form)),
         part("per_id", spelled(form.per_id)),
         part("packets", rows(_packet(packet, tables) for packet in form.packets)),
         part("telecommands", rows(_row(row, indices) for row in form.telecommands)),
@@ -55,6 +52,24 @@ def stream_of(form: Stream) -> Brackets:
         part("confirming", flat_rows(map(spelled, form.confirming))),
         part("request", some(_request(form, indices))),
     )
+
+
+def _delimiter(form: Stream) -> Expression:
+    name = _DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)
+    delimiter = f"link::Delimiter::{name}"
+    escaping = form.escaping
+    if escaping is None:
+        return delimiter
+    start = escaping.start
+    fields = flat(
+        "Escaping",
+        escape=f"{escaping.escape:#04x}",
+        start=some(None if start is None else f"{start:#04x}"),
+        end=f"{escaping.end:#04x}",
+        data=f"{escaping.data:#04x}",
+        ignores_other=escaping.ignores_other,
+    )
+    return fields.within(f"{delimiter}(", ")")
 
 
 def _request(form: Stream, indices: Mapping[Exchange, int]) -> Brackets | None:

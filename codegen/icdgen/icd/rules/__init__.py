@@ -24,6 +24,7 @@ from icdgen.icd.rules import (  # noqa: F401
     duplicates,
     envelopes,
     errata,
+    escapes,
     formulas,
     identifiers,
     ids,

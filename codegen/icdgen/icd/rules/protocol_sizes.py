@@ -37,20 +37,28 @@ def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
 
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
+    markers = ("start_of_message", "end_of_message", "escaped_data")
     for framing in ctx.sections("uart", "framing"):
-        for first, key, value in of_one_number(
-            framing, "start_of_message", "end_of_message", "escaped_data"
-        ):
-            message = f"after the escape byte 0x{value:02X} stands for both `{first}` and `{key}`"
-            yield Fault.at(framing, key, message, "use a different byte for each")
-        for _, key, value in of_one_number(
-            framing, "escape", "start_of_message", "end_of_message"
-        ):
-            # Other equal values are reported above.
-            if value == framing["escape"]:
-                message = f"the escape byte 0x{value:02X} is also `{key}`"
-                help = "choose another byte: after a lost byte, the start of a message could not be found"
-                yield Fault.at(framing, key, message, help)
+        yield from _equal_markers(framing, *markers)
+    for framing in ctx.sections("link", "framing"):
+        yield from _equal_markers(framing, "start", "end", "data")
+
+
+def _equal_markers(section: Map, *keys: str) -> Iterator[Fault]:
+    """Yield the faults of bytes with two meanings. ``keys``: start, end and data, which
+    follow the escape byte.
+    """
+    for first, key, value in of_one_number(section, *keys):
+        message = (
+            f"after the escape byte 0x{value:02X} stands for both `{first}` and `{key}`"
+        )
+        yield Fault.at(section, key, message, "use a different byte for each")
+    for _, key, value in of_one_number(section, "escape", *keys[:2]):
+        # Other equal values are reported above.
+        if value == section.get("escape"):
+            message = f"the escape byte 0x{value:02X} is also `{key}`"
+            help = "choose another byte: after a lost byte, the start of a message could not be found"
+            yield Fault.at(section, key, message, help)
 
 
 @rule("ICD097")

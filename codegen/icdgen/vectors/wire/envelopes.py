@@ -34,6 +34,15 @@ _SPLITS = 40  # maximum number of split positions of a message
 _MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))
 
 
+def _markers(form: Stream) -> bytes:
+    """Return the bytes that delimiters consist of."""
+    escaping = form.escaping
+    if escaping is None:
+        return _MARKERS
+    start = escaping.escape if escaping.start is None else escaping.start
+    return bytes((escaping.escape, start, escaping.end, escaping.data, 0x55))
+
+
 def requests(link: Link[Any], form: Stream, source: Random) -> Requests:
     """Yield the requests of a packet format."""
     for direction in DIRECTIONS:
@@ -147,13 +156,15 @@ def _unknown(form: Stream, direction: str) -> int:
     return next(id for id in range(len(known_ids) + 1) if id not in known_ids)
 
 
-def _data(row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
+def _data(form: Stream, row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
     """Yield data of a message in the lengths that it can have, each with its purpose."""
     for size in sorted({row.least, (row.least + row.most) // 2, row.most}):
         yield f"{size} random bytes", source.randbytes(size)
     yield "zeros", bytes(row.most)
     yield "ones", b"\xff" * row.most
-    yield "what delimiters are made of", bytes(source.choices(_MARKERS, k=row.most))
+    yield "what delimiters are made of", bytes(
+        source.choices(_markers(form), k=row.most)
+    )
     if row.most > 2:
         yield "zeros at the end", source.randbytes(row.most // 2) + bytes(
             row.most - row.most // 2
@@ -166,7 +177,7 @@ def _encoded(
 ) -> Requests:
     """Yield requests that encode messages, and such as must be refused."""
     for row in form.rows(direction):
-        for why, data in _data(row, source):
+        for why, data in _data(form, row, source):
             yield f"{row.name}: {why}", _encode(direction, row.id, data)
             line = stream_encode(link, row.id, data, direction)
             yield f"{row.name}: {why}, and back", _events(direction, [line])
@@ -235,7 +246,7 @@ def _streams(
         ("random bytes before", source.randbytes(300) + good + good),
         (
             "random bytes rich in delimiters before",
-            bytes(source.choices(_MARKERS, k=300)) + good + good,
+            bytes(source.choices(_markers(form), k=300)) + good + good,
         ),
         (
             "the header of a message, then whole ones",
@@ -245,6 +256,7 @@ def _streams(
         ("a message that has only begun", good + good[: len(good) // 2]),
         *((why, damaged + good + good) for why, damaged in _damaged(good, source)),
         *_nested(link, direction, rows, good),
+        *_escapes(form, good),
         *_undefined_messages(link, form, direction, short, good),
         *_gaps(link, form, direction, short, source),
         ("nothing", b""),
@@ -307,6 +319,37 @@ def _nested(
         [line[-1] ^ 0x10]
     ) + good + good
     yield "messages within a truncated message", line[:-3] + good + good
+
+
+def _escapes(form: Stream, good: bytes) -> Iterator[tuple[str, bytes]]:
+    """Yield escape bytes where they have another meaning, or none."""
+    if form.escaping is None:
+        return
+    escape, end, data = (
+        bytes((byte,))
+        for byte in (form.escaping.escape, form.escaping.end, form.escaping.data)
+    )
+    half = len(good) // 2
+    other = bytes((next(byte for byte in range(256) if byte not in _markers(form)),))
+    yield "escape bytes before a message", escape * 3 + good + escape * 4 + good
+    yield "no message", escape + end + escape + data + end + good
+    yield "a message that begins within another one", good[:half] + good + good
+    yield (
+        "any byte after the escape byte",
+        good[:-2] + escape + other + escape + end + good,
+    )
+    yield (
+        "an escape byte before the start of a message",
+        good[:-2] + escape + escape + good + good,
+    )
+    yield "an empty packet", good[:2] + escape + end + good
+    yield "a message that is too long", good[:-2] + bytes(3 * form.longest) + good[
+        -2:
+    ] + good
+    yield (
+        "escape bytes in a message that is too long",
+        good[:-2] + 2 * form.longest * (escape + data) + good[-2:] + good,
+    )
 
 
 def _undefined_messages(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple, Optional
 
-Delimiter = Literal["length", "slip", "cobs", "hdlc", "datagram"]
+Delimiter = Literal["length", "slip", "cobs", "hdlc", "escape", "datagram"]
 CheckKind = Literal["crc", "fletcher", "fletcher_255", "sum", "xor"]
 Direction = Literal["telecommand", "telemetry"]
 Content = Literal["message", "request", "requested", "none"]
@@ -234,6 +234,31 @@ class PacketForm(NamedTuple):
         return self.header_bytes + self.trailer_bytes
 
 
+class Escaping(NamedTuple):
+    """The escape byte that delimits packets, and what follows it."""
+
+    escape: int
+    """The escape byte."""
+    end: int
+    """Follows the escape byte at the end of a packet."""
+    data: int
+    """Follows the escape byte if the escape byte itself is data."""
+    start: Optional[int] = None
+    """Follows the escape byte at the beginning of a packet; None: the first byte of the
+    packet does.
+    """
+    ignores_other: bool = False
+    """Whether an escape byte and any other byte are skipped within a packet; otherwise
+    it is an error.
+    """
+
+    def begins(self, byte: int) -> bool:
+        """Return whether a byte that follows the escape byte begins a packet."""
+        if self.start is None:
+            return byte not in (self.escape, self.end, self.data)
+        return byte == self.start
+
+
 class TelemetryRequest(NamedTuple):
     """The request of telemetry by a packet with its id."""
 
@@ -258,6 +283,8 @@ class Stream(NamedTuple):
     exchanges: tuple[Exchange, ...] = ()
     confirming: tuple[int, ...] = ()
     """Ids of telemetry that only responds to telecommands, and is not requested."""
+    escaping: Optional[Escaping] = None
+    """If escape characters delimit packets."""
 
     def rows(self, direction: Direction) -> tuple[StreamRow, ...]:
         """Return the messages of a direction."""

@@ -117,4 +117,4 @@ class Sender:
     def _line(self, packet: int, frame: bytes) -> bytes:
         """Return the transmitted bytes of a packet."""
         self.header = frame[: self._form.packets[packet].header_bytes]
-        return stuffed(self._form.delimited_by, frame)
+        return stuffed(self._form, frame)

@@ -13,6 +13,7 @@ from .envelope import CheckForm as CheckForm  # noqa: PLC0414
 from .envelope import CrcForm as CrcForm  # noqa: PLC0414
 from .envelope import Echo as Echo  # noqa: PLC0414
 from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
+from .envelope import Escaping as Escaping  # noqa: PLC0414
 from .envelope import Exchange as Exchange  # noqa: PLC0414
 from .envelope import NumberPlace as NumberPlace  # noqa: PLC0414
 from .envelope import PacketForm as PacketForm  # noqa: PLC0414

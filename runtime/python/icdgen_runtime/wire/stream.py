@@ -20,7 +20,7 @@ from .envelope import (
 from .errors import UnsupportedError, need
 from .link import Link
 from .message_ids import message_id
-from .stuffing import Unstuffer, stuffed
+from .stuffing import stuffed, unstuffer
 
 M = TypeVar("M", bound=Message)
 MessageClass = type[Message]
@@ -199,7 +199,7 @@ def _encoded(
     if place and packet.check:
         value = _checksum(packet, row, bytes(head) + data + bytes(tail))
         _put(place, tail if place.in_trailer else head, value)
-    return stuffed(form.delimited_by, bytes(head) + data + bytes(tail))
+    return stuffed(form, bytes(head) + data + bytes(tail))
 
 
 def _id_bits(packet: PacketForm) -> int:
@@ -402,11 +402,7 @@ class StreamDecoder:
             raise LengthError("the buffer of header and trailer", around, self._limit)
         self._types = link.TELEMETRY if direction == "telemetry" else link.TELECOMMANDS
         self._buffer = bytearray()
-        self._line = (
-            None
-            if form.delimited_by in ("length", "datagram")
-            else Unstuffer(form.delimited_by, self._limit)
-        )
+        self._line = unstuffer(form, self._limit)
         self._last: dict[Optional[int], int] = {}  # last sequence numbers
         self.discarded = 0
         """Number of received bytes that are not part of a message."""
@@ -421,7 +417,10 @@ class StreamDecoder:
         data, events = bytes(data), list[StreamEvent]()
         if self._line:
             for frame in self._line.feed(data):
-                self._frame(frame.bytes, frame.size, frame.fault, events)
+                if frame.fault == "noise":
+                    self._skip(frame.size)
+                else:
+                    self._frame(frame.bytes, frame.size, frame.fault, events)
         elif self._form.delimited_by == "datagram":
             fault = "overrun" if len(data) > self._limit else None
             self._frame(data, len(data), fault, events)
@@ -432,6 +431,10 @@ class StreamDecoder:
                 at += count
             del self._buffer[:at]  # once per call: deletion copies the remaining bytes
         return events
+
+    def _skip(self, size: int) -> None:
+        """Drop bytes that are not in a frame."""
+        self.discarded += size
 
     def _frame(
         self, frame: bytes, size: int, fault: Optional[str], events: list[StreamEvent]

@@ -1,10 +1,12 @@
-"""Delimited frames: SLIP (RFC 1055), asynchronous HDLC (RFC 1662) and COBS."""
+"""Delimited frames: SLIP (RFC 1055), asynchronous HDLC (RFC 1662), COBS, and escape
+characters.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional
+from typing import NamedTuple, Optional, Union
 
-from .envelope import Delimiter
+from .envelope import Delimiter, Escaping, Stream
 
 _SLIP_ESCAPED = {0xDC: 0xC0, 0xDD: 0xDB}
 _HDLC_FLIP = 0x20
@@ -13,6 +15,8 @@ _HDLC_FLIP = 0x20
 class Frame(NamedTuple):
     """A frame between delimiters, its number of bytes on the line, and its error or
     None.
+
+    ``noise``: bytes that are not in a frame.
     """
 
     bytes: bytes
@@ -20,8 +24,11 @@ class Frame(NamedTuple):
     fault: Optional[str]
 
 
-def stuffed(delimited_by: Delimiter, frame: bytes) -> bytes:
+def stuffed(form: Stream, frame: bytes) -> bytes:
     """Return the frame with its delimiters, or unchanged without delimiters."""
+    delimited_by = form.delimited_by
+    if delimited_by == "escape" and form.escaping:
+        return _escaped(form.escaping, frame)
     if delimited_by == "slip":
         data = frame.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
         return b"\xc0" + data + b"\xc0"
@@ -29,6 +36,14 @@ def stuffed(delimited_by: Delimiter, frame: bytes) -> bytes:
         data = frame.replace(b"\x7d", b"\x7d\x5d").replace(b"\x7e", b"\x7d\x5e")
         return b"\x7e" + data + b"\x7e"
     return _cobs(frame) if delimited_by == "cobs" else frame
+
+
+def _escaped(escaping: Escaping, frame: bytes) -> bytes:
+    escape = bytes((escaping.escape,))
+    # Without a start byte, the first byte of the frame follows the first escape byte.
+    start = b"" if escaping.start is None else bytes((escaping.start,))
+    data = frame.replace(escape, bytes((escaping.escape, escaping.data)))
+    return escape + start + data + escape + bytes((escaping.end,))
 
 
 def _cobs(frame: bytes) -> bytes:
@@ -51,7 +66,9 @@ def _cobs(frame: bytes) -> bytes:
 
 
 class Unstuffer:
-    """Extract frames from a stream. The buffer has ``limit`` bytes."""
+    """Extract frames of SLIP, HDLC and COBS from a stream. The buffer has ``limit``
+    bytes.
+    """
 
     def __init__(self, delimited_by: Delimiter, limit: int) -> None:
         self._limit = limit
@@ -68,6 +85,11 @@ class Unstuffer:
         self._is_escaped = False
         self._left = 0  # remaining bytes of the COBS block
         self._is_zero = False  # whether a zero follows this block
+
+    @property
+    def begun(self) -> bytes:
+        """Return the bytes of the frame whose end has not come."""
+        return bytes(self._buffer)
 
     def feed(self, data: bytes) -> list[Frame]:
         """Process the next bytes. Return the frames that end in them."""
@@ -113,3 +135,98 @@ class Unstuffer:
             self._fault = "overrun"
         else:
             self._buffer.append(byte)
+
+
+class Unescaper:
+    """Extract frames between escape characters from a stream. The buffer has ``limit``
+    bytes.
+    """
+
+    def __init__(self, escaping: Escaping, limit: int) -> None:
+        self._escaping, self._limit = escaping, limit
+        self._escape = bytes((escaping.escape,))
+        self._buffer = bytearray()
+        self._fault: Optional[str] = None
+        self._is_inside = False
+        self._is_escaped = False
+        self.pending = 0
+        """Bytes of the frame that has begun, and an escape byte that may begin one."""
+
+    @property
+    def begun(self) -> bytes:
+        """Return the bytes of the frame whose end has not come."""
+        return bytes(self._buffer)
+
+    def feed(self, data: bytes) -> list[Frame]:
+        """Process the next bytes. Return the frames that end in them, and noise."""
+        frames: list[Frame] = []
+        at = 0
+        while at < len(data):
+            if self._is_escaped:
+                self._after_escape(data[at], frames)
+                at += 1
+                continue
+            escape = data.find(self._escape, at)
+            end = len(data) if escape < 0 else escape
+            if not self._is_inside:
+                _add_noise(end - at, frames)
+            else:
+                self.pending += end - at
+                self._put(data[at:end])
+            at = end
+            if escape >= 0:
+                self._is_escaped = True
+                self.pending += 1
+                at += 1
+        return frames
+
+    def _after_escape(self, byte: int, frames: list[Frame]) -> None:
+        escaping = self._escaping
+        self._is_escaped = False
+        self.pending += 1
+        if escaping.begins(byte):
+            if self._is_inside:  # the end of the frame before was lost
+                self._end("framing", 2, frames)
+            self._is_inside, self.pending = True, 2
+            if escaping.start is None:
+                self._put(bytes((byte,)))
+        elif not self._is_inside:
+            # The last one of several escape bytes can begin a frame.
+            self._is_escaped = byte == escaping.escape
+            _add_noise(1 if self._is_escaped else 2, frames)
+            self.pending = int(self._is_escaped)
+        elif byte == escaping.end:
+            self._end(None, 0, frames)
+        elif byte == escaping.data:
+            self._put(self._escape)
+        elif not escaping.ignores_other:
+            self._fault = self._fault or "framing"
+            self._is_escaped = byte == escaping.escape
+
+    def _end(self, fault: Optional[str], after: int, frames: list[Frame]) -> None:
+        """End the frame ``after`` bytes before the last one."""
+        size = self.pending - after
+        frames.append(Frame(bytes(self._buffer), size, self._fault or fault))
+        self.pending, self._is_inside, self._fault = 0, False, None
+        self._buffer.clear()
+
+    def _put(self, data: bytes) -> None:
+        if self._fault is None:
+            room = self._limit - len(self._buffer)
+            self._buffer += data[:room]
+            if len(data) > room:
+                self._fault = "overrun"
+
+
+def _add_noise(size: int, frames: list[Frame]) -> None:
+    if size:
+        frames.append(Frame(b"", size, "noise"))
+
+
+def unstuffer(form: Stream, limit: int) -> Union[Unstuffer, Unescaper, None]:
+    """Return what extracts the frames from a stream; None without delimiters."""
+    if form.delimited_by in ("length", "datagram"):
+        return None
+    if form.escaping:
+        return Unescaper(form.escaping, limit)
+    return Unstuffer(form.delimited_by, limit)

@@ -16,8 +16,36 @@ pub enum Delimiter {
     Cobs,
     /// Flags and escapes as on asynchronous lines, RFC 1662.
     Hdlc,
+    /// Escape characters.
+    Escape(Escaping),
     /// The packets of the transport.
     Packet,
+}
+
+/// The escape byte that delimits packets, and the bytes that follow it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Escaping {
+    /// The escape byte.
+    pub escape: u8,
+    /// Begins a packet; None: the first byte of the packet does.
+    pub start: Option<u8>,
+    /// Ends a packet.
+    pub end: u8,
+    /// Stands for the escape byte itself.
+    pub data: u8,
+    /// Within a packet: whether an escape byte and any other byte are skipped.
+    pub ignores_other: bool,
+}
+
+impl Escaping {
+    /// Return whether a byte that follows the escape byte begins a packet.
+    #[must_use]
+    pub const fn begins(&self, byte: u8) -> bool {
+        match self.start {
+            Some(start) => byte == start,
+            None => byte != self.escape && byte != self.end && byte != self.data,
+        }
+    }
 }
 
 /// Role of a header or trailer field.

@@ -53,7 +53,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         Ok(Self {
             client: Client::new(link)?,
             port: Waiting::new(port),
-            line: vec![0; 2 * N + 2], // each byte escaped, between delimiters
+            line: vec![0; 2 * N + 4], // each byte escaped, between delimiters
             on_event: Box::new(|_| {}),
         })
     }

@@ -11,8 +11,9 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::places::{Identification, Piece, Place};
 pub use self::stream::{
-    CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole, Exchange,
-    NumberPlace, PacketForm, RequestForm, Response, ResponseKind, Stream, StreamRow, Verdict,
+    CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole, Escaping,
+    Exchange, NumberPlace, PacketForm, RequestForm, Response, ResponseKind, Stream, StreamRow,
+    Verdict,
 };
 
 pub(crate) use self::places::get;

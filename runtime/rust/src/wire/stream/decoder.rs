@@ -5,7 +5,7 @@ use super::encoder::{
     SLIP_ESCAPED_ESCAPE,
 };
 use super::judge::{judge_delimited, Event, Judge, Verdict};
-use crate::wire::link::{Delimiter, Link, PacketForm, Stream};
+use crate::wire::link::{Delimiter, Escaping, Link, PacketForm, Stream};
 use crate::wire::{Direction, Error};
 
 /// Decoder that finds the messages of one direction in a stream. `N` is the size of its buffer in
@@ -42,8 +42,9 @@ pub struct Decoder<const N: usize, const S: usize> {
     pending: u64,
     discarded: u64,
     is_escaped: bool,
-    is_zero: bool, // whether a zero follows the block of COBS
-    left: u8,      // bytes that the block of COBS still has
+    is_inside: bool, // with escape characters: whether a packet has begun
+    is_zero: bool,   // whether a zero follows the block of COBS
+    left: u8,        // bytes that the block of COBS still has
     fault: Option<Event<'static>>,
 }
 
@@ -89,6 +90,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             pending: 0,
             discarded: 0,
             is_escaped: false,
+            is_inside: false,
             is_zero: false,
             left: 0,
             fault: None,
@@ -115,6 +117,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             Delimiter::Slip => SLIP_END,
             Delimiter::Hdlc => HDLC_FLAG,
             Delimiter::Cobs => 0,
+            Delimiter::Escape(escaping) => return self.unescape(escaping, bytes, &mut on_event),
         };
         for &byte in bytes {
             self.pending = self.pending.wrapping_add(1);
@@ -246,7 +249,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         let is_taken = if let Some(fault) = self.fault {
             on_event(fault);
             false
-        } else if frame.is_empty() {
+        } else if frame.is_empty() && !self.is_inside {
             true
         } else {
             let judges = Judge::all(self.form, self.direction);
@@ -258,9 +261,85 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         self.pending = 0;
         self.length = 0;
         self.is_escaped = false;
+        self.is_inside = false;
         self.is_zero = false;
         self.left = 0;
         self.fault = None;
+    }
+
+    /// Bytes of a stream with escape characters.
+    fn unescape(&mut self, escaping: Escaping, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let mut rest = bytes;
+        while let Some((&first, others)) = rest.split_first() {
+            if self.is_escaped {
+                self.after_escape(escaping, first, on_event);
+                rest = others;
+                continue;
+            }
+            let escape = rest.iter().position(|byte| *byte == escaping.escape);
+            let (run, others) = rest.split_at(escape.unwrap_or(rest.len()));
+            self.plain(run);
+            rest = others;
+            if let Some((_, others)) = rest.split_first() {
+                self.is_escaped = true;
+                self.pending = self.pending.wrapping_add(1);
+                rest = others;
+            }
+        }
+    }
+
+    /// Bytes between two escape bytes.
+    fn plain(&mut self, run: &[u8]) {
+        if !self.is_inside {
+            self.drop_bytes(run.len());
+            return;
+        }
+        let count = u64::try_from(run.len()).unwrap_or(0);
+        self.pending = self.pending.wrapping_add(count);
+        if self.fault.is_none() {
+            let end = self.limit.min(self.length.saturating_add(run.len()));
+            let free = self.buffer.get_mut(self.length..end).unwrap_or(&mut []);
+            for (place, byte) in free.iter_mut().zip(run) {
+                *place = *byte;
+            }
+            if free.len() < run.len() {
+                self.fail(Event::Overrun);
+            }
+            self.length = end;
+        }
+    }
+
+    /// The byte after an escape byte.
+    fn after_escape(&mut self, escaping: Escaping, byte: u8, on_event: &mut dyn FnMut(Event<'_>)) {
+        self.is_escaped = false;
+        self.pending = self.pending.wrapping_add(1);
+        if escaping.begins(byte) {
+            if self.is_inside {
+                // The end of the packet before was lost.
+                self.pending = self.pending.wrapping_sub(2);
+                self.fail(Event::Framing);
+                self.end(on_event);
+            }
+            self.is_inside = true;
+            self.pending = 2;
+            if escaping.start.is_none() {
+                self.put(byte);
+            }
+        } else if !self.is_inside {
+            // The last one of several escape bytes can begin a packet.
+            self.is_escaped = byte == escaping.escape;
+            self.pending = u64::from(self.is_escaped);
+            self.drop_bytes(if self.is_escaped { 1 } else { 2 });
+        } else if byte == escaping.end {
+            self.end(on_event);
+        } else if byte == escaping.data {
+            if self.fault.is_none() {
+                self.put(escaping.escape);
+            }
+        } else if !escaping.ignores_other {
+            self.fail(Event::Framing);
+            self.is_escaped = byte == escaping.escape;
+        }
     }
 
     fn fail(&mut self, fault: Event<'static>) {

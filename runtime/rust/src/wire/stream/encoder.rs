@@ -2,7 +2,9 @@
 
 use super::check;
 use crate::wire::bits::head;
-use crate::wire::link::{Content, Delimiter, EnvelopeRole, Link, PacketForm, Stream, StreamRow};
+use crate::wire::link::{
+    Content, Delimiter, EnvelopeRole, Escaping, Link, PacketForm, Stream, StreamRow,
+};
 use crate::wire::{Direction, Error};
 
 pub(super) const SLIP_END: u8 = 0xc0;
@@ -345,6 +347,7 @@ fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<u
         Delimiter::Slip => line.byte(SLIP_END),
         Delimiter::Hdlc => line.byte(HDLC_FLAG),
         Delimiter::Cobs => line.byte(0),
+        Delimiter::Escape(escaping) => line.start(escaping),
         Delimiter::Length | Delimiter::Packet => (),
     }
     for byte in header.iter().chain(data).chain(trailer) {
@@ -352,6 +355,7 @@ fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<u
             Delimiter::Slip => line.slip(*byte),
             Delimiter::Hdlc => line.hdlc(*byte),
             Delimiter::Cobs => line.cobs(*byte),
+            Delimiter::Escape(escaping) => line.escape(*byte, escaping),
             Delimiter::Length | Delimiter::Packet => line.byte(*byte),
         }
     }
@@ -359,6 +363,10 @@ fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<u
         Delimiter::Slip => line.byte(SLIP_END),
         Delimiter::Hdlc => line.byte(HDLC_FLAG),
         Delimiter::Cobs => line.end(),
+        Delimiter::Escape(escaping) => {
+            line.byte(escaping.escape);
+            line.byte(escaping.end);
+        }
         Delimiter::Length | Delimiter::Packet => (),
     }
     let expected = line.count;
@@ -404,6 +412,20 @@ impl Line<'_> {
             self.byte(byte ^ HDLC_FLIP);
         } else {
             self.byte(byte);
+        }
+    }
+
+    fn start(&mut self, escaping: Escaping) {
+        self.byte(escaping.escape);
+        if let Some(start) = escaping.start {
+            self.byte(start);
+        }
+    }
+
+    fn escape(&mut self, byte: u8, escaping: Escaping) {
+        self.byte(byte);
+        if byte == escaping.escape {
+            self.byte(escaping.data);
         }
     }
 

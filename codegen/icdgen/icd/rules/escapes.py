@@ -1,0 +1,111 @@
+"""Framing of `link` by escape characters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map
+from icdgen.icd.packets import id_shifts, value_of
+from icdgen.icd.pieces import bits_of
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.envelopes import (
+    DIRECTIONS,
+    FIXED,
+    Link,
+    LinkPacket,
+    ids_of,
+    links,
+)
+from icdgen.icd.rules.rule import rule
+from icdgen.wording import quote
+
+_KEYS = ("escape", "start", "end", "data", "other")  # only for `by: escape`
+
+
+@rule("ICD196")
+def escape_characters_fit(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        framing = link.section.get("framing")
+        if not isinstance(framing, Map):
+            continue
+        if link.framing != "escape":
+            for key in _KEYS:
+                if key in framing:
+                    text = f"`{key}` has no effect without `by: escape`"
+                    help = "remove it, or correct `by`"
+                    yield Fault.at_key(framing, key, text, help)
+        elif "start" not in framing:
+            if "other" in framing:
+                text = "`other` has no effect without `start`, because every other byte begins a packet"
+                yield Fault.at_key(framing, "other", text, "remove it, or add `start`")
+            yield from _first_bytes(ctx, link, framing)
+
+
+def _first_bytes(ctx: Context, link: Link, framing: Map) -> Iterator[Fault]:
+    """Yield the faults of packets whose first byte has another meaning after the escape
+    byte.
+    """
+    reserved = [framing.get(key) for key in ("escape", "end", "data")]
+    for packet in link.packets:
+        place = link.place(packet)
+        for direction, id, name in _contents(ctx, link, packet):
+            byte = _first_byte(link, packet, direction, id)
+            if byte is None:
+                text = f"without `start`, the first byte{packet.title or ' of packets'} must be an id or a constant"
+                help = "begin `header` with one of 8 bits, or add `start` to `framing`"
+                yield Fault.at(*place, text, help)
+                break
+            if byte in reserved:
+                text = f"without `start`, no packet can begin with 0x{byte:02X}, as that of {name} does"
+                help = "add `start` to `framing`, or correct its bytes, the id or the constant"
+                yield Fault.at(*place, text, help)
+                break
+
+
+def _contents(
+    ctx: Context, link: Link, packet: LinkPacket
+) -> Iterator[tuple[str, int, str]]:
+    """Yield direction, id and name of what a packet can contain."""
+    for direction in packet.packet.directions:
+        messages = ids_of(ctx, link.node, direction)
+        carried = [
+            (id, quote(message.name))
+            for id, message in messages
+            if packet.packet in link.declared.of(message.name, direction)
+        ]
+        # A packet without messages can have the id of any.
+        everything = [
+            (id, quote(message.name))
+            for each in DIRECTIONS
+            for id, message in ids_of(ctx, link.node, each)
+        ]
+        for id, name in carried or everything or [(0, "each message")]:
+            yield direction, id, name
+
+
+def _first_byte(link: Link, packet: LinkPacket, direction: str, id: int) -> int | None:
+    """Return the first byte of a packet; None if it is not only ids and constants."""
+    shifts = (shift for _, shift in id_shifts([row for _, row in packet.rows]))
+    order, byte, known = link.node.bit_order, 0, 0
+    for part, row in packet.rows:
+        if row["role"] == "id":
+            value = id >> next(shifts)
+        elif row["role"] in FIXED:
+            value = value_of(row, direction, _is_little(link, row))
+        else:
+            continue
+        places = bits_of(
+            row["at"], row["bits"], row.get("byte_order", link.node.byte_order), order
+        )
+        for bit, place in enumerate(places):
+            if part == "header" and place < 8:
+                shift = place if order == "lsb0" else 7 - place
+                byte |= (value >> bit & 1) << shift
+                known |= 1 << shift
+    return byte if known == 0xFF else None
+
+
+def _is_little(link: Link, row: Map) -> bool:
+    order: str = row.get("byte_order", link.node.byte_order)
+    return order == "little"
