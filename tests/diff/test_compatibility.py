@@ -202,7 +202,7 @@ protocol:
     [
         (("telemetry: 0x56", "telemetry: 0x57"), "no", "yes"),
         (("telecommand: 0x55", "telecommand: 0x54"), "yes", "no"),
-        (("width: 8, init: 0,", "width: 8, init: 1,"), "no", "no"),
+        (("width: 8, init: 0}", "width: 8, init: 1}"), "no", "no"),
         (("from: length", "from: id"), "no", "no"),
         (
             ("bits: 16, role: length", "bits: 16, role: length, byte_order: big"),
