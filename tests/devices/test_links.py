@@ -305,7 +305,7 @@ def links():
     return icd_of([LINKS])
 
 
-@pytest.fixture(scope="module", params=["python", "c", "rust"])
+@pytest.fixture(scope="module", params=["python", "c", "rust-debug"])
 def testee(request, links, tmp_path_factory) -> Iterator[Testee]:
     one = Testee(
         build(all_languages()[request.param], links, tmp_path_factory.mktemp("links"))
