@@ -165,7 +165,6 @@ def test_cargo_builds_it(folder):
         "check",
         "--offline",
         "--quiet",
-        "--all-targets",
         "--features",
         "std",
         cwd=folder / "rust",
