@@ -10,7 +10,7 @@ enums:
     members: [{value: 0, name: None}, {value: 1, name: Unknown}, {value: 2, name: Length}, {value: 3, name: Value}]
 protocol:
   errors: {enum: Refusal of the line, none: 0, unknown_id: 1, length: 2, parameter: 3}
-  client: {reply_timeout_ms: 100, retries: 2}
+  link: {client: {reply_timeout_ms: 100, retries: 2}}
   uart:
     baud_rate: 115200
     data_bits: 8
