@@ -1645,11 +1645,13 @@ static inline void icdgen_stream_unescape(
             icdgen_stream_escaped(decoder, bytes[at], listener);
             at++;
         } else {
-            const uint8_t *const found = ICDGEN_CAST(const uint8_t *, memchr(bytes + at, escape, count - at));
-            const size_t end = found != NULL ? ICDGEN_SIZE(found - bytes) : count;
+            size_t end = at;
+            while (end < count && bytes[end] != escape) {
+                end++;
+            }
             icdgen_stream_plain(decoder, bytes + at, end - at);
             at = end;
-            if (found != NULL) {
+            if (end < count) {
                 decoder->escaped = true;
                 decoder->pending++;
                 at++;

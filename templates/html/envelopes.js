@@ -383,7 +383,7 @@ const icdgenEnvelopes = ((frames) => {
   /** Whether bytes begin as packets of a direction do: with the delimiter, or with the constants of the header. */
   function begins(form, direction, bytes) {
     if (isDelimitedAhead(form) && !opening(form).every((byte, at) => bytes[at] === byte)) return false;
-    if (form.escaping) return bytes.length > 1 && isStart(form.escaping, bytes[1]);
+    if (form.escaping) return bytes.length === 1 || isStart(form.escaping, bytes[1]);
     if (isDelimitedAhead(form)) return true;
     return bytes.length > 0 && packetsOf(form, direction).some((packet) => syncBits(packet) >= BITS_OF_SYNC && bitsOfConstants(packet, bytes) > 0);
   }

@@ -16,7 +16,7 @@ from tests.c import harness
 PARTS = {
     "message_id": [],
     "errors": ["errors"],
-    "client": [],
+    "link": [],
     "identification": ["identification"],
     "statistics": [],
     "statistics_reset": [],

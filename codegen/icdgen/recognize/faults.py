@@ -82,7 +82,7 @@ def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
     """Return whether bytes begin with the delimiter or the constants of a direction."""
     if form.escaping and form.escaping.start is None:
         has_escape = data[:1] == bytes((form.escaping.escape,))
-        return has_escape and len(data) > 1 and form.escaping.begins(data[1])
+        return has_escape and all(map(form.escaping.begins, data[1:2]))
     if form.delimited_by in _DELIMITED_AHEAD:
         return data.startswith(_opening(form))
     return any(
