@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from icdgen.icd.loaded import Loaded
 from icdgen.loading import load
+from icdgen.protocol import facts
 
 FINE = sorted(Path(__file__).with_name("fine").glob("*.yaml"))
 
@@ -50,3 +52,54 @@ def test_a_file_for_other_files_to_include_can_be_checked_alone(tmp_path):
     shared = tmp_path / "shared.yaml"
     shared.write_text(SHARED)
     assert load([shared]).findings == []
+
+
+BASE = """\
+icdgen: 1
+node: {name: base, title: Base, byte_order: big, bit_order: msb0}
+protocol:
+  link:
+    framing: {by: length}
+    header: [{bits: 8, role: length}, {bits: 8, role: id}]
+    trailer: [{bits: 8, role: checksum, checksum: parity, covers: {from: id, to: data}}]
+    checksums: {parity: {kind: xor, width: 8}}
+    client: {retries: 1}
+messages:
+  - {name: Ping, id: 1, kind: telecommand, length: 0}
+"""
+OWN = """\
+icdgen: 1
+include: [base.yaml]
+node: {name: device, title: Device, byte_order: big, bit_order: msb0}
+protocol:
+  link:
+"""
+ROM = "    checksums: {rom: {kind: sum, width: 16}}\n"
+SLIP = "    framing: {by: slip}\n    header: [{bits: 8, role: id}]\n"
+
+
+def device(folder: Path, link: str) -> Loaded:
+    (folder / "base.yaml").write_text(BASE)
+    (folder / "device.yaml").write_text(OWN + link)
+    return load([folder])
+
+
+def test_a_device_adds_a_checksum_to_those_of_the_link_that_it_includes(tmp_path):
+    loaded = device(tmp_path, ROM)
+    assert loaded.findings == []
+    (packet,) = facts.of(loaded.icd, loaded.icd.node("device")).stream.packets
+    assert packet.check.kind == "xor"
+
+
+def test_another_framing_has_nothing_of_the_link_that_it_replaces(tmp_path):
+    loaded = device(tmp_path, SLIP)
+    assert loaded.findings == []
+    found = facts.of(loaded.icd, loaded.icd.node("device"))
+    (packet,) = found.stream.packets
+    assert packet.header_bytes == 1 and packet.trailer_bytes == 0
+    assert found.client.retries == 1
+
+
+def test_responses_alone_do_not_change_the_link_of_an_included_file(tmp_path):
+    (finding,) = device(tmp_path, "    commands: {ack: none}\n").findings
+    assert "`commands` belongs to a framed link" in finding.message

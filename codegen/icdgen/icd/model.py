@@ -235,25 +235,48 @@ class Icd:
         }
 
 
-# Parts whose keys are overridden one by one.
-_BY_NAME = ("link", "procedures")
-
-
 def protocol_of_all(owners: Iterable[Node]) -> dict[str, Any]:
     """Return the protocol facts of a node.
 
-    ``owners``: the included nodes, then the node itself. The facts of a later one
-    override those of an earlier one: whole parts, or what has the same name in a part.
+    ``owners``: the included nodes, then the node itself; see `merged_protocols`.
+    """
+    return merged_protocols(owner.protocol for owner in owners)
+
+
+def merged_protocols(protocols: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return one protocol section for several.
+
+    A part of a later section replaces that of an earlier one. Procedures, checksums and
+    the parts of a link are parts of their own; but the packets and responses of a link
+    belong to its framing, which is replaced with them.
     """
     merged: dict[str, Any] = {}
-    for owner in owners:
-        named = {
-            key: {**merged[key], **owner.protocol[key]}
-            for key in _BY_NAME
-            if key in merged and key in owner.protocol
+    for protocol in protocols:
+        both = {
+            key: merge(merged[key], protocol[key])
+            for key, merge in (("link", _merged_links), ("procedures", _by_name))
+            if key in merged and key in protocol
         }
-        merged |= owner.protocol | named
+        merged |= {**protocol, **both}
     return merged
+
+
+def _merged_links(earlier: Any, later: Any) -> Any:
+    if not isinstance(earlier, dict) or not isinstance(later, dict):
+        return later
+    if "framing" in later:
+        earlier = {
+            key: earlier[key] for key in ("client", "checksums") if key in earlier
+        }
+    link = {**earlier, **later}
+    if "checksums" in earlier and "checksums" in later:
+        link["checksums"] = _by_name(earlier["checksums"], later["checksums"])
+    return link
+
+
+def _by_name(earlier: Any, later: Any) -> Any:
+    is_mapping = isinstance(earlier, dict) and isinstance(later, dict)
+    return {**earlier, **later} if is_mapping else later
 
 
 def framed_link(protocol: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,14 @@ from icdgen.icd import source
 from icdgen.icd.fmt import emit, read, scalars
 from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Icd, Node
+from icdgen.icd.model import (
+    KEYS_OF_IDS,
+    TELECOMMAND,
+    TELEMETRY,
+    Icd,
+    Node,
+    merged_protocols,
+)
 from icdgen.icd.packets import ID_ROLE, declared_packets
 from icdgen.icd.rules.protocol_names import MESSAGES
 
@@ -65,12 +72,10 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
     """
     scope = (*icd.included(node), node)
     spelled = _SpelledTrees(texts)
-    sections: dict[str, Any] = {}
-    for owner in scope:
-        sections.update(owner.source.get("protocol") or {})
-    protocol = {
-        key: spelled.plain(sections[key]) for key in _SECTIONS if key in sections
-    }
+    sections = merged_protocols(
+        spelled.plain(owner.source.get("protocol") or {}) for owner in scope
+    )
+    protocol = {key: sections[key] for key in _SECTIONS if key in sections}
     if not protocol:
         raise UserError(
             f"{node.name} does not say how its messages travel",

@@ -176,14 +176,14 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at_key(client, key, message, "remove it")
     for node in ctx.icd.nodes:
         section = section_of(node, "link") or unread()
-        if framed_link(ctx.protocol_of(node)):
-            continue
-        for key in section:
-            if key not in ALLOWED_WITHOUT_FRAMING:
-                message = f"`{key}` belongs to a framed link, and `framing` is missing"
-                help = "add `framing: {by: ...}`, how bytes become packets"
-                yield Fault.at_key(section, key, message, help)
-                break
+        allowed = set(ALLOWED_WITHOUT_FRAMING)
+        if framed_link(ctx.protocol_of(node)):  # of an included file
+            allowed.add("checksums")
+        key = next((key for key in section if key not in allowed), None)
+        if key is not None and "framing" not in section:
+            message = f"`{key}` belongs to a framed link, and `framing` is missing"
+            help = "add `framing: {by: ...}`, how bytes become packets"
+            yield Fault.at_key(section, key, message, help)
 
 
 @rule("ICD171")
