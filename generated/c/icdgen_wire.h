@@ -311,13 +311,13 @@ typedef struct {
 
 /* ---- framing of a link: header and trailer fields with roles ----------------------------------------------------- */
 
-/** How messages are delimited. ICD_DELIMITED_BY_PACKET: by the packets of the transport. */
+/** How messages are delimited. ICD_DELIMITED_BY_DATAGRAM: each datagram is one. */
 typedef enum {
     ICD_DELIMITED_BY_LENGTH = 0,
     ICD_DELIMITED_BY_SLIP = 1,
     ICD_DELIMITED_BY_COBS = 2,
     ICD_DELIMITED_BY_HDLC = 3,
-    ICD_DELIMITED_BY_PACKET = 4,
+    ICD_DELIMITED_BY_DATAGRAM = 4,
     ICD_DELIMITED_BY_ESCAPE = 5
 } icd_delimiter_t;
 

@@ -40,7 +40,7 @@ fuzz_target!(|input: &[u8]| {
     let around = form.packets.iter().map(|packet| packet.header_bytes + packet.trailer_bytes).max();
     let limit = link.longest.saturating_sub(usize::from(*room)).max(around.unwrap_or(0));
     let whole = heard(link, direction, stream, stream.len(), limit);
-    if form.delimited_by != icd::wire::link::Delimiter::Packet {
+    if form.delimited_by != icd::wire::link::Delimiter::Datagram {
         assert_eq!(whole, heard(link, direction, stream, usize::from(*size), limit));
         assert_eq!(whole, heard(link, direction, stream, 1, limit));
     }

@@ -102,12 +102,12 @@ def _opening(form: Stream) -> bytes:
 
 
 def _closing_text(form: Stream) -> str:
-    """Return the delimiter that ends packets; empty without one."""
+    """Return what is said of the missing end of a packet; empty without a delimiter."""
     if form.escaping:
         ending = bytes((form.escaping.escape, form.escaping.end)).hex(" ").upper()
-        return f"bytes {ending} that end"
+        return f"the bytes {ending} that end it are missing"
     end = _ENDS.get(form.delimited_by)
-    return f"byte {end} that ends" if end else ""
+    return f"the byte {end} that ends it is missing" if end else ""
 
 
 def sync_text(stream: Stream, form: PacketForm, direction: Direction) -> str:
@@ -233,10 +233,8 @@ def _fault_in(
         expected = (
             f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
         )
-        ending = _closing_text(stream)
-        if needed is None and count >= form.header_bytes and ending:
-            is_are = "are" if stream.escaping else "is"
-            expected = f"the {ending} it {is_are} missing"
+        if needed is None and count >= form.header_bytes:
+            expected = _closing_text(stream) or expected
         text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
         help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
         return Fault(

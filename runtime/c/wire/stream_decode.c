@@ -560,7 +560,7 @@ ICDGEN_API void icd_stream_feed(
 {
     const icd_delimiter_t delimiter = decoder->form->delimited_by;
     const icdgen_listener_t listener = {on_event, context};
-    if (delimiter == ICD_DELIMITED_BY_PACKET) {
+    if (delimiter == ICD_DELIMITED_BY_DATAGRAM) {
         if (count > decoder->capacity) {
             icdgen_stream_tell(&listener, ICD_STREAM_OVERRUN);
             decoder->discarded += count;

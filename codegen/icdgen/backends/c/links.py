@@ -27,7 +27,6 @@ from icdgen.describe.links import (
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.envelope import (
     CRC,
-    DATAGRAM,
     DIRECTIONS,
     NOTHING,
     Escaping,
@@ -340,14 +339,13 @@ class _Tables(TableSet):
             escaping = self.add(
                 "escaping", "icd_escaping_t", [Row(_escaping(form.escaping))]
             )
-        delimiter = "packet" if form.delimited_by == DATAGRAM else form.delimited_by
         around = (
             max((packet.overhead for packet in form.packets_of(each)), default=-1)
             for each in DIRECTIONS
         )
         parts = [
             Row(
-                f"ICD_DELIMITED_BY_{delimiter.upper()}, {boolean(form.per_id)}",
+                f"ICD_DELIMITED_BY_{form.delimited_by.upper()}, {boolean(form.per_id)}",
                 "a sequence for each id",
             ),
             Row(

@@ -187,8 +187,8 @@ def _milliseconds(timeout: int | None) -> str:
 
 
 def _commands(relations: Relations, node: Node) -> Mapping[str, Any]:
-    stream: Mapping[str, Any] = relations.icd.protocol_of(node).get("link", {})
-    commands: Mapping[str, Any] = stream.get("commands", {})
+    link: Mapping[str, Any] = relations.icd.protocol_of(node).get("link", {})
+    commands: Mapping[str, Any] = link.get("commands", {})
     return commands
 
 

@@ -210,7 +210,7 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
         parts = envelopes.packet(form, wire.link, id, direction, data)
         sent = stream_encode(wire.link, id, data, direction)
         lines += _packet_lines(direction.capitalize(), parts, sent)
-    return Bus("Envelope", f"A message ends {envelopes.end_of(form)}.", lines)
+    return Bus("Packet", f"A packet ends {envelopes.end_of(form)}.", lines)
 
 
 def _packet_lines(

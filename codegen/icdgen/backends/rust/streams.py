@@ -33,7 +33,6 @@ from icdgen.protocol.envelope import (
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 
-_DELIMITERS = {"datagram": "Packet"}
 _CONTENTS = {NOTHING: "Nothing"}
 
 
@@ -55,8 +54,7 @@ def stream_of(form: Stream) -> Brackets:
 
 
 def _delimiter(form: Stream) -> Expression:
-    name = _DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)
-    delimiter = f"link::Delimiter::{name}"
+    delimiter = f"link::Delimiter::{variant(form.delimited_by)}"
     escaping = form.escaping
     if escaping is None:
         return delimiter

@@ -18,19 +18,15 @@ def convert(root: Branch) -> bool:
     protocol = _entry(root, "protocol")
     if protocol is None or not isinstance(protocol.value, Branch):
         return False
-    link = _entry(protocol.value, "stream")
     moved = {"client": "client"}
-    if link:
+    if link := _entry(protocol.value, "stream"):
         link.key = _text("link")
         moved |= {"checksums": "checksums", "uart": "line"}
     elif not _entry(protocol.value, "client"):
         return False
-    else:
-        link = _entry(protocol.value, "link") or Child(
-            _text("link"), Branch(True, False, 0)
-        )
-        if link not in protocol.value.children:
-            protocol.value.children.append(link)
+    elif not (link := _entry(protocol.value, "link")):
+        link = Child(_text("link"), Branch(True, False, 0))
+        protocol.value.children.append(link)
     if not isinstance(link.value, Branch):
         return False
     for key, present_key in moved.items():
@@ -51,24 +47,19 @@ def convert(root: Branch) -> bool:
 def _move_covers(link: Branch) -> None:
     """Move what each checksum covers to the fields that have none of their own."""
     checksums = _entry(link, "checksums")
-    covers = {}
+    declared = {}
     for checksum in _entries(checksums.value) if checksums else ():
-        of_it = _entry(checksum.value, "covers")
-        if of_it and isinstance(checksum.value, Branch):
-            checksum.value.children.remove(of_it)
-            covers[name(checksum.key)] = of_it
+        covers = _entry(checksum.value, "covers")
+        if covers:
+            _entries(checksum.value).remove(covers)
+            declared[name(checksum.key)] = covers
     for field in _branches(link):
-        checksum_name = _entry(field, "checksum")
-        if (
-            checksum_name
-            and isinstance(checksum_name.value, Text)
-            and not _entry(field, "covers")
-            and checksum_name.value.spelling in covers
-        ):
-            # The first field gets the comments.
-            of_it = covers[checksum_name.value.spelling]
-            field.children.append(copy.deepcopy(of_it))
-            of_it.before, of_it.trailing = [], []
+        named = _entry(field, "checksum")
+        if not named or not isinstance(named.value, Text) or _entry(field, "covers"):
+            continue
+        if covers := declared.get(named.value.spelling):
+            field.children.append(copy.deepcopy(covers))
+            covers.before, covers.trailing = [], []  # only the first gets the comments
 
 
 def _text(word: str) -> Text:

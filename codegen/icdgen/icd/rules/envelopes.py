@@ -241,11 +241,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
                 message = "the length that delimits messages is after their data"
                 yield Fault.at(row, "role", message, "move it to `header`")
         carried = {
-            direction: [
-                (id, message)
-                for id, message in ids_of(ctx, link.node, direction)
-                if packet.packet in link.declared.of(message.name, direction)
-            ]
+            direction: carried_in(ctx, link, packet.packet, direction)
             for direction in packet.packet.directions
         }
         for direction, messages in carried.items():
@@ -285,6 +281,17 @@ def ids_of(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]
         for message in ctx.messages_of(node)
     ]
     return [(id, message) for id, message in messages if id is not None]
+
+
+def carried_in(
+    ctx: Context, link: Link, packet: Packet, direction: str
+) -> list[tuple[int, Message]]:
+    """Return the messages that are sent in a packet, with their ids."""
+    return [
+        (id, message)
+        for id, message in ids_of(ctx, link.node, direction)
+        if packet in link.declared.of(message.name, direction)
+    ]
 
 
 @rule("ICD172")
@@ -346,10 +353,9 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     """
     for packet in link.packets:
         messages = [
-            (id, message)
+            carried
             for direction in packet.packet.directions
-            for id, message in ids_of(ctx, link.node, direction)
-            if packet.packet in link.declared.of(message.name, direction)
+            for carried in carried_in(ctx, link, packet.packet, direction)
         ]
         parts = packet.of("id")
         bits = sum(row["bits"] for row in parts)

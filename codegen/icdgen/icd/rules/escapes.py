@@ -14,6 +14,7 @@ from icdgen.icd.rules.envelopes import (
     FIXED,
     Link,
     LinkPacket,
+    carried_in,
     ids_of,
     links,
 )
@@ -68,11 +69,9 @@ def _contents(
 ) -> Iterator[tuple[str, int, str]]:
     """Yield direction, id and name of what a packet can contain."""
     for direction in packet.packet.directions:
-        messages = ids_of(ctx, link.node, direction)
         carried = [
             (id, quote(message.name))
-            for id, message in messages
-            if packet.packet in link.declared.of(message.name, direction)
+            for id, message in carried_in(ctx, link, packet.packet, direction)
         ]
         # A packet without messages can have the id of any.
         everything = [

@@ -17,6 +17,7 @@ from icdgen.icd.rules.envelopes import (
     FIXED,
     Link,
     LinkPacket,
+    carried_in,
     has_one_length,
     ids_of,
     links,
@@ -223,11 +224,7 @@ def _nameless(
         if isinstance(row.get("message"), str)
     }
     where = f"is sent in the packet {quote(packet.name)}, which does not say what it carries"
-    carried = [
-        message
-        for _, message in ids_of(ctx, link.node, TELEMETRY)
-        if packet in link.declared.of(message.name, TELEMETRY)
-    ]
+    carried = [message for _, message in carried_in(ctx, link, packet, TELEMETRY)]
     for message in carried:
         if message.name in responding:
             telecommand = quote(responding[message.name].name)
@@ -269,8 +266,7 @@ def _units(ctx: Context, link: Link, packet: LinkPacket, row: Map) -> Iterator[F
     messages = [
         message
         for direction in packet.packet.directions
-        for _, message in ids_of(ctx, link.node, direction)
-        if packet.packet in link.declared.of(message.name, direction)
+        for _, message in carried_in(ctx, link, packet.packet, direction)
     ]
     is_of_response = row["role"] == "response_length"
     if is_of_response:

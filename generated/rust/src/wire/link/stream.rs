@@ -18,8 +18,8 @@ pub enum Delimiter {
     Hdlc,
     /// Escape characters.
     Escape(Escaping),
-    /// The packets of the transport.
-    Packet,
+    /// Each datagram is a message.
+    Datagram,
 }
 
 /// The escape byte that delimits packets, and the bytes that follow it.

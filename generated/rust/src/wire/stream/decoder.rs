@@ -114,7 +114,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     /// Pass received bytes: a piece of the stream of any size, or one packet.
     pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
         let end = match self.form.delimited_by {
-            Delimiter::Packet => return self.packet(bytes, &mut on_event),
+            Delimiter::Datagram => return self.packet(bytes, &mut on_event),
             Delimiter::Length => return self.append(bytes, &mut on_event),
             Delimiter::Slip => SLIP_END,
             Delimiter::Hdlc => HDLC_FLAG,

@@ -348,7 +348,7 @@ fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<u
         Delimiter::Hdlc => line.byte(HDLC_FLAG),
         Delimiter::Cobs => line.byte(0),
         Delimiter::Escape(escaping) => line.start(escaping),
-        Delimiter::Length | Delimiter::Packet => (),
+        Delimiter::Length | Delimiter::Datagram => (),
     }
     for byte in header.iter().chain(data).chain(trailer) {
         match delimited_by {
@@ -356,7 +356,7 @@ fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<u
             Delimiter::Hdlc => line.hdlc(*byte),
             Delimiter::Cobs => line.cobs(*byte),
             Delimiter::Escape(escaping) => line.escape(*byte, escaping),
-            Delimiter::Length | Delimiter::Packet => line.byte(*byte),
+            Delimiter::Length | Delimiter::Datagram => line.byte(*byte),
         }
     }
     match delimited_by {
@@ -367,7 +367,7 @@ fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<u
             line.byte(escaping.escape);
             line.byte(escaping.end);
         }
-        Delimiter::Length | Delimiter::Packet => (),
+        Delimiter::Length | Delimiter::Datagram => (),
     }
     let expected = line.count;
     if expected > actual {
