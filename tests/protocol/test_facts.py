@@ -129,3 +129,37 @@ def test_times_are_milliseconds_and_constants_are_those_of_the_steps(icd, known)
     )
     assert burst.puts[0].value == Value(20, False)
     assert known.boot_ms == 5000
+
+
+def test_a_response_on_each_bus_repeats_the_id_of_its_telecommand(known):
+    """The places are those of Table 40 and of the acknowledges in section 5."""
+    data = {
+        "uart": bytes([17, 0]),
+        "i2c": bytes([17, 1, 0, 0]),  # of the telemetry that is polled
+        "can": bytes([17]),
+    }
+    for bus, exchanges in known.bus_exchanges.items():
+        assert exchanges.command
+        for response in exchanges.command.responses:
+            (echo,) = response.echoes
+            assert data[bus][echo.place.at] == 17
+    assert known.bus_exchanges.keys() == data.keys()
+
+
+def test_a_wrong_checksum_is_the_only_refusal_after_which_a_telecommand_is_sent_again(
+    known,
+):
+    for bus in ("uart", "i2c"):
+        command = known.bus_exchanges[bus].command
+        assert command
+        (response,) = command.responses
+        assert (response.verdict, dict(response.meanings)) == (
+            "nak",
+            {known.errors["none"]: "ack", known.errors["checksum"]: "again"},
+        )
+
+
+def test_only_i2c_polls_for_the_response(known):
+    polls = {bus: each.command.poll for bus, each in known.bus_exchanges.items()}
+    assert (polls["uart"], polls["can"]) == (None, None)
+    assert polls["i2c"].telemetry == known.polled.message.telemetry_id

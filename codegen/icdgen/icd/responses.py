@@ -23,6 +23,11 @@ ACK, REPLY, NAK, BUSY, PROGRESS = KINDS = ("ack", "reply", "nak", "busy", "progr
 telemetry; it was refused; the device is busy; it is still being executed.
 """
 
+AGAIN = "again"
+"""Statement of a response on UART and I2C: the telecommand was damaged on the line, and
+may be sent again at once.
+"""
+
 NEEDED = (ACK, REPLY)  # a telecommand is done when each of these has arrived
 NONE = "none"  # a response that a telecommand does not have
 STATUS_SETS = {"success": "", "busy": BUSY, "progress": PROGRESS}

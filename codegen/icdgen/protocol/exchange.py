@@ -1,4 +1,4 @@
-"""Exchanges on a framed link: the telemetry that responds to a telecommand, and what
+"""Exchanges on a link: the telemetry that responds to a telecommand, and what
 each response means.
 
 All languages match responses by numbers in fixed bytes, so that a client need not
@@ -44,7 +44,7 @@ class Response:
 
     telemetry: int | None  # id; None: the requested telemetry, or a packet
     # Meaning; with `status`, the meaning of a status that `meanings` does not list
-    verdict: str  # one of `icdgen.icd.responses.KINDS`
+    verdict: str  # one of `icdgen.icd.responses.KINDS`, or `AGAIN`
     echoes: tuple[Echo, ...]  # all must be equal to the telecommand
     status: NumberPlace | None
     meanings: tuple[tuple[int, str], ...]  # verdict of each listed status
@@ -54,11 +54,22 @@ class Response:
     # header; None: telemetry
     packet: int | None = None
     enum: Enum | None = None  # of the reason
+    detail: NumberPlace | None = None  # number that says more about a refusal
 
     @property
     def is_reply(self) -> bool:
         """Whether it can be the telemetry that the telecommand requests."""
         return REPLY in (self.verdict, *(verdict for _, verdict in self.meanings))
+
+
+@dataclass(frozen=True, slots=True)
+class Poll:
+    """Telemetry that a client requests again and again until it is the response to a
+    telecommand: until it has the right echo, and the number ``until`` is not 0.
+    """
+
+    telemetry: int  # id
+    until: NumberPlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +85,7 @@ class Exchange:
     responses: tuple[Response, ...]
     timeout: int  # time-out in milliseconds; 0: that of the client
     in_header: int = 0
+    poll: Poll | None = None  # None: the response comes by itself
 
     def is_in_header(self, source: int) -> bool:
         """Return whether a source is a place in the header."""

@@ -12,6 +12,7 @@ from typing import TypeVar
 from icdgen.frozen import dataclass
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
+from icdgen.protocol.bus_exchanges import BusExchanges, bus_exchanges
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.reading import Assumption, Reader
@@ -71,6 +72,8 @@ class Facts:
     procedures: tuple[Procedure, ...]
     # UART: telemetry that the node sends unasked, by the id that heads it
     unsolicited: dict[int, int]
+    # Responses by bus: uart, i2c, can
+    bus_exchanges: dict[str, BusExchanges]
     assumptions: tuple[Assumption, ...]
 
     @property
@@ -158,6 +161,13 @@ def of(icd: Icd, node: Node) -> Facts:
     """Return the protocol facts of a node."""
     reader = Reader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
+    framing, acknowledge = reader.part("uart.framing", Framing), reader.acknowledge()
+    i2c_address, polled, can = reader.i2c_address(), reader.polled(), reader.can()
+    errors = {
+        key: code
+        for key, code in reader.section("errors").items()
+        if isinstance(code, int)
+    }
     return Facts(
         node=node,
         little=node.byte_order == "little",
@@ -165,17 +175,13 @@ def of(icd: Icd, node: Node) -> Facts:
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
         client=reader.part("link.client", Settings) or Settings(),
-        framing=reader.part("uart.framing", Framing),
-        acknowledge=reader.acknowledge(),
-        polled=reader.polled(),
-        i2c_address=reader.i2c_address(),
+        framing=framing,
+        acknowledge=acknowledge,
+        polled=polled,
+        i2c_address=i2c_address,
         i2c_repeated_start=reader.i2c_repeated_start(),
-        can=reader.can(),
-        errors={
-            key: code
-            for key, code in reader.section("errors").items()
-            if isinstance(code, int)
-        },
+        can=can,
+        errors=errors,
         checksum=reader.checksum(),
         crc16=reader.part("crc16", Crc),
         mask=reader.mask(),
@@ -189,5 +195,8 @@ def of(icd: Icd, node: Node) -> Facts:
         stream=reader.stream(),
         procedures=tuple(reader.procedures()),
         unsolicited=reader.unsolicited(),
+        bus_exchanges=bus_exchanges(
+            node, errors, framing, acknowledge, i2c_address, polled, can
+        ),
         assumptions=tuple(reader.assumptions()),
     )
