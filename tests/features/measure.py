@@ -28,10 +28,8 @@ from tests.features.outputs import (
 )
 from tests.mutation.mutants import mutants, unchanged
 
-AT_ONCE, DRAWS = (
-    15,
-    60,
-)  # random ICDs: in so many a feature must turn up; most do in the first
+# Random ICDs: in so many a feature must turn up; most do in the first.
+AT_ONCE, DRAWS = 5, 180
 BUILT = (
     "c",
     "python",

@@ -48,7 +48,7 @@ from tests.features.link import LINK, envelope
 from tests.python import packages
 from tests.xtce import readback
 
-FRAMES = 30  # of the vectors of each message
+FRAMES = 10  # of the vectors of each message
 WORDS = 8  # of them
 _names = (f"features_{number}" for number in count())
 
@@ -111,6 +111,11 @@ class Subject:
         """Whether that link has."""
         icd, name = self.linked
         return facts.of(icd, icd.node(name)).stream is not None
+
+    @cached_property
+    def recordings(self) -> tuple[object, object]:
+        """What is made of a recording as CSV, and as Parquet."""
+        return _recordings(self)
 
     def _with_log(self, tree: dict[str, Any]) -> tuple[Icd, str]:
         """With a line and a log; what does not fit these is not in the log.
@@ -335,7 +340,7 @@ def _answers(program: Program, now: int) -> list[bytes | None]:
     return [program.frame(now, id) for id in program.facts.telemetry]
 
 
-def _log(subject: Subject) -> tuple[object, object]:
+def _recordings(subject: Subject) -> tuple[object, object]:
     """As CSV and as Parquet; of envelopes what is made of the bytes that the example
     sends.
     """
@@ -460,9 +465,9 @@ SAYS: dict[str, Callable[[Subject], object]] = {
     "encode": _encode,
     "site": generated("html"),
     "simulator": _simulator,
-    "log": lambda subject: _log(subject)[0],
+    "log": lambda subject: subject.recordings[0],
     "numpy": _columns,
-    "arrow": lambda subject: _log(subject)[1],
+    "arrow": lambda subject: subject.recordings[1],
     "xtce": _xtce,
 }
 LINKED = ("simulator", "log", "arrow")  # of the ICD with a line and a log
