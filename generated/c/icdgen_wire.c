@@ -166,29 +166,30 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     const icd_crc_form_t *const form = crc->form;
     const bool reflect = form->reflect_in;
     const uint32_t polynomial = icdgen_crc_aligned(form, form->polynomial);
+    uint32_t value = crc->value;
+    size_t i = 0;
 #ifndef ICDGEN_NO_TABLES
     const uint32_t shift = reflect ? 0u : 32u - form->width;
-#endif
-    uint32_t value = crc->value;
-    for (size_t i = 0; i < length; ++i) {
+    /* One loop for each way of looking up: most of the time of a decoder is spent here. */
+    for (; form->table16 != NULL && reflect && i < length; ++i) {
+        value = (value >> 8) ^ form->table16[(value ^ bytes[i]) & 0xFFu];
+    }
+    for (; form->table16 != NULL && i < length; ++i) {
+        value = (value << 8) ^ (ICDGEN_U32(form->table16[(value >> 24) ^ bytes[i]]) << shift);
+    }
+    for (; form->table8 != NULL && i < length; ++i) {
         const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
-        value = reflect ? value >> 8 : value << 8;
-#ifndef ICDGEN_NO_TABLES
-        if (form->table16 != NULL) {
-            value ^= ICDGEN_U32(form->table16[row]) << shift;
-            continue;
-        }
-        if (form->table8 != NULL) {
-            value ^= ICDGEN_U32(form->table8[row]) << shift;
-            continue;
-        }
+        value = (reflect ? value >> 8 : value << 8) ^ (ICDGEN_U32(form->table8[row]) << shift);
+    }
 #endif
+    for (; i < length; ++i) {
+        const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
         uint32_t entry = reflect ? row : row << 24;
         for (unsigned bit = 0; bit < 8u; ++bit) {
             const bool out = (reflect ? entry & 1u : entry >> 31) != 0u;
             entry = (reflect ? entry >> 1 : entry << 1) ^ (out ? polynomial : 0u);
         }
-        value ^= entry;
+        value = (reflect ? value >> 8 : value << 8) ^ entry;
     }
     crc->value = value;
     crc->fed = crc->fed || length != 0u;
@@ -1429,11 +1430,10 @@ static inline size_t icdgen_stream_skip(icd_stream_decoder_t *decoder)
     return 1;
 }
 
-/* Check the buffer from `at` on. Return the number of bytes to advance; 0 if more bytes are needed. */
-static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
+/* Check the next `left` bytes. Return the number of bytes to advance; 0 if `decoder->needed` bytes are needed. */
+static inline size_t icdgen_stream_front(
+    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t left, const icdgen_listener_t *listener)
 {
-    const size_t left = decoder->length - at;
-    const uint8_t *const frame = decoder->buffer + at;
     const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, left, false);
     if (packet == NULL) {
         return icdgen_stream_skip(decoder);
@@ -1472,29 +1472,38 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     return taken;
 }
 
+/* Check bytes from the first one on. Return the number of decided ones; the others may become part of a message. */
+static inline size_t icdgen_stream_decide(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
+{
+    size_t decided = 0;
+    size_t over;
+    do {
+        decoder->needed = 0;
+        over = icdgen_stream_front(decoder, bytes + decided, count - decided, listener);
+        decided += over;
+    } while (over != 0u);
+    return decided;
+}
+
 /* Process bytes of a stream without delimiters. There is always room: a full buffer can always be decided. */
 static inline void icdgen_stream_append(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
     size_t taken = 0;
     while (taken < count) {
-        const size_t wanted = decoder->needed > decoder->length ? decoder->needed - decoder->length : 1u;
-        const size_t piece = wanted < (count - taken) ? wanted : (count - taken);
-        (void)memcpy(decoder->buffer + decoder->length, bytes + taken, piece);
-        decoder->length += piece;
-        taken += piece;
+        if (decoder->length == 0u) { /* whole messages need not be copied */
+            taken += icdgen_stream_decide(decoder, bytes + taken, count - taken, listener);
+        }
+        while (taken < count && decoder->length < decoder->needed) {
+            decoder->buffer[decoder->length] = bytes[taken];
+            decoder->length++;
+            taken++;
+        }
         if (decoder->length >= decoder->needed) {
-            size_t at = 0;
-            size_t over;
-            do {
-                decoder->needed = 0;
-                over = icdgen_stream_front(decoder, at, listener);
-                at += over;
-            } while (over != 0u);
-            if (at != 0u) {
-                decoder->length -= at;
-                (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
-            }
+            const size_t decided = icdgen_stream_decide(decoder, decoder->buffer, decoder->length, listener);
+            decoder->length -= decided;
+            (void)memmove(decoder->buffer, decoder->buffer + decided, decoder->length);
         }
         decoder->pending = decoder->length;
     }

@@ -34,29 +34,30 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     const icd_crc_form_t *const form = crc->form;
     const bool reflect = form->reflect_in;
     const uint32_t polynomial = icdgen_crc_aligned(form, form->polynomial);
+    uint32_t value = crc->value;
+    size_t i = 0;
 #ifndef ICDGEN_NO_TABLES
     const uint32_t shift = reflect ? 0u : 32u - form->width;
-#endif
-    uint32_t value = crc->value;
-    for (size_t i = 0; i < length; ++i) {
+    /* One loop for each way of looking up: most of the time of a decoder is spent here. */
+    for (; form->table16 != NULL && reflect && i < length; ++i) {
+        value = (value >> 8) ^ form->table16[(value ^ bytes[i]) & 0xFFu];
+    }
+    for (; form->table16 != NULL && i < length; ++i) {
+        value = (value << 8) ^ (ICDGEN_U32(form->table16[(value >> 24) ^ bytes[i]]) << shift);
+    }
+    for (; form->table8 != NULL && i < length; ++i) {
         const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
-        value = reflect ? value >> 8 : value << 8;
-#ifndef ICDGEN_NO_TABLES
-        if (form->table16 != NULL) {
-            value ^= ICDGEN_U32(form->table16[row]) << shift;
-            continue;
-        }
-        if (form->table8 != NULL) {
-            value ^= ICDGEN_U32(form->table8[row]) << shift;
-            continue;
-        }
+        value = (reflect ? value >> 8 : value << 8) ^ (ICDGEN_U32(form->table8[row]) << shift);
+    }
 #endif
+    for (; i < length; ++i) {
+        const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
         uint32_t entry = reflect ? row : row << 24;
         for (unsigned bit = 0; bit < 8u; ++bit) {
             const bool out = (reflect ? entry & 1u : entry >> 31) != 0u;
             entry = (reflect ? entry >> 1 : entry << 1) ^ (out ? polynomial : 0u);
         }
-        value ^= entry;
+        value = (reflect ? value >> 8 : value << 8) ^ entry;
     }
     crc->value = value;
     crc->fed = crc->fed || length != 0u;

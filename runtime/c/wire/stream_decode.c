@@ -324,11 +324,10 @@ static inline size_t icdgen_stream_skip(icd_stream_decoder_t *decoder)
     return 1;
 }
 
-/* Check the buffer from `at` on. Return the number of bytes to advance; 0 if more bytes are needed. */
-static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
+/* Check the next `left` bytes. Return the number of bytes to advance; 0 if `decoder->needed` bytes are needed. */
+static inline size_t icdgen_stream_front(
+    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t left, const icdgen_listener_t *listener)
 {
-    const size_t left = decoder->length - at;
-    const uint8_t *const frame = decoder->buffer + at;
     const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, left, false);
     if (packet == NULL) {
         return icdgen_stream_skip(decoder);
@@ -367,29 +366,38 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     return taken;
 }
 
+/* Check bytes from the first one on. Return the number of decided ones; the others may become part of a message. */
+static inline size_t icdgen_stream_decide(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
+{
+    size_t decided = 0;
+    size_t over;
+    do {
+        decoder->needed = 0;
+        over = icdgen_stream_front(decoder, bytes + decided, count - decided, listener);
+        decided += over;
+    } while (over != 0u);
+    return decided;
+}
+
 /* Process bytes of a stream without delimiters. There is always room: a full buffer can always be decided. */
 static inline void icdgen_stream_append(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
     size_t taken = 0;
     while (taken < count) {
-        const size_t wanted = decoder->needed > decoder->length ? decoder->needed - decoder->length : 1u;
-        const size_t piece = wanted < (count - taken) ? wanted : (count - taken);
-        (void)memcpy(decoder->buffer + decoder->length, bytes + taken, piece);
-        decoder->length += piece;
-        taken += piece;
+        if (decoder->length == 0u) { /* whole messages need not be copied */
+            taken += icdgen_stream_decide(decoder, bytes + taken, count - taken, listener);
+        }
+        while (taken < count && decoder->length < decoder->needed) {
+            decoder->buffer[decoder->length] = bytes[taken];
+            decoder->length++;
+            taken++;
+        }
         if (decoder->length >= decoder->needed) {
-            size_t at = 0;
-            size_t over;
-            do {
-                decoder->needed = 0;
-                over = icdgen_stream_front(decoder, at, listener);
-                at += over;
-            } while (over != 0u);
-            if (at != 0u) {
-                decoder->length -= at;
-                (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
-            }
+            const size_t decided = icdgen_stream_decide(decoder, decoder->buffer, decoder->length, listener);
+            decoder->length -= decided;
+            (void)memmove(decoder->buffer, decoder->buffer + decided, decoder->length);
         }
         decoder->pending = decoder->length;
     }
