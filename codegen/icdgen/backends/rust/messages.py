@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from icdgen.backends.rust import bits, elements
-from icdgen.backends.rust.names import field_name, reader
+from icdgen.backends.rust.names import ENUMS_MODULE, field_name, reader
 from icdgen.backends.rust.text import double, integer
 from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, MessageDescription
@@ -127,9 +127,11 @@ def fits(composite: Composite[Any]) -> list[str]:
     ]
 
 
-def uses_enums(composite: Composite[Any]) -> bool:
-    """Return whether a member has an enumeration of the same node."""
-    return any(enum.node is composite.node for enum in composite.enums)
+def uses_enums(body: str) -> bool:
+    """Return whether the body of a module uses the enumerations of its node: of a
+    member, or of an array in a struct whose elements it reads.
+    """
+    return ENUMS_MODULE in _USED.findall(body)
 
 
 def typed_constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
