@@ -53,22 +53,45 @@ pub struct Crc<'a> {
 /// assert_eq!(crc.result(), 0xf4);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Table([u32; 256]);
+pub struct Table(Rows);
+
+/// The registers after a byte, whose highest bits hold the CRC, for registers that were 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Rows {
+    /// A CRC of up to 16 bits: the registers after the byte, and after one more byte, which is 0.
+    /// Nothing of a register is left after two bytes, so that they are looked up at once.
+    Narrow([u16; 256], [u16; 256]),
+    Wide([u32; 256]),
+}
 
 impl Table {
     /// Compute the table of a CRC.
     #[must_use]
     pub const fn new(form: &CrcForm) -> Self {
+        let polynomial = form.aligned_polynomial();
         let mut rows = [0; 256];
+        let mut after_one = [0; 256];
+        let mut after_two = [0; 256];
         let mut row = 0;
         let mut first: u32 = 0;
         while row < 256 {
-            rows[row] = shifted(first, form.aligned_polynomial());
+            rows[row] = shifted(first, polynomial);
+            after_one[row] = upper_half(rows[row]);
+            after_two[row] = upper_half(shifted(rows[row], polynomial));
             row += 1;
             first = first.wrapping_add(1 << 24);
         }
-        Self(rows)
+        Self(if form.width <= 16 {
+            Rows::Narrow(after_one, after_two)
+        } else {
+            Rows::Wide(rows)
+        })
     }
+}
+
+const fn upper_half(register: u32) -> u16 {
+    let [first, second, ..] = register.to_be_bytes();
+    u16::from_be_bytes([first, second])
 }
 
 /// A register after eight bits.
@@ -108,26 +131,43 @@ impl<'a> Crc<'a> {
     /// Takes the next bytes.
     pub fn feed(&mut self, bytes: &[u8]) {
         self.fed = self.fed || !bytes.is_empty();
-        if self.form.reflect_in {
-            self.take(bytes.iter().map(|byte| byte.reverse_bits()));
+        self.register = if self.form.reflect_in {
+            self.after(bytes, u8::reverse_bits)
         } else {
-            self.take(bytes.iter().copied());
-        }
+            self.after(bytes, |byte| byte)
+        };
     }
 
-    fn take(&mut self, bytes: impl Iterator<Item = u8>) {
-        let register = self.register;
-        self.register = if let Some(Table(rows)) = self.table {
-            bytes.fold(register, |register, byte| {
+    /// Return the register after these bytes, whose bits `order` puts in order.
+    fn after(&self, bytes: &[u8], order: impl Fn(u8) -> u8) -> u32 {
+        match self.table {
+            Some(Table(Rows::Narrow(after_one, after_two))) => {
+                let [mut first, mut second, ..] = self.register.to_be_bytes();
+                let mut pairs = bytes.chunks_exact(2);
+                for pair in &mut pairs {
+                    if let [byte, next] = *pair {
+                        let one = after_one[usize::from(second ^ order(next))];
+                        let two = after_two[usize::from(first ^ order(byte))];
+                        [first, second] = (one ^ two).to_be_bytes();
+                    }
+                }
+                if let [byte] = *pairs.remainder() {
+                    let [left, right] = after_one[usize::from(first ^ order(byte))].to_be_bytes();
+                    [first, second] = [second ^ left, right];
+                }
+                u32::from_be_bytes([first, second, 0, 0])
+            }
+            Some(Table(Rows::Wide(rows))) => bytes.iter().fold(self.register, |register, byte| {
                 let [first, ..] = register.to_be_bytes();
-                (register << 8) ^ rows[usize::from(first ^ byte)]
-            })
-        } else {
-            let polynomial = self.form.aligned_polynomial();
-            bytes.fold(register, |register, byte| {
-                shifted(register ^ (u32::from(byte) << 24), polynomial)
-            })
-        };
+                (register << 8) ^ rows[usize::from(first ^ order(*byte))]
+            }),
+            None => {
+                let polynomial = self.form.aligned_polynomial();
+                bytes.iter().fold(self.register, |register, byte| {
+                    shifted(register ^ (u32::from(order(*byte)) << 24), polynomial)
+                })
+            }
+        }
     }
 
     /// Return the CRC of all bytes fed so far.

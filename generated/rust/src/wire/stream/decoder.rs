@@ -32,22 +32,28 @@ use crate::wire::{Direction, Error};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Decoder<const N: usize, const S: usize> {
-    form: &'static Stream,
-    direction: Direction,
+    search: Search<S>,
     header_bytes: usize, // of the shortest header
-    longest: usize,
-    limit: usize,
     buffer: [u8; N],
     length: usize,
-    needed: usize, // bytes in the buffer with which the next thing is decided, where a field tells the length
-    sequences: [Option<u32>; S],
     pending: u64,
-    discarded: u64,
     is_escaped: bool,
     is_inside: bool, // with escape characters: whether a packet has begun
     is_zero: bool,   // whether a zero follows the block of COBS
     left: u8,        // bytes that the block of COBS still has
     fault: Option<Event<'static>>,
+}
+
+/// Search for packets in received bytes, wherever these are.
+#[derive(Clone, Debug)]
+struct Search<const S: usize> {
+    form: &'static Stream,
+    direction: Direction,
+    longest: usize,
+    limit: usize,
+    needed: usize, // bytes with which the next thing is decided, where a field tells the length
+    sequences: [Option<u32>; S],
+    discarded: u64,
 }
 
 impl<const N: usize, const S: usize> Decoder<N, S> {
@@ -80,17 +86,19 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             return Err(Error::Length { expected, actual });
         }
         Ok(Self {
-            form,
-            direction,
+            search: Search {
+                form,
+                direction,
+                longest: link.longest,
+                limit: actual.min(link.longest),
+                needed: 0,
+                sequences: [None; S],
+                discarded: 0,
+            },
             header_bytes: packets.map(|packet| packet.header_bytes).min().unwrap_or(0),
-            longest: link.longest,
-            limit: actual.min(link.longest),
             buffer: [0; N],
             length: 0,
-            needed: 0,
-            sequences: [None; S],
             pending: 0,
-            discarded: 0,
             is_escaped: false,
             is_inside: false,
             is_zero: false,
@@ -102,7 +110,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     /// Return the number of received bytes that are not part of a message.
     #[must_use]
     pub const fn discarded(&self) -> u64 {
-        self.discarded
+        self.search.discarded
     }
 
     /// Return the number of received bytes that may still become part of a message.
@@ -113,8 +121,8 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
 
     /// Pass received bytes: a piece of the stream of any size, or one packet.
     pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
-        let end = match self.form.delimited_by {
-            Delimiter::Datagram => return self.packet(bytes, &mut on_event),
+        let end = match self.search.form.delimited_by {
+            Delimiter::Datagram => return self.search.packet(bytes, &mut on_event),
             Delimiter::Length => return self.append(bytes, &mut on_event),
             Delimiter::Slip => SLIP_END,
             Delimiter::Hdlc => HDLC_FLAG,
@@ -131,31 +139,16 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         }
     }
 
-    fn packet(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
-        let is_taken = if bytes.len() > self.limit {
-            on_event(Event::Overrun);
-            false
-        } else {
-            let judges = Judge::all(self.form, self.direction);
-            judge_delimited(judges, bytes, &mut self.sequences, on_event) == Verdict::Taken
-        };
-        if !is_taken {
-            self.drop_bytes(bytes.len());
-        }
-    }
-
-    /// Count discarded bytes, and return their number.
-    fn drop_bytes(&mut self, count: usize) -> usize {
-        let bytes = u64::try_from(count).unwrap_or(0);
-        self.discarded = self.discarded.wrapping_add(bytes);
-        count
-    }
-
     /// Bytes where a field of the length delimits messages. A full buffer is always decided.
     fn append(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let mut rest = bytes;
         while !rest.is_empty() {
-            let needed = self.needed.max(self.header_bytes);
+            if self.length == 0 {
+                // Whole messages need not be copied.
+                let decided = self.search.decide(rest, on_event);
+                rest = rest.get(decided..).unwrap_or(&[]);
+            }
+            let needed = self.search.needed.max(self.header_bytes);
             let wanted = needed.saturating_sub(self.length).max(1);
             let (piece, others) = rest.split_at(wanted.min(rest.len()));
             let end = self.length + piece.len();
@@ -165,81 +158,14 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             }
             self.length = end;
             rest = others;
-            if self.length >= self.needed {
-                self.decide(on_event);
+            if self.length >= self.search.needed {
+                let received = self.buffer.get(..self.length).unwrap_or(&[]);
+                let decided = self.search.decide(received, on_event);
+                self.buffer.copy_within(decided..self.length, 0);
+                self.length -= decided;
             }
         }
         self.pending = u64::try_from(self.length).unwrap_or(0);
-    }
-
-    /// Takes out of the buffer all that can be said something of.
-    fn decide(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
-        let mut at = 0;
-        self.needed = 0;
-        loop {
-            let begin = self.begin(at);
-            let place = begin.map_or(self.length, |(place, _)| place);
-            self.drop_bytes(place.wrapping_sub(at));
-            at = place;
-            match begin.and_then(|(_, judge)| self.front(at, &judge, on_event)) {
-                Some(count) => at += count,
-                None => break,
-            }
-        }
-        if at > 0 {
-            self.buffer.copy_within(at..self.length, 0);
-            self.length -= at;
-        }
-    }
-
-    /// Return the first place from `at` on where a packet can begin, and its format.
-    fn begin(&self, at: usize) -> Option<(usize, Judge)> {
-        let judges = Judge::all(self.form, self.direction);
-        (at..self.length).find_map(|place| {
-            let frame = self.buffer.get(place..self.length)?;
-            let judge = judges.clone().find(|it| it.header_is_right(frame))?;
-            Some((place, judge))
-        })
-    }
-
-    /// What the buffer has from `at` on: bytes to go on, none while that is not decided.
-    fn front(
-        &mut self,
-        at: usize,
-        judge: &Judge,
-        on_event: &mut dyn FnMut(Event<'_>),
-    ) -> Option<usize> {
-        let frame = self.buffer.get(at..self.length)?;
-        let packet = judge.packet;
-        if frame.len() < packet.header_bytes {
-            return None;
-        }
-        let length = judge.length(frame);
-        let size = match length.map(|length| length.saturating_add(packet.around())) {
-            Ok(size) if size <= self.limit => size,
-            other => {
-                on_event(match other {
-                    Ok(size) if size <= self.longest => Event::Overrun,
-                    Err(Some(id)) => Event::UnknownId { id },
-                    _ => Event::Length { id: None },
-                });
-                return Some(self.drop_bytes(1));
-            }
-        };
-        if frame.len() < size {
-            self.needed = size;
-        }
-        let whole = frame.get(..size)?;
-        let verdict = judge.judge(whole, &mut self.sequences, on_event);
-        let taken = if verdict == Verdict::Doubtful {
-            1
-        } else {
-            size
-        };
-        if verdict != Verdict::Taken {
-            self.drop_bytes(taken);
-        }
-        Some(taken)
     }
 
     /// A delimiter came.
@@ -254,11 +180,11 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         } else if frame.is_empty() && !self.is_inside {
             true
         } else {
-            let judges = Judge::all(self.form, self.direction);
-            judge_delimited(judges, frame, &mut self.sequences, on_event) == Verdict::Taken
+            let judges = Judge::all(self.search.form, self.search.direction);
+            judge_delimited(judges, frame, &mut self.search.sequences, on_event) == Verdict::Taken
         };
         if !is_taken {
-            self.discarded = self.discarded.wrapping_add(self.pending);
+            self.search.discarded = self.search.discarded.wrapping_add(self.pending);
         }
         self.pending = 0;
         self.length = 0;
@@ -293,13 +219,13 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     /// Bytes between two escape bytes.
     fn plain(&mut self, run: &[u8]) {
         if !self.is_inside {
-            self.drop_bytes(run.len());
+            self.search.drop_bytes(run.len());
             return;
         }
         let count = u64::try_from(run.len()).unwrap_or(0);
         self.pending = self.pending.wrapping_add(count);
         if self.fault.is_none() {
-            let end = self.limit.min(self.length.saturating_add(run.len()));
+            let end = self.search.limit.min(self.length.saturating_add(run.len()));
             let free = self.buffer.get_mut(self.length..end).unwrap_or(&mut []);
             for (place, byte) in free.iter_mut().zip(run) {
                 *place = *byte;
@@ -331,7 +257,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             // The last one of several escape bytes can begin a packet.
             self.is_escaped = byte == escaping.escape;
             self.pending = u64::from(self.is_escaped);
-            self.drop_bytes(if self.is_escaped { 1 } else { 2 });
+            self.search.drop_bytes(if self.is_escaped { 1 } else { 2 });
         } else if byte == escaping.end {
             self.end(on_event);
         } else if byte == escaping.data {
@@ -349,7 +275,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     }
 
     fn put(&mut self, byte: u8) {
-        let has_room = self.length < self.limit;
+        let has_room = self.length < self.search.limit;
         match self.buffer.get_mut(self.length) {
             Some(place) if has_room => {
                 *place = byte;
@@ -361,7 +287,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
 
     /// A byte of a frame between delimiters.
     fn inside(&mut self, byte: u8) {
-        match self.form.delimited_by {
+        match self.search.form.delimited_by {
             Delimiter::Cobs if self.left > 0 => {
                 self.left -= 1;
                 self.put(byte);
@@ -389,5 +315,94 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             Delimiter::Slip if byte == SLIP_ESCAPE => self.is_escaped = true,
             _ => self.put(byte),
         }
+    }
+}
+
+impl<const S: usize> Search<S> {
+    fn packet(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let is_taken = if bytes.len() > self.limit {
+            on_event(Event::Overrun);
+            false
+        } else {
+            let judges = Judge::all(self.form, self.direction);
+            judge_delimited(judges, bytes, &mut self.sequences, on_event) == Verdict::Taken
+        };
+        if !is_taken {
+            self.drop_bytes(bytes.len());
+        }
+    }
+
+    /// Count discarded bytes, and return their number.
+    fn drop_bytes(&mut self, count: usize) -> usize {
+        let bytes = u64::try_from(count).unwrap_or(0);
+        self.discarded = self.discarded.wrapping_add(bytes);
+        count
+    }
+
+    /// Decide about bytes from the first one on. Return the number of decided ones; the others may
+    /// become part of a message.
+    fn decide(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) -> usize {
+        let mut rest = bytes;
+        self.needed = 0;
+        loop {
+            let begin = self.begin(rest);
+            let noise = begin.map_or(rest.len(), |(place, _)| place);
+            self.drop_bytes(noise);
+            rest = rest.get(noise..).unwrap_or(&[]);
+            match begin.and_then(|(_, judge)| self.front(rest, &judge, on_event)) {
+                Some(count) => rest = rest.get(count..).unwrap_or(&[]),
+                None => return bytes.len() - rest.len(),
+            }
+        }
+    }
+
+    /// Return the first place where a packet can begin, and its format.
+    fn begin(&self, bytes: &[u8]) -> Option<(usize, Judge)> {
+        let judges = Judge::all(self.form, self.direction);
+        (0..bytes.len()).find_map(|place| {
+            let frame = bytes.get(place..)?;
+            let judge = judges.clone().find(|it| it.header_is_right(frame))?;
+            Some((place, judge))
+        })
+    }
+
+    /// Decide about a packet that can begin here. Return the number of decided bytes; None while
+    /// more are needed.
+    fn front(
+        &mut self,
+        frame: &[u8],
+        judge: &Judge,
+        on_event: &mut dyn FnMut(Event<'_>),
+    ) -> Option<usize> {
+        let packet = judge.packet;
+        if frame.len() < packet.header_bytes {
+            return None;
+        }
+        let length = judge.length(frame);
+        let size = match length.map(|length| length.saturating_add(packet.around())) {
+            Ok(size) if size <= self.limit => size,
+            other => {
+                on_event(match other {
+                    Ok(size) if size <= self.longest => Event::Overrun,
+                    Err(Some(id)) => Event::UnknownId { id },
+                    _ => Event::Length { id: None },
+                });
+                return Some(self.drop_bytes(1));
+            }
+        };
+        if frame.len() < size {
+            self.needed = size;
+        }
+        let whole = frame.get(..size)?;
+        let verdict = judge.judge(whole, &mut self.sequences, on_event);
+        let taken = if verdict == Verdict::Doubtful {
+            1
+        } else {
+            size
+        };
+        if verdict != Verdict::Taken {
+            self.drop_bytes(taken);
+        }
+        Some(taken)
     }
 }
