@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.names import constant, reading
+from icdgen.backends.c.names import constant, element_reader
 from icdgen.backends.c.statement import FAILED, call, either, length_test, loop
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import WIDTH
@@ -62,9 +62,9 @@ def decode_statements(message: MessageDescription) -> list[str]:
         count = cast(_count(last), last.counter.storage.bits)
         lines.append(f"message->{last.counter.name} = {count};")
     if last is not None and last.element_struct is not None:
-        name, function = last.field.member, reading(message, last.field.name)
+        name, function = last.field.member, element_reader(message, last.field.name)
         lines.append(f"(void)memset(message->{name}, 0, sizeof message->{name});")
-        lines.append(for_each(name, there(last), function, last.place))
+        lines.append(for_each(name, elements_received(last), function, last.place))
     return lines
 
 
@@ -83,7 +83,7 @@ def _statements(
             _field(group)
             if isinstance(group, FieldDescription)
             else (
-                of_array(group, reading(message, group.name))
+                of_array(group, element_reader(message, group.name))
                 if isinstance(group, StructArray)
                 else _group(group, composite)
             )
@@ -112,7 +112,7 @@ def misfit_length(message: MessageDescription) -> str:
     return either([length_test(test, longest, FAILED) for test in message.length_tests])
 
 
-def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
+def test_of_count(part: VariablePartDescription) -> tuple[str, str, str] | None:
     """Return type and statement of the count in a frame, as ``value``, and the
     condition that it does not match the length.
     """
@@ -148,7 +148,7 @@ def chunk_bytes(part: VariablePartDescription, chunk: Chunk) -> str:
 
 def counter_tests(message: MessageDescription) -> list[tuple[str, FieldDescription]]:
     """Return the conditions for counts that parts cannot have, with the counters."""
-    tests = ((miscount(part), part.counter) for part in message.counted_parts)
+    tests = ((invalid_count(part), part.counter) for part in message.counted_parts)
     return [test for test in dict.fromkeys(tests) if test[0]]
 
 
@@ -164,7 +164,9 @@ def for_each(name: str, count: str, function: str, bytes: ElementBytes) -> str:
     if count == "1u":
         return call(function, (f"&message->{name}[0]", f"&buffer[{bytes.before}]"))
     statement = call(
-        function, (f"&message->{name}[element]", f"&buffer[{place(bytes)}]"), depth=2
+        function,
+        (f"&message->{name}[element]", f"&buffer[{first_byte(bytes)}]"),
+        depth=2,
     )
     return f"{loop('element', count)}\n{STEP * 2}{statement}\n{STEP}}}"
 
@@ -181,14 +183,14 @@ def of_array(array: StructArray, function: str) -> str:
     )
 
 
-def there(part: VariablePartDescription) -> str:
+def elements_received(part: VariablePartDescription) -> str:
     """Return the number of elements in a frame of ``length`` bytes."""
     count = _count(part)
     count = f"({count})" if " " in count else count
     return count + (f" + {part.model.fewest}u" if part.model.fewest else "")
 
 
-def place(bytes: ElementBytes, per_iteration: int = 1) -> str:
+def first_byte(bytes: ElementBytes, per_iteration: int = 1) -> str:
     """Return the first byte of ``element``, or of the iteration that starts with it."""
     begin, step = bytes
     number = "element" if per_iteration == 1 else f"(element / {per_iteration}u)"
@@ -209,7 +211,7 @@ def part_bytes(part: VariablePartDescription, counter: str = "") -> str:
     return in_bytes(elements(part, counter), part.model.step)
 
 
-def miscount(part: VariablePartDescription, counter: str = "") -> str:
+def invalid_count(part: VariablePartDescription, counter: str = "") -> str:
     """Return the condition for a count that the variable part cannot have; empty if it
     can have all.
     """
@@ -225,7 +227,7 @@ def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> 
 
     ``part`` points to its bytes, ``const`` if they are read.
     """
-    begin = place(
+    begin = first_byte(
         ElementBytes(array_loop.begin, array_loop.step), array_loop.per_iteration
     )
     pointer = f"{const}uint8_t *const part = &buffer[{begin}];"

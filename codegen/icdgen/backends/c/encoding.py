@@ -16,7 +16,7 @@ from icdgen.backends.c.decoding import (
     macro_of,
     of_array,
 )
-from icdgen.backends.c.names import writing
+from icdgen.backends.c.names import element_writer
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.describe import FieldDescription, MessageDescription
@@ -85,7 +85,7 @@ def encode_statements(message: MessageDescription) -> list[str]:
     fields, last = groups(message, THRESHOLDS), message.last_part
     frame = _Frame(message, message, fields, message.model.length)
     if last is not None and last.element_struct is not None:
-        function, (begin, step) = writing(message, last.field.name), last.place
+        function, (begin, step) = element_writer(message, last.field.name), last.place
         each = for_each(last.field.member, elements(last), function, last.place)
         frame.bytes.add_whole(begin, last.model.most * step, each)
     unused = [] if message.members else ["(void)message;"]
@@ -147,7 +147,7 @@ class _Frame:
             self.bytes.add_whole(loop.begin, loop.length, lines)
             return
         if isinstance(group, StructArray):
-            loop_over = of_array(group, writing(self.message, group.name))
+            loop_over = of_array(group, element_writer(self.message, group.name))
             self.bytes.add_whole(group.begin, group.length, loop_over)
             return
         names = [field.member for field in group.fields]

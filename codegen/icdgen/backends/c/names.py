@@ -56,19 +56,19 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
     return f"{stem(enum)}_{member.name}".upper()
 
 
-def reading(message: MessageDescription, name: str) -> str:
+def element_reader(message: MessageDescription, name: str) -> str:
     """The function that reads an element of an array of structs; ``name`` is that of
     `icdgen.describe.arrays`.
     """
     return f"{stem(message)}_read_{name}"
 
 
-def writing(message: MessageDescription, name: str) -> str:
+def element_writer(message: MessageDescription, name: str) -> str:
     """The function that writes one."""
     return f"{stem(message)}_write_{name}"
 
 
-def walking(message: MessageDescription, name: str) -> str:
+def received_element_reader(message: MessageDescription, name: str) -> str:
     """The function that reads one of a frame that is not decoded."""
     return f"{stem(message)}_{name}_at"
 

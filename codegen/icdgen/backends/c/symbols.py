@@ -151,15 +151,21 @@ class CNames(NamingPolicy):
         for end in ("decode", "encode", *rare):
             yield composite.identifier(FILE, f"{stem}_{end}", end)
         for array in all_struct_arrays(composite):
-            yield composite.identifier(FILE, names.reading(composite, array.name))
-            yield composite.identifier(FILE, names.writing(composite, array.name))
+            yield composite.identifier(
+                FILE, names.element_reader(composite, array.name)
+            )
+            yield composite.identifier(
+                FILE, names.element_writer(composite, array.name)
+            )
         last = composite.last_part
         if (
             last is not None
             and last.element_struct is not None
             and not composite.has_gaps
         ):
-            yield composite.identifier(FILE, names.walking(composite, last.field.name))
+            yield composite.identifier(
+                FILE, names.received_element_reader(composite, last.field.name)
+            )
         for part in contained_messages(composite):
             yield composite.identifier(FILE, f"{stem}_{names.part_name(part.message)}")
 
