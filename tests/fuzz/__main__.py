@@ -374,7 +374,7 @@ def main(arguments: list[str] | None = None) -> int:
         "icds",
         nargs="*",
         type=Path,
-        help="ICDs: files or folders (default: icd/, of envelopes examples/links/)",
+        help="ICDs: files or folders (default: icd/, for framed links examples/links/)",
     )
     options = parser.parse_intermixed_args(arguments)
     folder = cache_folder().resolve() / f"fuzz-{options.lang}"
