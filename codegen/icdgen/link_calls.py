@@ -14,6 +14,7 @@ from typing import Any
 
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.icd.model import Message
+from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import (
     MESSAGE,
@@ -154,6 +155,10 @@ class _LinkBuilder:
             }
             or None,
             "unsolicited": facts.unsolicited or None,
+            "bus_exchanges": {
+                bus: _bus_exchanges(each) for bus, each in facts.bus_exchanges.items()
+            }
+            or None,
             "assumptions": self.assumptions() or None,
         }
         return _call(
@@ -377,6 +382,14 @@ def _stream_rows(
     return tuple(calls)
 
 
+def _bus_exchanges(exchanges: BusExchanges) -> Call:
+    """Return the call for the exchanges on a bus."""
+    parts = {"request": _exchange(exchanges.request)}
+    if exchanges.command:
+        parts["command"] = _exchange(exchanges.command)
+    return _call("BusExchanges", **parts)
+
+
 def _exchange(exchange: Exchange) -> Call:
     """Return the call for the responses to a telecommand."""
     parts: dict[str, object] = {
@@ -387,11 +400,18 @@ def _exchange(exchange: Exchange) -> Call:
         parts["timeout"] = exchange.timeout
     if exchange.in_header:
         parts["in_header"] = exchange.in_header
+    if exchange.poll:
+        until = _number_place(exchange.poll.until)
+        parts["poll"] = _row("ResponsePoll", exchange.poll.telemetry, until)
     return _call("Exchange", **parts)
 
 
 def _response(response: Response) -> Call:
-    places = {"status": response.status, "reason": response.reason}
+    places = {
+        "status": response.status,
+        "reason": response.reason,
+        "detail": response.detail,
+    }
     echoes = tuple(
         _row("Echo", _number_place(echo.place), echo.source) for echo in response.echoes
     )

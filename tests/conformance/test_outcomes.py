@@ -8,8 +8,8 @@ import random
 from itertools import islice
 
 import pytest
-from icdgen_runtime.wire.client import Request
-from icdgen_runtime.wire.envelope_client import EnvelopeClient
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.events import OUTCOMES
 
 from icdgen.protocol import facts
@@ -79,7 +79,7 @@ def test_every_request_ends_once_if_tick_is_called_at_the_deadline(icd):
     for script in islice(outcomes.requests(icd, random.Random(2)), SCRIPTS):
         link = link_of(icd, facts.of(icd, icd.node(script["node"])))
         settings = link.settings._replace(**script["settings"])
-        client = EnvelopeClient(link, settings, requests=script["requests"])
+        client = Client(link, settings=settings, requests=script["requests"])
         ended, now = 0, 0
         for row in script["script"]:
             now = row["at"]

@@ -7,8 +7,8 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.can import CanMessage, can_split
-from icdgen_runtime.wire.client import Request
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import Link
 from icdgen_runtime.wire.uart import uart_encode

@@ -10,8 +10,8 @@ import threading
 from contextlib import contextmanager
 
 import pytest
-from icdgen_runtime.wire.client import Request
-from icdgen_runtime.wire.envelope_client import EnvelopeClient
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.events import (
     Busy,
     Done,
@@ -241,7 +241,7 @@ MEASUREMENTS, ENERGY_ID, LIMITS_ID, SIZE_OF_ENERGY = 0, 0x10, 0x100, 8
 
 
 def test_a_response_belongs_to_the_request_that_waits_for_it():
-    client = EnvelopeClient(LINK, LINK.settings._replace(in_flight=2))
+    client = Client(LINK, settings=LINK.settings._replace(in_flight=2))
     client.start(0, Request("telemetry", ENERGY_ID))
     client.start(0, Request("telemetry", LIMITS_ID))
     assert client.output() and not client.output()  # one at a time
@@ -257,7 +257,7 @@ def test_a_response_belongs_to_the_request_that_waits_for_it():
 
 
 def test_a_response_without_a_request_is_a_stray_and_a_late_one_is_late():
-    client = EnvelopeClient(LINK, LINK.settings._replace(retries=0))
+    client = Client(LINK, settings=LINK.settings._replace(retries=0))
     energy = stream_encode(LINK, ENERGY_ID, bytes(SIZE_OF_ENERGY), "telemetry")
     (stray,) = client.received(0, energy)
     assert isinstance(stray, Stray) and stray.data == energy
@@ -273,7 +273,7 @@ def test_a_response_without_a_request_is_a_stray_and_a_late_one_is_late():
 
 
 def test_an_exception_refuses_and_a_busy_meter_is_asked_again():
-    client = EnvelopeClient(LINK, LINK.settings._replace(retries=1))
+    client = Client(LINK, settings=LINK.settings._replace(retries=1))
     client.start(0, Request("telemetry", ENERGY_ID))
     assert client.output()
     busy, refused = (bytes.fromhex(line) for line in ("018306C132", "018302C0F1"))

@@ -13,7 +13,7 @@ from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from tests.conftest import ROOT
 
-_client = import_module("icdgen_runtime.wire.envelope_client")
+_client = import_module("icdgen_runtime.wire.client")
 events = import_module("icdgen_runtime.wire.events")
 Request = _client.Request
 
@@ -22,7 +22,7 @@ def client_of(path, **settings):
     icd = load([path]).icd
     (node,) = icd.nodes
     link = link_of(icd, facts.of(icd, node))
-    client = _client.EnvelopeClient(link, link.settings._replace(**settings))
+    client = _client.Client(link, settings=link.settings._replace(**settings))
     return client, {message.name: message for message in node.messages}
 
 

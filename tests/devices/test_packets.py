@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import pytest
 from icdgen_runtime._errors import RangeError
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.device import PacketData, response_to
-from icdgen_runtime.wire.envelope_client import EnvelopeClient
 from icdgen_runtime.wire.events import Arrived, Done, Refused, Stray
 from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder, stream_encode_packet
@@ -78,7 +78,7 @@ def test_the_packets_of_a_gps_clock_are_received_though_doubled_bytes_precede_an
 
 
 def test_a_gps_clock_is_requested_and_answers_or_cannot_read_the_request():
-    client = EnvelopeClient(link_to(TSIP))
+    client = Client(link_to(TSIP))
     version, request = 0x45, bytes.fromhex("10 1F 10 03")
     client.start(0, Request("telemetry", version))
     assert client.output() == request
@@ -91,7 +91,7 @@ def test_a_gps_clock_is_requested_and_answers_or_cannot_read_the_request():
 
 
 def test_a_jbd_battery_is_requested_and_answers_or_refuses():
-    client = EnvelopeClient(link_to(JBD))
+    client = Client(link_to(JBD))
     client.start(0, Request("telemetry", BASIC))
     assert client.output().hex(" ") == "dd a5 03 00 ff fd 77"
     (done,) = client.received(10, bytes.fromhex(RECORDED[0]))
@@ -126,7 +126,7 @@ def test_the_values_of_a_packet_take_precedence_over_those_of_its_sender():
 
 
 def test_a_jbd_battery_confirms_a_telecommand_without_data():
-    client = EnvelopeClient(link_to(JBD))
+    client = Client(link_to(JBD))
     client.start(0, Request("telecommand", SWITCH_OFF, b"\0\1"))
     assert client.output().hex(" ") == "dd 5a e1 02 00 01 ff 1c 77"
     (done,) = client.received(10, bytes.fromhex("dd e1 00 00 00 00 77"))
@@ -135,7 +135,7 @@ def test_a_jbd_battery_confirms_a_telecommand_without_data():
 
 def test_the_formats_of_the_tfmini_are_received_in_one_stream():
     link = link_to(TFMINI)
-    client = EnvelopeClient(link)
+    client = Client(link)
     client.start(0, Request("telemetry", 0x01))
     assert client.output().hex(" ") == "5a 04 01 5f"  # of the manual
     measurement = bytes.fromhex("59 59 64 00 10 27 00 09 56")
@@ -151,7 +151,7 @@ def test_the_formats_of_the_tfmini_are_received_in_one_stream():
 
 
 def test_requests_of_a_daly_battery_have_eight_reserved_bytes():
-    client = EnvelopeClient(link_to(DALY))
+    client = Client(link_to(DALY))
     client.start(0, Request("telemetry", 0x90))
     assert client.output().hex(" ") == "a5 40 90 08 00 00 00 00 00 00 00 00 7d"
     (done,) = client.received(
@@ -167,7 +167,7 @@ def test_what_the_device_answers_to_a_request_is_taken_for_it(icd):
     assert requested
     for id in requested:
         for verdict, kind in (("nak", Refused), ("reply", Done)):
-            client, device = EnvelopeClient(link), StreamDecoder(link, "telecommand")
+            client, device = Client(link), StreamDecoder(link, "telecommand")
             client.start(0, Request("telemetry", id))
             (event,) = device.feed(client.output())
             assert (event.event, event.id) == ("request", id)
@@ -185,7 +185,7 @@ def test_what_the_device_answers_to_a_request_is_taken_for_it(icd):
 def test_verification_reports_count_for_the_sequence_number_that_they_repeat():
     icd = load([ROOT / "tests" / "conformance" / "links" / "verification.yaml"]).icd
     link = link_to(icd)
-    client, payload = EnvelopeClient(link), Sender(link, "telemetry")
+    client, payload = Client(link), Sender(link, "telemetry")
     decoder = StreamDecoder(link, "telecommand")
     exposure = 0x8001
     headers = []

@@ -162,6 +162,8 @@ class Streams:
         id = [id for id in ids if kind == "telemetry" or ids[id].acknowledged][pick % 7]
         data = bytes(link.commands[id].length) if kind == "telecommand" else b""
         client.start(0, self.wire.Request(kind, id, data, bool(pick & 8)))
+        client.output()
+        client.packets()
         return client
 
     def ends(self, events) -> int:
@@ -174,16 +176,15 @@ class Streams:
     def idle(self, client, now: float, ends: int) -> None:
         """Each request ends, once, whatever has come."""
         for _ in range(1000):
+            client.output()
+            client.packets()
+            is_transferring = bool(client.transfers())
             if not client.busy:
                 break
             now = max(now, client.deadline)
             ends += self.ends(
-                client.transferred(now, None)
-                if client.transfers()
-                else client.tick(now)
+                client.transferred(now, None) if is_transferring else client.tick(now)
             )
-            client.output()
-            client.packets()
         assert not client.busy and ends == 1
 
     def procedure(self, link, size: int, data: bytes) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import Any, NamedTuple
 
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.events import Arrived, Done, Event, Refused, Timeout
 from icdgen_runtime.wire.failures import FailedError
 from icdgen_runtime.wire.link import Link

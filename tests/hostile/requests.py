@@ -7,8 +7,9 @@ from __future__ import annotations
 from random import Random
 from typing import Any, NamedTuple
 
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.can import CanKind, CanMessage, can_split
-from icdgen_runtime.wire.client import Client, Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.events import OUTCOMES, Event
 from icdgen_runtime.wire.link import Bus, Link
 from icdgen_runtime.wire.uart import uart_encode
@@ -64,7 +65,8 @@ def end_of_request(link: Link[Any], bus: Bus, seed: int) -> Ended:
     script: list[Row] = [{"at": now, request.kind: id}]
     if not telemetry:
         script[0] |= {"bytes": request.data.hex(), "repeat": True}
-    events = client.start(now, request)
+    client.start(now, request)
+    events: list[Event] = []
     while True:
         transfers = client.transfers()
         packets = len({packet.id for packet in client.packets()})

@@ -17,11 +17,11 @@ from icdgen.runtime_objects.links import link_of
 from tests.conftest import ROOT
 
 # The modules of the runtime, which `icdgen.runtime_objects` has made importable.
-_client = import_module("icdgen_runtime.wire.envelope_client")
+_client = import_module("icdgen_runtime.wire.client")
 _stream = import_module("icdgen_runtime.wire.stream")
 Sender = import_module("icdgen_runtime.wire.sender").Sender
 _events = import_module("icdgen_runtime.wire.events")
-EnvelopeClient, Request = _client.EnvelopeClient, _client.Request
+Client, Request = _client.Client, _client.Request
 StreamDecoder, stream_encode = _stream.StreamDecoder, _stream.stream_encode
 OUTCOMES, Late, Stray, Timeout = (
     _events.OUTCOMES, _events.Late, _events.Stray, _events.Timeout,
@@ -50,7 +50,7 @@ def wrong_outcomes(link, line: Line, runs: int, in_flight: int) -> list[str]:
     wrong, settings = [], link.settings._replace(in_flight=in_flight, progress_for=1)
     for run in range(runs):
         source = Random(run)
-        client = EnvelopeClient(link, settings)
+        client = Client(link, settings=settings)
         device = StreamDecoder(link, "telecommand")
         arrivals: list[tuple[float, int, int, bytes]] = []
         now, left, outcomes, count = 0.0, 12, 0, 0
@@ -129,7 +129,7 @@ class Arm:
         icd = load([path]).icd
         self.link = link_of(icd, facts.of(icd, icd.node("arm")))
         own = self.link.settings._replace(**settings)
-        self.client = EnvelopeClient(self.link, own)
+        self.client = Client(self.link, settings=own)
         self.device = Sender(self.link, "telemetry")
 
     def send(self, now: int, id: int, data: bytes = b"", reply: int | None = None):

@@ -19,7 +19,7 @@ def acknowledge(like, wire, id: int, code: int = 0) -> bytes:
 def test_typed_telemetry(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart")
-    assert client.request(0, acp.EstimatedAttitudeAngles) == []
+    client.request(0, acp.EstimatedAttitudeAngles)
     assert (client.output(), client.busy, client.deadline) == (
         b"\x1f\x7f\x92\x1f\xff",
         True,
@@ -29,7 +29,9 @@ def test_typed_telemetry(shipped, wire):
     (done,) = client.received(
         30, wire.uart_encode(acp.LINK, b"\x92" + angles.to_bytes())
     )
-    assert done == wire.Done(146, 1, angles.to_bytes(), acp.EstimatedAttitudeAngles)
+    assert done == wire.Done(
+        146, 1, angles.to_bytes(), acp.EstimatedAttitudeAngles, 146
+    )
     assert done.message == angles
     assert (client.busy, client.deadline, client.output()) == (False, None, b"")
 
@@ -49,19 +51,62 @@ def test_settings_are_written_by_one_id_and_read_by_the_other(shipped, wire):
     )
 
 
-def test_a_request_while_another_one_goes_on_is_refused(shipped, wire):
+def test_a_request_waits_until_the_one_before_has_ended(shipped, wire):
     acp = shipped.module("cubeacp")
-    client = wire.Client(acp.LINK, "uart")
+    client = wire.Client(acp.LINK, "uart", requests=2)
     client.request(0, acp.Identification)
+    client.send(0, acp.SetAdcsRunMode(enabled=1))
     with pytest.raises(wire.BusyError):
-        client.request(1, acp.Identification)
-    client = wire.Client(acp.LINK, "uart")
-    client.send(0, acp.Reset())  # not acknowledged: over at once, but not sent
-    assert not client.busy
+        client.request(1, acp.State)
+    assert client.output() and not client.output()
+    data = acp.Identification().to_bytes()
+    line = wire.uart_encode(acp.LINK, bytes((acp.Identification.ID,)) + data)
+    (done,) = client.received(2, line)
+    assert (type(done), done.handle) == (wire.Done, 1)
+    assert client.output()
+    (done,) = client.received(3, acknowledge(acp.LINK, wire, 10))
+    assert (type(done), done.handle, client.busy) == (wire.Done, client.begun, False)
+
+
+def test_a_telecommand_without_acknowledge_is_over_when_it_was_taken(shipped, wire):
+    acp = shipped.module("cubeacp")
+    client = wire.Client(acp.LINK, "uart", requests=1)
+    client.send(0, acp.Reset())
     with pytest.raises(wire.BusyError):
         client.request(0, acp.Identification)
-    client.output()
+    assert client.sent(client.begun) is None and client.output()
+    assert client.sent(client.begun) == wire.Sent(acp.Reset.ID)
     client.request(0, acp.Identification)
+
+
+def test_each_bus_has_its_own_output_and_input(shipped, wire):
+    acp = shipped.module("cubeacp")
+    outputs = {"uart": "output", "can": "packets", "i2c": "transfers"}
+    inputs = {
+        "uart": ("received", b""),
+        "can": ("packet", wire.CanPacket(0, b"")),
+        "i2c": ("transferred", None),
+    }
+    for bus, own in outputs.items():
+        client = wire.Client(acp.LINK, bus)
+        client.request(0, acp.Identification)
+        others = [name for name in outputs.values() if name != own]
+        assert not any(getattr(client, name)() for name in others)
+        assert getattr(client, own)()
+        for other, (name, received) in inputs.items():
+            if other != bus:
+                with pytest.raises(wire.UnsupportedError):
+                    getattr(client, name)(1, received)
+
+
+def test_what_only_another_link_has_is_refused(shipped, wire):
+    acp = shipped.module("cubeacp")
+    with pytest.raises(wire.UnsupportedError, match="framed"):
+        wire.Client(acp.LINK, "uart", values={"source": 1})
+    with pytest.raises(wire.UnsupportedError, match="stream"):
+        wire.Client(acp.LINK)
+    with pytest.raises(wire.UnsupportedError, match="reply"):
+        wire.Client(acp.LINK, "uart").send(0, acp.Reset(), reply=acp.State)
 
 
 def test_messages_of_another_node_are_refused(shipped, wire):

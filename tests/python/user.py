@@ -90,9 +90,9 @@ def commanded(session: Session, any: type[Message]) -> Message:
 
 def talk(client: Client, now: float, data: bytes) -> list[str]:
     """A request, and what came of it."""
-    events: list[Event] = client.request(now, EstimatedAttitudeAngles)
+    client.request(now, EstimatedAttitudeAngles)
     print(client.output(), client.deadline)
-    events += client.received(now, data)
+    events: list[Event] = client.received(now, data)
     found = []
     for event in events:
         if isinstance(event, Done) and (angles := event.of(EstimatedAttitudeAngles)):

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.events import Done, Outcome
 from icdgen_runtime.wire.identity import Identity, identify
 from icdgen_runtime.wire.link import Settings

@@ -10,7 +10,7 @@ import sys
 import threading
 
 import pytest
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.events import Done, LineError, Refused, Timeout
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.session import Session

@@ -11,7 +11,8 @@ import socket
 import time
 
 import pytest
-from icdgen_runtime.wire.client import Client, Request
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.events import OUTCOMES, Done, Log, Refused, Sent
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from icdgen_runtime._errors import RangeError
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.device import response_to
 from icdgen_runtime.wire.envelope import NumberPlace
-from icdgen_runtime.wire.envelope_client import EnvelopeClient
 from icdgen_runtime.wire.events import (
     Arrived,
     Done,
@@ -63,7 +63,7 @@ def commands(of):
         ]
 
 
-def sent(client: EnvelopeClient, id: int, data: bytes) -> bytes:
+def sent(client: Client, id: int, data: bytes) -> bytes:
     """What a client sends for a telecommand."""
     client.start(0, Request("telecommand", id, data))
     return client.output()
@@ -82,7 +82,7 @@ def test_the_client_takes_each_response_for_what_it_says(name, said):
     for row, verdicts in commands(of):
         data = bytes(range(7, 7 + row.least))
         for verdict in verdicts:
-            client, device = EnvelopeClient(of), Sender(of, "telemetry")
+            client, device = Client(of), Sender(of, "telemetry")
             (event,) = StreamDecoder(of, "telecommand").feed(sent(client, row.id, data))
             response = response_to(of, event.id, event.data, verdict)
             (end,) = client.received(1, device.encode(*response))
@@ -120,7 +120,7 @@ def test_the_response_to_another_telecommand_confirms_nothing(name):
     of = link(name)
     rows = [row for row, verdicts in commands(of) if "ack" in verdicts]
     for row, other in pairwise(rows):
-        client = EnvelopeClient(of)
+        client = Client(of)
         assert sent(client, row.id, bytes(row.least))
         response = response_to(of, other.id, bytes(other.least))
         events = client.received(1, Sender(of, "telemetry").encode(*response))
@@ -158,7 +158,7 @@ def test_a_reason_that_does_not_fit_is_an_error():
 def test_a_status_refuses_with_a_value_that_means_nothing_else():
     arm = link("arm")
     (row,) = (row for row in arm.stream.telecommands if row.id == 0x0205)
-    client = EnvelopeClient(arm)
+    client = Client(arm)
     assert sent(client, row.id, bytes(1))
     response = response_to(arm, row.id, bytes(1), "nak", 700)
     (end,) = client.received(1, Sender(arm, "telemetry").encode(*response))

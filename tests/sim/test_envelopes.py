@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from icdgen_runtime._errors import RangeError
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.errors import UnsupportedError
 from icdgen_runtime.wire.events import Arrived, Done, Gap, LineError, Sent, Timeout
 from icdgen_runtime.wire.session import Session

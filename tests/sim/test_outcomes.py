@@ -9,7 +9,7 @@ import re
 from random import Random
 
 import pytest
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.events import Busy, Done, Late, Refused, Sent, Stray, Timeout
 from icdgen_runtime.wire.stream import stream_encode
 

@@ -122,7 +122,7 @@ class _Rounds:
 
         Raises `icdgen.link.ports.PortError`.
         """
-        from icdgen_runtime.wire.client import Request
+        from icdgen_runtime.wire.awaited import Request
 
         # The wall clock can jump; rounds must not.
         end = time.monotonic() + self.every

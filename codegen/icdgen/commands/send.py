@@ -55,7 +55,7 @@ def send(
     acknowledged, or sent if nothing responds to it; 1 refused by the device, or not
     sent; 2 wrong usage; 3 no response; 4 the device is busy.
     """
-    from icdgen_runtime.wire.client import Request
+    from icdgen_runtime.wire.awaited import Request
 
     from icdgen import tables
     from icdgen.link.line_statistics import LineStatistics

@@ -121,7 +121,7 @@ def identity_problem(session: BusSession, faults: Mapping[int, str]) -> str | No
 
     ``faults`` are the errors of received messages by id.
     """
-    from icdgen_runtime.wire.client import Request
+    from icdgen_runtime.wire.awaited import Request
     from icdgen_runtime.wire.events import Done
     from icdgen_runtime.wire.identity import identify
 

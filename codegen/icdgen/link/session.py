@@ -29,7 +29,7 @@ class CanSession(BusSession):
         settings: Settings,
         on_event: OnEvent | None,
     ) -> None:
-        self._can = Client(link, "can", crc, address, settings)
+        self._can = Client(link, "can", crc=crc, address=address, settings=settings)
         super().__init__(self._can, on_event)
         self._port = port
 

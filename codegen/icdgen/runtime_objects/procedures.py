@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen_runtime.wire import events
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.errors import UnsupportedError
 from icdgen_runtime.wire.procedures import Procedure
 

@@ -5,17 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar, get_args
+from typing import Any, get_args
 
 from icdgen_runtime._errors import IcdError
 from icdgen_runtime.wire import events
-from icdgen_runtime.wire.can import CanPacket
-from icdgen_runtime.wire.client import Client, Request
-from icdgen_runtime.wire.envelope_client import EnvelopeClient
-from icdgen_runtime.wire.i2c import I2cTransfer
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.link import Bus, Settings
-from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen.protocol.declared import U32, facts_of
 from icdgen.protocol.envelope import DIRECTIONS
@@ -35,7 +31,6 @@ MOST_REQUESTS = 3  # requests that are in progress or waiting
 
 Row = dict[str, Any]
 BUSES: tuple[Bus, ...] = get_args(Bus)
-AnyClient = TypeVar("AnyClient", Client[Any], EnvelopeClient[Any])
 
 
 def client(link: AnyLink, request: Row) -> Row:
@@ -43,18 +38,19 @@ def client(link: AnyLink, request: Row) -> Row:
     tested_client = Client(
         link,
         choice(request, "bus", BUSES),
-        flag(request, "crc"),
-        number(request, "address", 0, 255, 0),
-        _settings(link, request),
+        crc=flag(request, "crc"),
+        address=number(request, "address", 0, 255, 0),
+        settings=_settings(link, request),
+        requests=1,
     )
-    return _steps(request, tested_client, _bus_events, _bus_output, _bus_row)
+    return _steps(request, tested_client)
 
 
 def stream_client(link: AnyLink, request: Row) -> Row:
     """Return what a client of a framed link does in a script."""
     requests = number(request, "requests", 1, MOST_REQUESTS, 1)
-    tested_client = EnvelopeClient(link, _settings(link, request), requests=requests)
-    return _steps(request, tested_client, _framed_events, _framed_output, _row)
+    tested_client = Client(link, settings=_settings(link, request), requests=requests)
+    return _steps(request, tested_client)
 
 
 def _settings(link: AnyLink, request: Row) -> Settings:
@@ -75,47 +71,51 @@ def _settings(link: AnyLink, request: Row) -> Settings:
     return Settings(**values)
 
 
-def _steps(
-    request: Row,
-    tested_client: AnyClient,
-    events_of: Callable[[AnyClient, int, Row], list[events.Event]],
-    output_of: Callable[[AnyClient, Row], list[object]],
-    row_of: Callable[[events.Event], Row],
-) -> Row:
+def _steps(request: Row, tested_client: Client[Any]) -> Row:
     """Return the reaction of a client to each row of a script."""
     steps = []
     for row in mappings(request, "script"):
         refusal: Row = {}
         reported: list[events.Event] = []
+        output: list[object] = []
+        now = number(row, "at")
         try:
-            reported = events_of(tested_client, number(row, "at"), row)
+            if tested_client.bus in ("uart", "can") and "receive" in row:
+                # What a time-out sends again is sent before this arrives.
+                reported += tested_client.tick(now)
+                output += _output_of(tested_client)
+            reported += _events_of(tested_client, now, row)
         except IcdError as error:
             refusal = details_of(error)
-        output = output_of(tested_client, row)
+        if not flag(row, "untaken"):  # a caller that does not read the output yet
+            output += _output_of(tested_client)
+        if tested_client.bus and (sent := tested_client.sent(tested_client.begun)):
+            # On a bus, the application waits for nothing after it has sent.
+            reported.append(sent)
         deadline = tested_client.deadline
         steps.append(
             {
                 **refusal,
                 "out": output,
-                "events": [row_of(event) for event in reported],
+                "events": [_row_of(tested_client, event) for event in reported],
                 "deadline": None if deadline is None else int(deadline),
             }
         )
     return {"steps": steps}
 
 
-def _bus_events(tested_client: Client[Any], now: int, row: Row) -> list[events.Event]:
+def _events_of(tested_client: Client[Any], now: int, row: Row) -> list[events.Event]:
+    kind = next((kind for kind in DIRECTIONS if kind in row), None)
+    id = number(row, kind) if kind else None
     if flag(row, "cancel"):
-        tested_client.cancel()
+        tested_client.cancel(kind, id)
         return []
-    if "telecommand" in row:
-        id, data = number(row, "telecommand", 0, 255), octets(row)
-        return tested_client.start(
-            now, Request("telecommand", id, data, flag(row, "repeat"))
-        )
-    if "telemetry" in row:
-        id = number(row, "telemetry", 0, 255)
-        return tested_client.start(now, Request("telemetry", id))
+    if kind and id is not None:
+        data = octets(row) if kind == "telecommand" else b""
+        reply = number(row, "reply") if "reply" in row else None
+        started = Request(kind, id, data, flag(row, "repeat"))
+        tested_client.start(now, started, reply)
+        return []
     if "receive" not in row:
         return tested_client.tick(now)
     received = row["receive"]
@@ -129,68 +129,38 @@ def _bus_events(tested_client: Client[Any], now: int, row: Row) -> list[events.E
     return tested_client.received(now, hex_bytes(received))
 
 
-def _bus_output(tested_client: Client[Any], row: Row) -> list[object]:
-    output: list[bytes | CanPacket | I2cTransfer] = [
-        *tested_client.packets(),
-        *tested_client.transfers(),
-    ]
-    if lines := tested_client.output():
-        # A row for each message, as the clients of other languages give them.
-        link = tested_client.link
-        messages = [event.message for event in UartDecoder(link).feed(lines)]
-        output += [uart_encode(link, message) for message in messages]
-    return [_sent(item) for item in output]
-
-
-def _sent(item: bytes | CanPacket | I2cTransfer) -> object:
-    match item:
-        case bytes():
-            return item.hex()
-        case CanPacket(id, data):
-            return {"id": id, "bytes": data.hex()}
-        case I2cTransfer(write, read):
-            return {"write": write.hex(), "read": read}
-
-
-def _framed_events(
-    tested_client: EnvelopeClient[Any], now: int, row: Row
-) -> list[events.Event]:
-    kind = next((kind for kind in DIRECTIONS if kind in row), None)
-    id = number(row, kind) if kind else None
-    if flag(row, "cancel"):
-        tested_client.cancel(kind, id)
-        return []
-    if kind and id is not None:
-        data = octets(row) if kind == "telecommand" else b""
-        reply = number(row, "reply") if "reply" in row else None
-        return tested_client.start(
-            now, Request(kind, id, data, flag(row, "repeat")), reply
-        )
-    if "receive" in row:
-        return tested_client.received(now, hex_bytes(row["receive"]))
-    return tested_client.tick(now)
-
-
-def _framed_output(tested_client: EnvelopeClient[Any], row: Row) -> list[object]:
-    # `untaken` simulates a caller that does not read the output yet.
+def _output_of(tested_client: Client[Any]) -> list[object]:
+    if tested_client.bus == "can":
+        return [
+            {"id": packet.id, "bytes": packet.data.hex()}
+            for packet in tested_client.packets()
+        ]
+    if tested_client.bus == "i2c":
+        return [
+            {"write": transfer.write.hex(), "read": transfer.read}
+            for transfer in tested_client.transfers()
+        ]
     lines: list[object] = []
-    while not flag(row, "untaken") and (line := tested_client.output()):
+    while line := tested_client.output():
         lines.append(line.hex())
     return lines
 
 
-def _bus_row(event: events.Event) -> Row:
-    """Return an event on the UART, I2C or CAN as a mapping."""
-    if isinstance(event, events.Arrived):
-        return {"event": "arrived", "id": event.id, "bytes": event.data.hex()}
+def _row_of(tested_client: Client[Any], event: events.Event) -> Row:
+    """Return an event as a mapping."""
     row = _row(event)
+    if tested_client.bus is None:
+        return row
+    if isinstance(event, events.Arrived):
+        row["event"] = "arrived"
     if isinstance(event, events.Refused):
         row |= {"reason": event.reason, "parameter": event.parameter}
+    row.pop("reply", None)  # on a bus, a request names its reply
     return row
 
 
 def _row(event: events.Event) -> Row:
-    """Return an event as a mapping."""
+    """Return an event of a framed link as a mapping."""
     row: Row
     match event:
         case events.LineError(error, id):

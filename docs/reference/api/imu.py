@@ -168,7 +168,7 @@ client = Client(LINK, "uart")
 # []
 events: list[Event] = []
 # [request]
-events += client.request(now, State)
+client.request(now, State)
 # []
 # [output]
 sent = client.output()
@@ -186,5 +186,5 @@ for event in events:
     # []
 assert came == State.from_bytes(frame)
 # [send]
-events += client.send(now, setup)
+client.send(now, setup)
 # []

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from random import Random
 from typing import Any
 
+from icdgen_runtime.wire.awaited import MOST_AWAITED
 from icdgen_runtime.wire.can import CanMessage, can_split
-from icdgen_runtime.wire.client import MOST_AWAITED
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import CanKind
 from icdgen_runtime.wire.logs import LogMessage

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from random import Random
 from typing import Any
 
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 
 from icdgen.icd.model import Message
 from icdgen.procedures.actions import Listing

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from random import Random
 from typing import Any, NamedTuple
 
-from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.procedures import Procedure
 
 from icdgen.procedures.counterpart import Counterpart, Device, Packet, Refused

@@ -686,6 +686,117 @@ LINK: link.Link[_Node] = link.Link(
     unsolicited={
         119: 241,
     },
+    bus_exchanges={
+        "uart": link.BusExchanges(
+            request=link.Exchange(
+                sources=(
+                    link.NumberPlace(0, 4, 0, 32, False),
+                ),
+                responses=(
+                    link.Response(
+                        telemetry=None,
+                        verdict="reply",
+                    ),
+                ),
+            ),
+            command=link.Exchange(
+                sources=(
+                    link.NumberPlace(0, 4, 0, 32, False),
+                ),
+                responses=(
+                    link.Response(
+                        telemetry=None,
+                        verdict="nak",
+                        echoes=(
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                        ),
+                        status=link.NumberPlace(1, 1, 0, 8, False),
+                        reason=link.NumberPlace(1, 1, 0, 8, False),
+                        meanings=((0, "ack"), (4, "again")),
+                        reasons=((1, "unknown_id"), (2, "length"), (3, "parameter"), (4, "checksum")),
+                        packet=0,
+                    ),
+                ),
+            ),
+        ),
+        "i2c": link.BusExchanges(
+            request=link.Exchange(
+                sources=(
+                    link.NumberPlace(0, 4, 0, 32, False),
+                ),
+                responses=(
+                    link.Response(
+                        telemetry=None,
+                        verdict="reply",
+                    ),
+                ),
+            ),
+            command=link.Exchange(
+                sources=(
+                    link.NumberPlace(0, 4, 0, 32, False),
+                ),
+                responses=(
+                    link.Response(
+                        telemetry=240,
+                        verdict="nak",
+                        echoes=(
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
+                        ),
+                        status=link.NumberPlace(2, 1, 0, 8, True),
+                        reason=link.NumberPlace(2, 1, 0, 8, True),
+                        detail=link.NumberPlace(3, 1, 0, 8, True),
+                        meanings=((0, "ack"), (4, "again")),
+                        reasons=((1, "unknown_id"), (2, "length"), (3, "parameter"), (4, "checksum")),
+                    ),
+                ),
+                poll=link.ResponsePoll(240, link.NumberPlace(1, 1, 0, 1, True)),
+            ),
+        ),
+        "can": link.BusExchanges(
+            request=link.Exchange(
+                sources=(
+                    link.NumberPlace(0, 4, 0, 32, False),
+                ),
+                responses=(
+                    link.Response(
+                        telemetry=None,
+                        verdict="reply",
+                    ),
+                    link.Response(
+                        telemetry=None,
+                        verdict="nak",
+                        echoes=(
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                        ),
+                        packet=2,
+                    ),
+                ),
+            ),
+            command=link.Exchange(
+                sources=(
+                    link.NumberPlace(0, 4, 0, 32, False),
+                ),
+                responses=(
+                    link.Response(
+                        telemetry=None,
+                        verdict="ack",
+                        echoes=(
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                        ),
+                        packet=0,
+                    ),
+                    link.Response(
+                        telemetry=None,
+                        verdict="nak",
+                        echoes=(
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                        ),
+                        packet=1,
+                    ),
+                ),
+            ),
+        ),
+    },
     assumptions=(
         link.Assumption(
             section="link.client",

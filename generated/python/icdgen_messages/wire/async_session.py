@@ -12,8 +12,7 @@ from typing import NamedTuple, Optional, TypeVar, overload
 
 from .._base import Message
 from .._hints import N
-from .client import Request
-from .envelope_client import EnvelopeClient
+from .awaited import Request
 from .events import Arrived, Event, Lost, Outcome, OutcomeOf
 from .exchanges import (
     Exchange,
@@ -34,7 +33,6 @@ B = TypeVar("B", bound="_Box")
 
 
 class _Locks(NamedTuple):
-    turn: asyncio.Lock  # for requests that cannot run concurrently
     read: asyncio.Lock
     write: asyncio.Lock
 
@@ -87,9 +85,9 @@ class AsyncSession(Exchanges[N]):
     (pyserial-asyncio). Their exceptions end the request, and so does its cancellation.
     `ConnectionResetError` reports that the other side closed the connection.
 
-    Several tasks may send requests and receive messages. With header and trailer,
-    requests with different replies run concurrently. Other requests wait for each
-    other.
+    Several tasks may send requests and receive messages. As many requests run
+    concurrently as the device handles at a time, if their replies differ. Other requests
+    wait for each other.
 
     ``clock`` returns seconds. ``on_event`` is called with each unsolicited event.
     ``values``: see `Session`.
@@ -106,7 +104,9 @@ class AsyncSession(Exchanges[N]):
         clock: Callable[[], float] = time.monotonic,
         values: Optional[Mapping[str, int]] = None,
     ) -> None:
-        super().__init__(client_of(link, crc, settings, values), on_event, clock)
+        super().__init__(
+            client_of(link, "uart", crc, settings, values), on_event, clock
+        )
         self._reader, self._writer = reader, writer
         self._locks: Optional[_Locks] = None
         self._boxes: dict[object, _Box] = {}  # events by waiting task
@@ -143,11 +143,13 @@ class AsyncSession(Exchanges[N]):
         reply: NodeMessageClass[N, M],
         repeat: bool = False,
     ) -> M:
-        """Send a telecommand (with header and trailer) and return its reply.
+        """Send a telecommand (on a framed link) and return its reply.
 
-        Raise as `get` and `EnvelopeClient.send`.
+        Raise as `get` and `Client.send`.
         """
-        outcome = await self._run(self._with_reply(message, reply, repeat))
+        outcome = await self._run(
+            self._exchange(self.client.send, message, repeat, reply)
+        )
         name = message_of(message).NAME
         return class_of(reply).from_bytes(data_of(outcome, name))
 
@@ -243,16 +245,10 @@ class AsyncSession(Exchanges[N]):
     @property
     def _lock(self) -> _Locks:
         if self._locks is None:  # before Python 3.10, a new lock needs the event loop
-            self._locks = _Locks(asyncio.Lock(), asyncio.Lock(), asyncio.Lock())
+            self._locks = _Locks(asyncio.Lock(), asyncio.Lock())
         return self._locks
 
     async def _run(self, exchange: Exchange[T]) -> T:
-        if isinstance(self.client, EnvelopeClient):
-            return await self._ended(exchange)
-        async with self._lock.turn:
-            return await self._ended(exchange)
-
-    async def _ended(self, exchange: Exchange[T]) -> T:
         with self._box(_Box()) as box:
             try:
                 step = next(exchange)

@@ -23,9 +23,10 @@ CHOSEN_ROLES = (
     "reason",
 )
 """Roles of the frame fields whose values the sender chooses."""
-Verdict = Literal["ack", "reply", "nak", "busy", "progress"]
+Verdict = Literal["ack", "reply", "nak", "busy", "progress", "again"]
 """A response confirms the telecommand, is the telemetry that it requested, refuses it,
-defers it because the device is busy, or reports that it is still being executed.
+defers it because the device is busy, reports that it is still being executed, or that
+it was damaged on the line and can be sent again at once.
 """
 
 
@@ -146,6 +147,8 @@ class Response(NamedTuple):
     """Names of the reasons."""
     packet: Optional[int] = None
     """Index of the packet. Its places count from the first byte of the header."""
+    detail: Optional[NumberPlace] = None
+    """The place of a number that says more about a refusal."""
 
     def verdict_of(self, data: bytes) -> Verdict:
         """Return what these data say."""
@@ -156,6 +159,15 @@ class Response(NamedTuple):
     def can_be(self, verdict: Verdict) -> bool:
         """Return whether it can mean ``verdict``."""
         return verdict == self.verdict or verdict in dict(self.meanings).values()
+
+
+class ResponsePoll(NamedTuple):
+    """Telemetry that a client requests again and again until it is the response: until
+    the number ``until`` is not 0, and all echoes are right.
+    """
+
+    telemetry: int
+    until: NumberPlace
 
 
 class Exchange(NamedTuple):
@@ -171,6 +183,8 @@ class Exchange(NamedTuple):
     """The time-out in milliseconds; 0: that of the client."""
     in_header: int = 0
     """Number of sources in the header."""
+    poll: Optional[ResponsePoll] = None
+    """None: the response comes by itself."""
 
     def numbers(self, telecommand: bytes) -> tuple[int, ...]:
         """Return the numbers of a telecommand, given as its id, as 4 bytes, and its
@@ -183,6 +197,17 @@ class Exchange(NamedTuple):
         """Return the numbers of the header of a telecommand."""
         end = len(self.sources) - self.in_header
         return tuple(place.of(header) for place in self.sources[end:])
+
+
+class BusExchanges(NamedTuple):
+    """The exchanges on a bus. Packets without a message have an index of
+    `bus_lines`; their bytes are the id, as one byte, and the data.
+    """
+
+    request: Exchange
+    """Of telemetry."""
+    command: Optional[Exchange] = None
+    """Of all telecommands that are acknowledged; None if the bus has no acknowledge."""
 
 
 class StreamRow(NamedTuple):

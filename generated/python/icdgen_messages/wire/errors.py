@@ -39,10 +39,7 @@ class ChecksumError(IcdError):
 
 
 class BusyError(IcdError):
-    """Another request is in progress.
-
-    A second one would overrun the buffer of the node.
-    """
+    """As many requests are in progress or waiting as the client may have."""
 
 
 def need(part: Optional[T], name: str) -> T:

@@ -9,11 +9,10 @@ from typing import Any, Optional, Union, overload
 
 from .._base import Message
 from .._hints import N
+from .awaited import Request
 from .carriers import carrier_of
-from .client import Client, Request
 from .events import Event, Outcome, OutcomeOf
 from .exchanges import (
-    AnyClient,
     Exchange,
     Exchanges,
     P,
@@ -94,11 +93,11 @@ class BusSession(Exchanges[N]):
         reply: NodeMessageClass[N, M],
         repeat: bool = False,
     ) -> M:
-        """Send a telecommand (with header and trailer) and return its reply.
+        """Send a telecommand (on a framed link) and return its reply.
 
-        Raise as `get` and `EnvelopeClient.send`.
+        Raise as `get` and `Client.send`.
         """
-        outcome = self._run(self._with_reply(message, reply, repeat))
+        outcome = self._run(self._exchange(self.client.send, message, repeat, reply))
         name = message_of(message).NAME
         return class_of(reply).from_bytes(data_of(outcome, name))
 
@@ -205,11 +204,8 @@ class Session(BusSession[N]):
         address: int = 0,
     ) -> None:
         self._carrier = carrier_of(link, port, read)
-        client: AnyClient[N]
-        if self._carrier.bus == "uart":
-            client = client_of(link, crc, settings, values)
-        else:
-            client = Client(link, self._carrier.bus, crc, address, settings)
+        bus = self._carrier.bus
+        client = client_of(link, bus, crc, settings, values, address)
         super().__init__(client, on_event, clock)
 
     def _flush(self) -> None:

@@ -25,7 +25,6 @@ __all__ = [
     "DeviceBusyError",
     "Done",
     "DosTime",
-    "EnvelopeClient",
     "Event",
     "FailedError",
     "Gap",
@@ -89,20 +88,19 @@ __all__ = [
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .async_session import AsyncSession as AsyncSession
+    from .awaited import Request as Request
     from .can import CanEvent as CanEvent
     from .can import CanJoiner as CanJoiner
     from .can import CanMessage as CanMessage
     from .can import CanPacket as CanPacket
     from .can import can_split as can_split
     from .client import Client as Client
-    from .client import Request as Request
     from .crc import Crc as Crc
     from .crc import crc8 as crc8
     from .crc import crc16 as crc16
     from .device import PacketData as PacketData
     from .device import TelemetryData as TelemetryData
     from .device import response_to as response_to
-    from .envelope_client import EnvelopeClient as EnvelopeClient
     from .errors import BusyError as BusyError
     from .errors import ChecksumError as ChecksumError
     from .errors import TooLongError as TooLongError
@@ -163,11 +161,11 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "async_session": ("AsyncSession",),
+    "awaited": ("Request",),
     "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
-    "client": ("Client", "Request"),
+    "client": ("Client",),
     "crc": ("Crc", "crc16", "crc8"),
     "device": ("PacketData", "TelemetryData", "response_to"),
-    "envelope_client": ("EnvelopeClient",),
     "errors": (
         "BusyError",
         "ChecksumError",

@@ -23,8 +23,8 @@ class Done(Generic[R_co]):
     """A request was executed. ``data`` is the frame of requested telemetry.
 
     ``Done[EstimatedAttitudeAngles]`` has a message of this class, ``Done[None]`` has
-    none. ``reply``: with header and trailer, the id of the response. ``handle``
-    identifies the request of an `EnvelopeClient`.
+    none. ``reply``: id of the telemetry that responded. ``handle`` identifies the
+    request: `Client.begun` after it began.
     """
 
     id: int
@@ -51,9 +51,9 @@ class Refused:
     """The node rejected a request.
 
     ``reason`` is the role of the code in the ICD: ``unknown_id``, ``length``,
-    ``parameter`` or ``checksum``; with header and trailer, the member of the
-    enumeration of the code. CAN has no code. Only I2C reports the parameter.
-    ``data`` is the response with header and trailer, of the class ``type``.
+    ``parameter`` or ``checksum``; on a framed link, the member of the enumeration of the
+    code. CAN has no code. Only I2C reports the parameter. ``data`` is the response on a
+    framed link, of the class ``type``.
     """
 
     id: int
@@ -72,7 +72,7 @@ class Refused:
 
     @property
     def message(self) -> Optional[Message]:
-        """The response with header and trailer; None on other links."""
+        """The response on a framed link; None on other links."""
         return self.type.from_bytes(self.data) if self.type else None
 
 

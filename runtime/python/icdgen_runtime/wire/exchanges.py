@@ -11,8 +11,6 @@ from .._base import Message
 from .._errors import IcdError
 from .._hints import N
 from .client import Client
-from .envelope_client import EnvelopeClient
-from .errors import BusyError, UnsupportedError
 from .events import (
     OUTCOMES,
     AnyDone,
@@ -30,11 +28,10 @@ from .events import (
     Timeout,
 )
 from .failures import DeviceBusyError, FailedError, RefusedError, ReplyTimeoutError
-from .link import Link, Settings
-from .message_ids import NodeMessage, NodeMessageClass
+from .link import Bus, Link, Settings
+from .message_ids import NodeMessageClass
 from .procedures import Procedure
 
-AnyClient = Union[Client[N], EnvelopeClient[N]]
 P = TypeVar("P", bound=Procedure)
 T = TypeVar("T")
 Step = Union[Literal["send"], float, None]
@@ -51,20 +48,25 @@ _LONGEST_WAIT = 1000.0  # ms
 
 def client_of(
     link: Link[N],
+    bus: Bus,
     crc: bool,
     settings: Optional[Settings],
     values: Optional[Mapping[str, int]],
-) -> AnyClient[N]:
-    """Return the client for a byte stream. Raise `UnsupportedError`."""
-    if link.stream:
-        if crc:
-            raise UnsupportedError(
-                "the envelope has the checksum, and leaves no choice"
-            )
-        return EnvelopeClient(link, settings, values)
-    if values:
-        raise UnsupportedError("only envelopes have values to choose")
-    return Client(link, "uart", crc, settings=settings)
+    address: int = 0,
+) -> Client[N]:
+    """Return the client for a port of ``bus``. Raise `UnsupportedError`.
+
+    A stream of bytes belongs to the framed link, if the ICD describes one.
+    """
+    is_framed = bus == "uart" and link.stream is not None
+    return Client(
+        link,
+        None if is_framed else bus,
+        crc=crc,
+        address=address,
+        settings=settings,
+        values=values,
+    )
 
 
 class Exchanges(Generic[N]):
@@ -72,7 +74,7 @@ class Exchanges(Generic[N]):
 
     def __init__(
         self,
-        client: AnyClient[N],
+        client: Client[N],
         on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -98,15 +100,6 @@ class Exchanges(Generic[N]):
                 self._report(event)
         return events
 
-    def _with_reply(
-        self, message: NodeMessage[N], reply: NodeMessageClass[N, Message], repeat: bool
-    ) -> Exchange[Outcome]:
-        """Send a telecommand and wait for its reply."""
-        if isinstance(self.client, Client):
-            what = "telecommands are acknowledged, and answered with nothing"
-            raise UnsupportedError(what)
-        return self._exchange(self.client.send, message, repeat, reply)
-
     def _messages_in(
         self, events: list[Event], kinds: tuple[NodeMessageClass[N, Message], ...]
     ) -> Iterator[Message]:
@@ -125,35 +118,27 @@ class Exchanges(Generic[N]):
                 yield message
 
     def _exchange(
-        self, start: Callable[..., list[Event]], *arguments: Any
+        self, start: Callable[..., None], *arguments: Any
     ) -> Exchange[Outcome]:
-        """Run a request, which the method ``start`` of the client begins.
-
-        If the client is busy, wait until another request has ended.
-        """
-        while True:
-            try:
-                events = start(self._now(), *arguments)
-                break
-            except BusyError:
-                yield None
+        """Run a request, which the method ``start`` of the client begins."""
         client = self.client
-        handle = self._last_handle()
+        start(self._now(), *arguments)
+        handle = client.begun
         reply: Optional[Reply] = None
         try:
             yield "send"
-            if isinstance(client, EnvelopeClient) and (sent := client.sent(handle)):
+            if sent := client.sent(handle):
                 return sent
             while True:
-                for event in events:
+                for event in (yield None):
                     if isinstance(event, Reply) and event.handle == handle:
                         reply = event
                     elif isinstance(event, OUTCOMES) and event.handle == handle:
                         yield "send"
                         return _with_data(event, reply)
-                events = yield None
         finally:
-            self._cancel(handle)
+            # Otherwise the client stays busy after an exception of the port.
+            client.cancel(handle=handle)
 
     def _concurrently(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
         """Run several exchanges at once. If one fails, the others are closed."""
@@ -185,7 +170,7 @@ class Exchanges(Generic[N]):
     ) -> Exchange[P]:
         """Run a procedure to its end. Raise `FailedError`."""
         client, handle = self.client, 0  # of the last request
-        if isinstance(client, Client):
+        if client.bus:
             procedure.bus = client.bus
         events: list[Event] = []
         reported: Optional[tuple[int, Optional[int]]] = None
@@ -198,16 +183,15 @@ class Exchanges(Generic[N]):
                         continue
                     if isinstance(event, Refused):
                         refused = event
-                        if event.may_be_damaged and isinstance(client, Client):
+                        if event.may_be_damaged and client.bus:
                             self._report(event)
                     procedure.event(self._now(), event)
                 events = []
-                is_free = isinstance(client, EnvelopeClient) or not client.busy
-                if is_free and (request := procedure.next(self._now())):
-                    events = client.start(self._now(), request)
-                    handle = self._last_handle()
+                if request := procedure.next(self._now()):
+                    client.start(self._now(), request)
+                    handle = client.begun
                 yield "send"
-                if isinstance(client, EnvelopeClient) and (sent := client.sent(handle)):
+                if sent := client.sent(handle):
                     events.append(sent)
                 if progress and procedure.progress != reported:
                     reported = procedure.progress
@@ -220,21 +204,7 @@ class Exchanges(Generic[N]):
                 if not events:
                     events = yield procedure.deadline
         finally:
-            self._cancel(handle)
-
-    def _last_handle(self) -> int:
-        """Return the handle of the last request; 0 on a link that has none."""
-        client = self.client
-        return client.begun if isinstance(client, EnvelopeClient) else 0
-
-    def _cancel(self, handle: int) -> None:
-        """Cancel a request. Otherwise the client stays busy after an exception of the
-        port.
-        """
-        if isinstance(self.client, Client):
-            self.client.cancel()
-        else:
-            self.client.cancel(handle=handle)
+            client.cancel(handle=handle)
 
 
 def executed(outcome: Outcome, name: str) -> Union[AnyDone, Sent]:

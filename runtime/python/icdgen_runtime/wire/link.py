@@ -9,6 +9,7 @@ from typing import Generic, Literal, NamedTuple, Optional, Union
 
 from .._hints import N
 from .._lazy import Messages
+from .envelope import BusExchanges as BusExchanges  # noqa: PLC0414
 from .envelope import CheckForm as CheckForm  # noqa: PLC0414
 from .envelope import CrcForm as CrcForm  # noqa: PLC0414
 from .envelope import Echo as Echo  # noqa: PLC0414
@@ -18,6 +19,7 @@ from .envelope import Exchange as Exchange  # noqa: PLC0414
 from .envelope import NumberPlace as NumberPlace  # noqa: PLC0414
 from .envelope import PacketForm as PacketForm  # noqa: PLC0414
 from .envelope import Response as Response  # noqa: PLC0414
+from .envelope import ResponsePoll as ResponsePoll  # noqa: PLC0414
 from .envelope import Stream as Stream  # noqa: PLC0414
 from .envelope import StreamRow as StreamRow  # noqa: PLC0414
 from .envelope import TelemetryRequest as TelemetryRequest  # noqa: PLC0414
@@ -324,6 +326,8 @@ class Facts(NamedTuple):
     """Procedures by their names in the ICD."""
     unsolicited: dict[int, int] = {}  # noqa: RUF012
     """UART: telemetry in an unsolicited message, by the id at its beginning."""
+    bus_exchanges: dict[str, BusExchanges] = {}  # noqa: RUF012
+    """Responses on UART, I2C and CAN, by bus."""
     assumptions: tuple[Assumption, ...] = ()
     """Facts that the manual does not state, and what the ICD assumes."""
 

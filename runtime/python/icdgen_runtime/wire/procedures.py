@@ -7,7 +7,7 @@ from typing import Any, Literal, Optional
 
 from .._base import Message
 from .._errors import RangeError
-from .client import Request
+from .awaited import Request
 from .crc import Crc
 from .errors import TooLongError, UnsupportedError, need
 from .events import Arrived, Busy, Done, Event, Outcome, Refused, Reply, Sent, Timeout

@@ -7,9 +7,9 @@ from typing import Any, Optional
 
 from .._errors import LengthError, UnknownIdError
 from .._testee_words import Words, counted, listed, maybe, number, octets, row
+from .awaited import Request
 from .can import CanPacket
-from .client import Client, Request
-from .envelope_client import EnvelopeClient
+from .client import Client
 from .errors import BusyError, UnsupportedError
 from .events import (
     Arrived,
@@ -36,23 +36,24 @@ _OUTCOMES: dict[str, Any] = {
 
 
 def client(link: Link, words: Words) -> str:
-    """What a client does in a script."""
+    """What a client on a bus does in a script."""
     bus, checked, address = _bus(words), number(words) == 1, number(words)
     settings = _settings(link, words, _BUS_SETTINGS)
-    tested = Client(link, bus, checked, address, settings)
+    tested = Client(
+        link, bus, crc=checked, address=address, settings=settings, requests=1
+    )
     said = []
     for at in words:
         said.append(" step")
-        try:
-            events = _happened(tested, int(at), next(words), words)
-            said += map(_shown, events)
-        except BusyError:
-            said.append(" error error=busy")
-        except UnknownIdError:
-            said.append(" error error=unknown-id")
-        except LengthError as error:
-            said.append(f" error error={counted('length', error)}")
-        said.append(_output(tested))
+        action, now, before = next(words), int(at), ""
+        if action in ("received", "packet"):
+            # What a time-out sends again is sent before this arrives.
+            said += [_shown(event, tested) for event in tested.tick(now)]
+            before = _output(tested)
+        said += _reaction(tested, now, action, words)
+        said.append(before + _output(tested))
+        if sent := tested.sent(tested.begun):
+            said.append(_shown(sent, tested))
         if tested.deadline is not None:
             said.append(f" until deadline={int(tested.deadline)}")
     return "".join(said)
@@ -66,44 +67,64 @@ def _settings(link: Link, words: Words, names: tuple[str, ...]) -> Settings:
 
 
 def stream_client(link: Link, words: Words) -> str:
-    """What a client over envelopes does in a script."""
+    """What a client of a framed link does in a script."""
     requests = number(words)
     settings = _settings(link, words, _STREAM_SETTINGS)
-    tested = EnvelopeClient(link, settings, requests=requests)
+    tested = Client(link, settings=settings, requests=requests)
     said = []
     for at in words:
         said.append(" step")
-        takes, action = number(words) == 1, next(words)
-        try:
-            events = _asked(tested, int(at), action, words)
-            said += [_shown(event, is_of_stream=True) for event in events]
-        except BusyError:
-            said.append(" error error=busy")
-        except UnsupportedError:
-            said.append(" error error=unsupported")
-        except UnknownIdError:
-            said.append(" error error=unknown-id")
-        except LengthError as error:
-            said.append(f" error error={counted('length', error)}")
-        while takes and (line := tested.output()):
-            said.append(row("stream", bytes=line))
+        takes = number(words) == 1
+        said += _reaction(tested, int(at), next(words), words)
+        if takes:
+            said.append(_output(tested))
         if tested.deadline is not None:
             said.append(f" until deadline={int(tested.deadline)}")
     return "".join(said)
 
 
-def _asked(tested: EnvelopeClient, now: int, action: str, words: Words) -> list[Event]:
+def _reaction(tested: Client, now: int, action: str, words: Words) -> list[str]:
+    """The events of an action, or its error."""
+    try:
+        events = _happened(tested, now, action, words)
+    except BusyError:
+        return [" error error=busy"]
+    except UnsupportedError:
+        return [" error error=unsupported"]
+    except UnknownIdError:
+        return [" error error=unknown-id"]
+    except LengthError as error:
+        return [f" error error={counted('length', error)}"]
+    return [_shown(event, tested) for event in events]
+
+
+def _bus(words: Words) -> Bus:
+    name = next(words)
+    return next(bus for bus in _BUSES if bus == name)
+
+
+def _happened(tested: Client, now: int, action: str, words: Words) -> list[Event]:
+    is_framed = tested.bus is None
     if action == "telecommand":
         id, repeat = number(words), number(words) == 1
-        _is_named, reply = number(words), maybe(words)
+        reply = None
+        if is_framed:
+            _is_named, reply = number(words), maybe(words)
         request = Request("telecommand", id, octets(words), repeat)
-        return tested.start(now, request, reply)
+        tested.start(now, request, reply)
+        return []
     if action == "telemetry":
-        return tested.start(now, Request("telemetry", number(words)))
+        tested.start(now, Request("telemetry", number(words)))
+        return []
     if action == "received":
         return tested.received(now, octets(words))
+    if action == "packet":
+        return tested.packet(now, packet(words))
+    if action in ("transferred", "failed"):
+        read = octets(words) if action == "transferred" else None
+        return tested.transferred(now, read)
     if action == "cancel":
-        kind = next(words)
+        kind = next(words) if is_framed else "all"
         if kind == "all":
             tested.cancel()
         else:
@@ -114,49 +135,28 @@ def _asked(tested: EnvelopeClient, now: int, action: str, words: Words) -> list[
     return tested.tick(now)
 
 
-def _bus(words: Words) -> Bus:
-    name = next(words)
-    return next(bus for bus in _BUSES if bus == name)
-
-
-def _happened(tested: Client, now: int, action: str, words: Words) -> list[Event]:
-    if action == "telecommand":
-        id, repeat = number(words), number(words) == 1
-        return tested.start(now, Request("telecommand", id, octets(words), repeat))
-    if action == "telemetry":
-        return tested.start(now, Request("telemetry", number(words)))
-    if action == "received":
-        return tested.received(now, octets(words))
-    if action == "packet":
-        return tested.packet(now, packet(words))
-    if action in ("transferred", "failed"):
-        read = octets(words) if action == "transferred" else None
-        return tested.transferred(now, read)
-    if action == "cancel":
-        tested.cancel()
-        return []
-    return tested.tick(now)
-
-
 def _output(tested: Client) -> str:
-    if tested.bus == "uart":
-        stream = tested.output()
-        return row("stream", bytes=stream) if stream else ""
     if tested.bus == "can":
         packets = tested.packets()
         return "".join(row("frame", id=one.id, bytes=one.data) for one in packets)
-    transfers = tested.transfers()
-    return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
+    if tested.bus == "i2c":
+        transfers = tested.transfers()
+        return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
+    lines = []
+    while line := tested.output():
+        lines.append(row("stream", bytes=line))
+    return "".join(lines)
 
 
-def _shown(event: Event, is_of_stream: bool = False) -> str:
+def _shown(event: Event, tested: Client) -> str:
+    is_framed = tested.bus is None
     if isinstance(event, LineError):
         return row(event.error, id=event.id)
-    if isinstance(event, Arrived) and is_of_stream:
+    if isinstance(event, Arrived) and is_framed:
         return row("message", id=event.id, bytes=event.data, **event.values)
-    hidden = ["type", "log", "handle", "values"]
+    hidden = ["type", "log", "handle", "values"] + ["reply"] * (not is_framed)
     if isinstance(event, (Refused, Busy)):
-        hidden += ["reason", "parameter", "data"] if is_of_stream else ["data"]
+        hidden += ["reason", "parameter", "data"] if is_framed else ["data"]
     known = [one.name for one in fields(event) if one.name not in hidden]
     facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
     return row(type(event).__name__.lower(), **facts)
