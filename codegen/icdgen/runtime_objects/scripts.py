@@ -106,7 +106,8 @@ def _steps(request: Row, tested_client: Client[Any]) -> Row:
 
 def _events_of(tested_client: Client[Any], now: int, row: Row) -> list[events.Event]:
     kind = next((kind for kind in DIRECTIONS if kind in row), None)
-    id = number(row, kind) if kind else None
+    largest_id = 255 if tested_client.bus else U32
+    id = number(row, kind, 0, largest_id) if kind else None
     if flag(row, "cancel"):
         tested_client.cancel(kind, id)
         return []
