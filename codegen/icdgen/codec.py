@@ -148,6 +148,8 @@ def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
             if not part.low <= counters[part.counter] <= part.high:
                 raise LengthError(
                     message,
+                    # No size gives an expected length. Any length will do that differs
+                    # from the actual one.
                     layout.length if actual == layout.longest else layout.longest,
                     actual,
                 )
@@ -232,6 +234,7 @@ def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
     """Return a copy of a frame with new values of some numbers."""
     bits = int.from_bytes(frame, "little")
     for field, value in values.items():
+        # All bits of the field, as a value in its range: `_written` checks values.
         mask = _written(field, -1 if field.is_signed else (1 << field.bits) - 1)
         bits = bits & ~mask | _written(field, value)
     return bits.to_bytes(len(frame), "little")
@@ -277,6 +280,8 @@ def message_of_frame(
         ):
             matches.append((len(own), message))
     if matches:
+        # Of messages with as many constants, `max` returns the first in the order of
+        # the ICD.
         return max(matches, key=lambda match: match[0])[1]
     lengths = {
         length
@@ -624,6 +629,7 @@ def _constants(node: Node, message: Message) -> dict[_Place, FrameField]:
             field.has_bits
             and field.const is not None
             and not field.conditions
+            # Behind the fixed part a frame can lack the field.
             and field.at < 8 * message.layout.length
         ):
             constants[

@@ -49,6 +49,7 @@ def _compare_by_value(kind: type[Any]) -> None:
     """Give a class ``__eq__`` and ``__hash__`` over its fields."""
     compared = [field for field in dataclasses.fields(kind) if field.compare]
     value = attrgetter(*(field.name for field in compared))
+    # As in `dataclasses`: `hash=None` means that the field is hashed if it is compared.
     hashed = attrgetter(*(field.name for field in compared if field.hash is not False))
 
     def equals(self: object, other: object) -> bool:

@@ -160,6 +160,8 @@ class Builder:
     def structs(self) -> tuple[model.Struct, ...]:
         """Return the structs of the node, each after the structs that it contains."""
         listed = self.items("structs")
+        # Reversed, so that the first of several structs with one name remains in the
+        # dict.
         items = {item["name"]: item for item in reversed(listed)}
         structs: list[model.Struct] = []
         visited: set[str] = set()
@@ -205,6 +207,8 @@ class Builder:
                 size = Counted(counter, row["up_to"], plus)
             node = self.node_of(row, 8 * length, size)
             if node is None or not stride(node):
+                # Without one of the nodes, the positions of all later ones would be
+                # wrong.
                 return Layout(item["name"], item["length"], fixed, owner=self.name)
             nodes.append(node)
             length += bits_of_node(node) // 8
@@ -290,6 +294,8 @@ class Builder:
             is_broken = any(
                 id(item.get(key)) in self.broken for key in ("when", "count", "size")
             )
+            # Fields behind a variable-length field have no fixed bit: `sequence`
+            # returns them.
             if is_broken or variable_length.is_variable(item) or id(item) in left_out:
                 continue
             if "when" in item and item.keys().isdisjoint(("struct", "count")):
@@ -530,6 +536,8 @@ def calibration(
     """
     if not text or kind not in ("uint", "int", "float"):
         return None, None
+    # A raw float is a double at run time, so an exact scale would promise digits that
+    # no language computes.
     if kind != "float":
         with suppress(formula.FormulaError):
             return formula.parse(text), None

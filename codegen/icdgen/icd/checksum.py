@@ -32,6 +32,8 @@ def crc(
             bit = byte >> (position if reflect_in else 7 - position) & 1
             feedback = bool(value & top) != bool(bit)
             value = (value << 1 & (top << 1) - 1) ^ (polynomial if feedback else 0)
+    # Only the result is reflected: the register always shifts to the left, and
+    # `reflect_in` decides which bit of a byte comes first.
     if reflect_out:
         value = int(f"{value:0{width}b}"[::-1], 2)
     return value ^ xor_out

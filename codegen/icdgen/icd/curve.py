@@ -126,6 +126,8 @@ class Curve(NamedTuple):
                 low = middle
             else:
                 high = middle
+        # Doubles, not fractions: all languages round both differences, and so agree on
+        # ties.
         below, above = abs(physical - self.double(low)), abs(
             self.double(high) - physical
         )
@@ -168,6 +170,10 @@ def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
     ]
     # The pieces outside of the points are a constant (clamp), nothing (refuse), or
     # continue the nearest line.
+    # The piece in front of the points begins at the first point, as the first line
+    # does: a raw value below all pieces belongs to the first piece, and at the first
+    # point itself the later piece applies. The last point is valid itself, so refused
+    # values begin at the next double.
     (first, low), (last, high) = points[0], points[-1]
     before_first: dict[str, list[Piece]] = {
         CLAMP: [Piece(first, (low,))],
@@ -237,6 +243,8 @@ def parse(text: str) -> Curve:
             coefficient.numerator / coefficient.denominator for coefficient in exact
         )
     except OverflowError:
+        # Reported below, with the coefficients that are too small. A highest
+        # coefficient of 0 would change the degree of the polynomial.
         rounded = (0.0,)
     if rounded[-1] == 0.0:
         raise formula.FormulaError(

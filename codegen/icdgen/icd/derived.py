@@ -47,6 +47,8 @@ class Derivation(NamedTuple):
         """Return the result for the values of `fields`. All NaNs are `math.nan`."""
         row = [*values, *self.numbers]
         for operator, left, right in self.steps:
+            # One rounded operation per step. A compiler that fuses a product and a sum
+            # (FMA, C99 7.12.2 FP_CONTRACT) would differ in the last bit.
             row.append(_OPERATORS[operator](row[left], row[right]))
         return row[-1] if row[-1] == row[-1] else math.nan
 

@@ -20,6 +20,7 @@ from typing import Generic, NamedTuple, TypeVar
 MAX_DEPTH = 50
 MAX_DIGITS = 40
 
+# Two digits of an exponent limit the size of the exact fraction to about 10^139.
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?")
 _OPERATORS = "+-*/^()"
 
@@ -156,6 +157,8 @@ class _Parser(Generic[Value]):
             )
         token = self.take()
         if token.is_operator("-"):
+            # 0 - x, not a negation of its own: for x = 0.0 it gives +0.0 in all
+            # languages.
             value = self.arithmetic.operation(
                 "-", self.arithmetic.number(Fraction(0)), self.signed()
             )

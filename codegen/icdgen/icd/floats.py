@@ -44,9 +44,12 @@ def nearest(value: Fraction, bits: int) -> int:
     precision, lowest, highest = (24, -149, 104) if bits == 32 else (53, -1074, 971)
     if not value:
         return 0
+    # The bit lengths give the exponent or one less. Subnormal numbers have the lowest
+    # exponent and fewer digits.
     exponent = value.numerator.bit_length() - value.denominator.bit_length() - precision
     exponent = max(exponent, lowest)
     digits = round(value / Fraction(2) ** exponent)
+    # The estimate was one too small, or rounding carried into one more bit.
     while digits.bit_length() > precision:
         exponent += 1
         digits = round(value / Fraction(2) ** exponent)

@@ -30,6 +30,8 @@ _SKIPPED = frozenset(
 )
 _ENVIRONMENT = "pyvenv.cfg"  # marks a virtual environment of any name
 
+# Keys at the start of a line, or behind the brace of a file in JSON. A search that
+# parsed each YAML file of a folder would take seconds.
 _KEY = re.compile(r"""^(?:\{\s*)?["']?([A-Za-z_][\w.-]*)["']?\s*:""", re.MULTILINE)
 
 

@@ -15,6 +15,8 @@ from typing import NamedTuple, TypeAlias
 from icdgen.icd.expression import Arithmetic, Token, evaluate
 from icdgen.icd.expression import FormulaError as FormulaError
 
+# Limits on hostile text: `9^999` repeated would otherwise fill the memory. 10^999 has
+# 3,319 bits, so the limit of bits admits it.
 MAX_LENGTH = 1000
 MAX_DEGREE = 15
 MAX_EXPONENT = 999

@@ -203,6 +203,8 @@ def fixed_fields(layout: Layout, orders: Orders) -> tuple[FrameField, ...]:
     """Return the scalars whose positions do not depend on the frame: those of the fixed
     part, counts and derived values.
     """
+    # Zero elements need not be a valid size here: only nodes behind the fixed part
+    # would have other positions.
     fields = frame_fields(layout, orders, dict.fromkeys(layout.parts_by_size, 0))
     sequence = set(map(id, layout.sequence))
     return tuple(field for field in fields if id(field.steps[0].node) not in sequence)
@@ -227,6 +229,7 @@ def flatten(
     orders = layout.orders.within(orders)
     for node in layout.fixed:
         fields += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
+    # Nodes of the sequence begin at whole bytes, where both bit orders count the same.
     end, parts = 8 * layout.length, iter(layout.parts)
     for node in layout.sequence:
         own = node.orders.within(orders)

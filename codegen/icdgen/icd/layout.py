@@ -157,6 +157,7 @@ class Scalar(LayoutNode):
 
         `bits` are those in the frame. `smallest_raw` comes from `Layout.smallest_raw`.
         """
+        # For a constant 0, `smallest_raw` is 0, too: a counter cannot be a constant.
         return bytes(bits // 8) if self.is_bytes else self.const or smallest_raw
 
     @property
@@ -390,6 +391,8 @@ class Layout:
         """Return the longest frame with the bytes of a frame of these sizes at their
         positions; absent bytes are 0.
         """
+        # In ascending order: each gap that is filled moves the bytes behind it to their
+        # positions in the longest frame, which the next gap counts from.
         for gap in self.gaps(sizes):
             before = frame[: gap.begin].ljust(gap.begin, b"\0")
             frame = before + bytes(gap.length) + frame[gap.begin :]

@@ -79,6 +79,8 @@ def _with_sound_fixes(
 def _is_word(lines: Lines, place: Place) -> bool:
     """Return whether a place covers a complete value of one line."""
     after = place._replace(column=place.column + place.length, length=1)
+    # `place_of` gives a value of several lines the length 1, as a value of one
+    # character has it. Only behind the latter the value ends.
     return place.length > 1 or lines.marked(after) in ("", *" \t,:]}")
 
 
@@ -138,6 +140,7 @@ class _Loader:
             # change.
             self.inputs[path] = self.inputs[self.first[key]]
             return self.by_path[key]
+        # Before the includes: a file that includes itself, directly or not, ends here.
         self.by_path[key], self.first[key] = None, path
         tree = self.read(path, "icd")
         if tree is None:
@@ -173,6 +176,7 @@ class _Loader:
         valid YAML.
         """
         name = str(path)
+        # Until the file is read: an unreadable file never counts as unchanged.
         self.inputs[path] = fingerprints.UNKNOWN
         try:
             unsaved = self.unsaved.get(_resolved(path))

@@ -262,6 +262,8 @@ def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
     end, parts = 8 * layout.length, iter(layout.parts)
     for node in layout.sequence:
         if not is_variable(node):
+            # In the ICD, `at` of these nodes is the end of the fixed part, which
+            # `_place` adds.
             places.append(_place(node, orders, end - node.at))
             end += bits_of_node(node)
             continue

@@ -377,6 +377,7 @@ class Builder:
             return text
         else:
             value = text
+        # Only texts without a finding, which must be reported at each place.
         self.scalars[text] = value
         return value
 
