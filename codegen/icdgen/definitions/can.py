@@ -102,6 +102,8 @@ class _Database:
         # Warnings of cantools are suppressed, because the import reports the same
         # faults as findings.
         logging.getLogger("cantools").addHandler(_DISCARDING)
+        # With `strict`, cantools rejects a whole file for one signal that overlaps
+        # another or ends behind its frame. Such signals get findings here.
         return database.load_string(text, self.name, strict=False)
 
 
@@ -185,6 +187,7 @@ def _text(data: bytes) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
+        # A DBC declares no encoding. Tools for Windows write its code page.
         return data.decode("cp1252", "replace")
 
 
@@ -252,6 +255,7 @@ def _message(
         raise NotSupported(
             "it contains other messages in an order that differs from frame to frame"
         )
+    # At least three hexadecimal digits, as CAN ids are usually printed.
     item: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
     item |= {"kind": "telemetry", "length": message.length}
     senders = [sender for sender in message.senders if sender not in _UNKNOWN_SENDERS]
@@ -353,6 +357,8 @@ def signal_place(signal: Any) -> frames.Place:
     """
     if signal.byte_order == "little_endian":
         return frames.Place(signal.start, signal.length, frames.LITTLE)
+    # In a DBC, a big-endian signal starts at its most significant bit, from which `BIG`
+    # counts as well.
     return frames.Place(
         signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG
     )

@@ -136,6 +136,7 @@ class Container(Generic[AnyPart]):
         container.
         """
         first = self.first_variable
+        # Rounded up to whole bytes.
         return -(-(self.at if first is None else first.at) // 8)
 
     def is_behind(self, part: AnyPart) -> bool:

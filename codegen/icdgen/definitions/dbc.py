@@ -222,6 +222,8 @@ def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) 
     """Load each message separately with its attributes and comments, and return the
     messages that can be read.
     """
+    # The last resort, because it parses the shared statements once per message: without
+    # it, one faulty message would cost all others.
     shared, blocks = "", []
     of_message: defaultdict[str, str] = defaultdict(str)
     block: list[_Statement] = []

@@ -102,6 +102,8 @@ class Layout(Container[Part]):
         }
         for ancestor in reversed(chain):
             self._entries(ancestor, "EntryList", path, users[ancestor])
+        # Trailers enclose the body like the headers: that of the most derived container
+        # comes first (CCSDS 876.0-B-1).
         for ancestor in chain:
             self._entries(ancestor, "TrailerEntryList", path, users[ancestor])
             for constraint in ancestor.iterfind("ConstraintSet/*"):
@@ -323,6 +325,8 @@ class Layout(Container[Part]):
         chain = self.types.chain(type_)
         values = [value for _, value in self.sheets.labels(chain[-1])]
         if values:
+            # An enumeration as index has an element for each number between its labels,
+            # too.
             return max(values) - min(values) + 1
         low, high = self.types.piece(
             type_, type_, f"the index of `{name}`"
@@ -569,6 +573,8 @@ class Layout(Container[Part]):
                     and length.factor == 1
                     and length.offset.denominator == 1
                 ):
+                    # `at` counts the fixed parts alone, so the remaining bytes are
+                    # those of the variable part.
                     counter = Counter(other, int(length.offset) - self.at // 8)
         return counter
 

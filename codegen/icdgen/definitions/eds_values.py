@@ -162,6 +162,7 @@ def coded(value: int, code: str, bits: int) -> int | None:
         return None
     if value >= 0:
         return value
+    # One's complement: the inverted bits of the magnitude.
     return (
         (1 << bits - 1 | -value) if code == "signMagnitude" else (1 << bits) - 1 + value
     )

@@ -538,6 +538,8 @@ class Layout(Container[Part]):
         raw = {
             option & mask: option
             for option in options
+            # Options that the field cannot have are left out: their bits give another
+            # number, both unsigned and as two's complement.
             if option in (option & mask, (option & mask) - all_bits - 1)
         }
         if part.mask & mask == mask:
@@ -563,6 +565,7 @@ class Layout(Container[Part]):
             )
         chosen = self.decided[key]
         if chosen is None and free.bit_count() == 1 and len(possible) == 1:
+            # A single bit that differs from the only option has the other value.
             part.mask, part.value = part.mask | mask, part.value & ~mask | (
                 possible[0] ^ free
             )

@@ -168,6 +168,8 @@ class MavLink2:
         if self.has_extensions:
             item["may_end_early"] = "zeros"
         item |= summary(_description(element))
+        # Extension fields keep the order of the XML: MAVLink sorts the base fields
+        # alone, so that old receivers find these at the same bytes.
         fields, at = [], 0
         for field in (*base, *(more if self.has_extensions else ())):
             fields.append({"at": at, **_icd_field(name, field, enums, version, to)})
@@ -328,6 +330,7 @@ def _icd_field(
 ) -> Item:
     """Return the field of the ICD without its position."""
     element = field.element
+    # An array of `char` is one text, not an array.
     if field.type == "char":
         return {
             "bits": field.bits,
@@ -391,6 +394,7 @@ def _name_values(
     field cannot have all of them.
     """
     low, high = integer_range(bits, item["type"] == "int")
+    # A value may be named that a narrow field can never have.
     named = [
         member
         for member in enum["members"]

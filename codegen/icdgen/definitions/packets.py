@@ -69,6 +69,8 @@ def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
         values.setdefault((at, bits), value)
     ahead = [place for place in values if place[0] < HEADER_BITS]
     is_whole = any(set(places) <= set(ahead) for places in _HEADERS)
+    # All named parts must belong to the header: other frames can have 11 bits at bit 5,
+    # too.
     is_part = (
         _APID in ahead
         and len(ahead) > 1
@@ -152,7 +154,9 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
                 {"bits": APID_BITS, "role": "id"},
                 # Sequence flags 3: unsegmented, unless the sender sets another value.
                 {"bits": 2, "role": "type", "value": 3},
+                # CCSDS 133.0-B-2, 4.1.3.4: each application process counts its packets.
                 {"bits": 14, "role": "sequence", "per": "id"},
+                # 4.1.3.5: the bytes behind the header, minus 1.
                 {"bits": 16, "role": "length", "plus": -1},
             ],
         }

@@ -80,6 +80,7 @@ _KINDS = {
     "string": _Kind("text", 0),
     "ipaddr": _Kind("bytes", 2),
     "ipv6addr": _Kind("bytes", 8),
+    # Four registers, although 48 bits would fit into three.
     "eui48": _Kind("bytes", 4),
 }
 
@@ -368,6 +369,8 @@ class _Model:
             "name": name,
             "type": kind.type,
         }
+        # Each model has an id and a length, so 0xFFFF does not mean that they are
+        # absent.
         none = _special(kind, type_name) if not is_head else {}
         symbols = _symbols(point, is_bits=type_name.startswith("bitfield"))
         if (

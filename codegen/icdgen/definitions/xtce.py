@@ -231,6 +231,8 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
                         assignment.get("argumentName", ""),
                         assignment.get("argumentValue", ""),
                     )
+            # The chain begins with the derived command, so its assignments take
+            # precedence.
             for name, value in assigned.items():
                 layout.required_values.append(
                     RequiredValue(layout.argument(name), value, is_raw=False)

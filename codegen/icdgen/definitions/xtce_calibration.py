@@ -52,6 +52,8 @@ def calibrated(calibrator: Element) -> dict[str, Any] | None:
     if spline is None:
         return None
     points = spline.findall("SplinePoint")
+    # Order 0 keeps the value of a point up to the next one, 1 joins points by lines, 2
+    # by parabolas (XTCE 1.2, SplineCalibratorType).
     if {element.get("order", "1") for element in (spline, *points)} != {"1"}:
         raise ValueError(
             f"it is calibrated by a table of {len(points)} points that are not joined by lines"
@@ -59,6 +61,8 @@ def calibrated(calibrator: Element) -> dict[str, Any] | None:
     goes_on = spline.get("extrapolate", "false") == "true"
     return (
         _formula_key(line_through(points))
+        # A line through two points that goes on beyond both is a linear formula, which
+        # an integer field computes exactly.
         if len(points) == 2 and goes_on
         else _table(points, goes_on)
     )

@@ -134,6 +134,7 @@ class Layout(Container[Part]):
 
         Raises `NotSupported` if their conditions are nested.
         """
+        # Alternatives share their bits, so all fields need explicit positions.
         self.jumps, self.behind = True, _named(entry)
         for part in self.parts[before:]:
             if "when" in part.item:
@@ -254,6 +255,8 @@ class Layout(Container[Part]):
             item.get("bits", 8),
             piece=piece,
         )
+        # The XTCE that icdgen writes marks its padding, so that an import gives the
+        # same ICD.
         part.reference, part.is_reserved = reference, "reserved" in ancillary_data(of)
         self._add(part)
 

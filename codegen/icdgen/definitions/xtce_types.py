@@ -142,6 +142,7 @@ class Types(Reading):
             raise NotSupported(
                 f"{where} is an array of as many elements as another parameter says"
             )
+        # The last index is part of the array.
         return _array(self._element(of, where), last - first + 1, where)
 
     def _element(self, of: Element, where: str) -> Piece:
@@ -184,6 +185,8 @@ class Types(Reading):
                 raise NotSupported(
                     f"the type `{chain[0].get('name', '')}` has no encoding"
                 )
+            # Defaults of the XTCE schema for types: 32 bits, signed. Those of an
+            # encoding differ: 8 bits, unsigned.
             bits = number(_attribute(chain, "sizeInBits", "32"), "a size")
             is_signed = _attribute(chain, "signed", "true") == "true"
             return _numbers(
@@ -284,6 +287,7 @@ class Types(Reading):
             self.step(last - first + 1)
             for value in range(first, last + 1):
                 choices.setdefault(value, enumeration.get("label", ""))
+        # Reversed: of equal labels, the first value counts.
         piece.values = {label: value for value, label in reversed(choices.items())}
         notes = self.heard(f"labels of {id(element)}")  # report once per type
         called = _enumeration_name(element)
@@ -310,6 +314,7 @@ class Types(Reading):
             raise NotSupported(f"a flag is encoded as {piece.item['type']}")
         label_of_0 = _attribute(chain, "zeroStringValue", "False")
         label_of_1 = _attribute(chain, "oneStringValue", "True")
+        # Comparisons may use the words of XML instead of the labels.
         piece.values = {label_of_0: 0, label_of_1: 1, "false": 0, "true": 1}
         if piece.bits == 1:
             piece.item["type"] = "bool"
@@ -544,6 +549,7 @@ def _bytes(encoding: Element, type_: str) -> Piece:
         return _open(type_, encoding if variable is None else variable)
     if size.find("LeadingSize") is not None:
         raise NotSupported("it has a length prefix")
+    # A text of an ICD ends at the first NUL anyway; other terminators have no key.
     if (end := size.find("TerminationChar")) is not None and (end.text or "00").strip(
         "0"
     ):
