@@ -128,6 +128,7 @@ def _content(path: str) -> bytes:
     """Return the bytes of a private file; empty for anything else, such as a link or a
     pipe.
     """
+    # Without O_NONBLOCK, opening a pipe waits for a writer.
     flags = (
         os.O_RDONLY
         | getattr(os, "O_NOFOLLOW", 0)
@@ -157,6 +158,7 @@ def _make(place: str) -> None:
 
 def _write(target: str, data: bytes) -> None:
     """Write a file atomically."""
+    # Builds in parallel write the same record.
     part = f"{target}.{os.getpid()}"
     handle = os.open(
         part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600

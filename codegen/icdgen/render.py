@@ -66,6 +66,7 @@ class Renderer:
             trim_blocks=True,
             lstrip_blocks=True,
             keep_trailing_newline=True,
+            # Saves a look at the disk for each use of a template.
             auto_reload=False,
         )
         self._environment.context_class = _context_class()
@@ -169,6 +170,7 @@ def _context_class() -> type[Context]:
             **named: object,
         ) -> object:  # fmt: skip
             return (
+                # `Macro.__call__` of Jinja is marked to take the evaluation context.
                 function(self.eval_ctx, *args, **named)
                 if type(function) is Macro
                 else function(*args, **named)

@@ -138,6 +138,7 @@ def _write_depfile(path: Path, outcome: Outcome) -> None:
             f"{path} is an input or an output",
             "give the dependency file a name of its own",
         )
+    # Build tools compare times, so an equal file is not written again.
     if write.read(depfile) != data:
         try:
             write.replace(depfile, data)
@@ -158,6 +159,7 @@ def _escape(path: str) -> str:
             "rename what has a line end in its name",
         )
     return (
+        # First the backslash, because the other replacements add backslashes.
         path.replace("\\", "\\\\")
         .replace(" ", "\\ ")
         .replace("#", "\\#")

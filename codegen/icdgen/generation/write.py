@@ -135,6 +135,7 @@ def replace(target: str | Path, data: bytes) -> None:
         handle, name = _new_file(folder)
     try:
         with open(handle, "wb", buffering=0) as file:
+            # An unbuffered `write` can write less than it was given.
             unwritten = memoryview(data)
             while unwritten:
                 unwritten = unwritten[file.write(unwritten) :]

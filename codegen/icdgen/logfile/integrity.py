@@ -207,6 +207,8 @@ class LogSurvey:
         first = self._time(begin)
         is_clock = first is not None and self._is_clock(begin)
         second = self._time(begin + size)
+        # The header gives the first entry, so two times of these years are believed
+        # even if the clock was set between them.
         is_trusted = (
             first is not None
             and first >= YEAR_1990
@@ -300,6 +302,8 @@ class LogSurvey:
             at + self.entry_bytes,
             self._time(at),
         )
+        # Reads grow, because the first rows of a log need few entries, and a long log
+        # without damage needs few calls.
         amount = FIRST_CHUNK * size
         if previous is None:
             return at
@@ -349,11 +353,16 @@ class LogSurvey:
         follow = (
             self._deviation(next_, second) if broken + 3 * size <= self.size else 0.0
         )
+        # Three explanations: the clock was set at `broken`, only the time there is
+        # damaged, or only the time before it is. The one with the steps that are
+        # closest to the usual step applies.
         jump = lead + self._deviation(here, next_) + follow
         only_here = lead + self._deviation(previous, next_, 2) + follow
         only_previous = (
             self._deviation(before, here, 2) + self._deviation(here, next_) + follow
         )
+        # Without a battery, a clock starts again at 1970, and its first steps are no
+        # evidence of damage.
         is_restart = here is not None and 0 < here < DAY
         if min(only_here, only_previous) < NEVER and not is_restart:
             if jump <= min(only_here, only_previous):
@@ -369,6 +378,7 @@ class LogSurvey:
         is_clock = bool(here or next_) and self._is_clock(
             broken
         )  # zeros are erased or lost memory
+        # A clock that stands still is memory with one content.
         if is_clock and (here != next_ or next_ != second):
             return broken, broken
         low = broken - size + 1

@@ -172,6 +172,9 @@ class ColumnReader:
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
+            # Up to 256 values share one dictionary of all names. Larger enumerations
+            # get the names that occur in a batch, so their indices differ from batch to
+            # batch.
             if column.field.bits > 8 or column.field.is_signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))

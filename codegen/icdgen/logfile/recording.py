@@ -124,6 +124,7 @@ class Recording:
             for messages in self._known.values()
             for message in messages
         }
+        # Most messages, which then need no pass of the slow reference codec.
         self._with_equal_frames = {
             name
             for name, message in self.messages.items()

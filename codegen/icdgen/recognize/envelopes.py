@@ -60,6 +60,7 @@ class _RecordingDecoder(StreamDecoder):
     def _frame(
         self, frame: bytes, size: int, fault: str | None, events: list[StreamEvent]
     ) -> None:
+        # Before the call, because it calls `_judge`, which needs the position.
         self._at, self._end = self._end, self._end + size
         super()._frame(frame, size, fault, events)
         if fault:
@@ -133,6 +134,7 @@ def readings(
         for result in usable
         if any(map(selection.fits, chain.from_iterable(result.readings)))
     ] or usable
+    # With equally few unused bytes, the direction with the most packets is right.
     least, fewer = min((result.lost, -len(result.readings)) for result in usable)
     best = [
         result

@@ -311,6 +311,7 @@ def _fault_of_whole(
             help = "bytes are missing, or too many, or damaged"
             return Fault(rank, text, help, count, count)
     place, has_message = received.checksum, form.tells_message
+    # A seeded checksum depends on the message, so it needs a known id.
     if (
         place
         and form.check

@@ -74,6 +74,8 @@ def read(text: str) -> Pasted:
 
     Raise `BadHex`, with the position of the error.
     """
+    # From the strictest spelling to the most lenient one: `10 20 30` is hexadecimal,
+    # decimal and, without blanks, base64.
     if can_packets := packets(text):
         return Pasted(packets=tuple(can_packets))
     if (data := dump(text)) is not None:

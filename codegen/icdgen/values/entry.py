@@ -76,6 +76,7 @@ def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
         return _bytes(field, text)
     value = (raw_value if raw else from_physical)(field, text)
     return (
+        # The codec pads texts with NUL, but here the number of bytes sets the counter.
         value[: len(text)]
         if has_variable_length and isinstance(value, bytes)
         else value
@@ -254,6 +255,7 @@ def _member(field: FrameField, enum: Enum, text: str) -> int:
             for member in enum.members
             if _has_words(member, text)
         }
+    # A member can be called like the number of another one, which is ambiguous.
     if number is not None:
         matches[str(number)] = number
     if len(matches) == 1:

@@ -299,6 +299,7 @@ def _aliases(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
     if not isinstance(item, FrameField | ArrayOfFields):
         return item.aliases
     *before, last = item.steps
+    # Below an array, an alias without a path would name a field of every element.
     without_path = [last.text(alias) for alias in last.node.aliases]
     path = name_of_steps(before)
     with_path = [f"{path}.{alias}" for alias in without_path] if before else []

@@ -10,6 +10,7 @@ from icdgen.icd import floats
 LONGEST = 400  # characters; int() takes quadratic time for longer texts
 
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+# The divisor has a digit other than 0, so it is not zero.
 _RATIO = re.compile(r"[+-]?[0-9]+/0*[1-9][0-9]*")
 _INTEGER = re.compile(r"[+-]?[0-9]+")
 _HEX = re.compile(r"([+-]?)0[xX]([0-9A-Fa-f]+)")
