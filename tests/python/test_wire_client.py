@@ -205,3 +205,61 @@ def test_a_wrong_checksum_is_sent_again(shipped, wire):
     assert client.received(5, acknowledge(acp.LINK, wire, 10, 4)) == []
     assert client.output() == sent
     assert client.received(9, acknowledge(acp.LINK, wire, 10)) == [wire.Done(10, 2)]
+
+
+def test_two_requests_at_a_time_if_the_device_handles_them(shipped, wire):
+    acp = shipped.module("cubeacp")
+    settings = acp.LINK.settings._replace(in_flight=2)
+    client = wire.Client(acp.LINK, "uart", settings=settings)
+    client.request(0, acp.EstimatedAttitudeAngles)
+    client.request(0, acp.EstimatedAttitudeAngles)  # its reply could be the first one
+    assert client.output() and not client.output()
+    client.cancel(handle=client.begun)
+    client.send(1, acp.SetAdcsRunMode(enabled=1))
+    client.request(1, acp.EstimatedAngularRates)
+    assert client.output() and not client.output()
+    (done,) = client.received(2, acknowledge(acp.LINK, wire, 10))
+    assert (done.id, done.handle) == (10, 3)
+    assert client.output()
+    (done,) = client.received(3, wire.uart_encode(acp.LINK, b"\x92" + bytes(6)))
+    assert (done.id, done.handle) == (146, 1)
+
+
+def test_i2c_results_belong_to_their_requests_in_the_order_of_transactions(
+    shipped, wire
+):
+    acp = shipped.module("cubeacp")
+    settings = acp.LINK.settings._replace(in_flight=3)
+    client = wire.Client(acp.LINK, "i2c", settings=settings)
+    client.send(0, acp.SetAdcsRunMode(enabled=1))
+    client.request(0, acp.EstimatedAttitudeAngles)
+    client.request(0, acp.EstimatedAttitudeAngles)
+    assert [transfer.write[0] for transfer in client.transfers()] == [10, 146, 146]
+    assert client.transferred(1, b"") == []
+    (first,) = client.transferred(1, bytes([1, *bytes(5)]))
+    assert (first.handle, first.data[0]) == (2, 1)
+    client.tick(21)
+    assert [transfer.write[0] for transfer in client.transfers()] == [240]
+    (second,) = client.transferred(22, bytes([2, *bytes(5)]))
+    assert (second.handle, second.data[0]) == (3, 2)
+    (done,) = client.transferred(23, bytes((10, 1, 0, 0)))
+    assert (done.id, done.handle, client.busy) == (10, 1, False)
+
+
+def test_a_request_wakes_the_program_only_for_late_responses_it_waits_for(
+    shipped, wire
+):
+    acp = shipped.module("cubeacp")
+    settings = acp.LINK.settings._replace(reply_timeout=100, late=100)
+    client = wire.Client(acp.LINK, "uart", settings=settings)
+    for now, message in (
+        (0, acp.EstimatedAttitudeAngles),
+        (50, acp.EstimatedAngularRates),
+    ):
+        client.request(now, message)
+        assert client.output()
+        client.cancel()
+    client.request(60, acp.EstimatedAngularRates)
+    assert client.output() == b"" and client.deadline == 250
+    client.tick(250)
+    assert client.output()
