@@ -115,7 +115,7 @@ class _LinkBuilder:
             "longest_data": facts.longest_data,
             "telemetry_ids": (facts.telemetry_ids.first, facts.telemetry_ids.last),
             "settings": self.part(facts.client),
-            "errors": self.commented_rest(facts.errors, "errors"),
+            "errors": self.commented_rest(facts.errors, "link.reasons"),
             "commands": {
                 each.id: self.sent(each) for each in self.description.telecommands
             },
@@ -129,7 +129,7 @@ class _LinkBuilder:
         optional = {
             "framing": self.part(facts.framing),
             "acknowledge": self.part(facts.acknowledge),
-            "polled": self.commented_rest(self.polled(), "i2c.acknowledge"),
+            "polled": self.commented_rest(self.polled(), "link.buses.i2c.acknowledge"),
             "i2c_address": facts.i2c_address,
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
@@ -211,7 +211,9 @@ class _LinkBuilder:
             return None
         parts = {role: _flat("CanPart", part) for role, part in can.parts.items()}
         computed = {
-            "parts": _explained(parts, self.assumed.why("can", "identifier")),
+            "parts": _explained(
+                parts, self.assumed.why("link.buses.can", "identifier")
+            ),
             "types": can.types,
             "extended_types": can.extended_types,
         }

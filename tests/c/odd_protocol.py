@@ -8,7 +8,7 @@ import copy
 import dataclasses
 from typing import Any
 
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd, Node, buses_of
 
 
 def of(icd: Icd) -> Icd:
@@ -18,18 +18,18 @@ def of(icd: Icd) -> Icd:
 
 def _changed(node: Node) -> Node:
     protocol = copy.deepcopy(node.protocol)
-    if "uart" in protocol:
-        protocol["uart"]["framing"] |= {
-            "escape": 0x10, "start_of_message": 2, "end_of_message": 3, "escaped_data": 0x11, "other": "ignore",
+    if buses := buses_of(protocol):
+        buses["uart"]["framing"] |= {
+            "escape": 0x10, "start": 2, "end": 3, "data": 0x11, "other": "ignore",
             "escaped_in": ["data"],
         }  # fmt: skip
-        protocol["can"]["extended"] |= {
+        buses["can"]["extended"] |= {
             "fill": 0xA5,
             "packets_left_in_last": 1,
             "max_packets": 255,
             "max_bytes": 1785,
         }
-        protocol["can"]["node_address"] = 9
+        buses["can"]["node_address"] = 9
         protocol["crc16"] |= {
             "init": 0xFFFF,
             "reflect_in": True,

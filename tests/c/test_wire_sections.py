@@ -10,21 +10,21 @@ import subprocess
 
 import pytest
 
-from icdgen.icd.model import Icd
+from icdgen.icd.model import Icd, buses_of
 from tests.c import harness
 
 PARTS = {
-    "message_id": [],
-    "errors": ["errors"],
-    "link": [],
+    "link.ids": [],
+    "link.reasons": ["errors"],
+    "link.client": [],
     "identification": ["identification"],
     "statistics": [],
     "statistics_reset": [],
     "boot_status": [],
     "program_start": [],
-    "uart": ["framing", "acknowledge", "unsolicited"],
-    "i2c": ["polled"],
-    "can": ["can"],
+    "link.buses.uart": ["framing", "acknowledge", "unsolicited"],
+    "link.buses.i2c": ["polled"],
+    "link.buses.can": ["can"],
     "procedures": [],
     "crc16": ["crc16"],
     "index_file": ["index"],
@@ -38,6 +38,29 @@ PARTS = {
 """The pointers of a link that each section of a protocol gives."""
 
 MEMBERS = sorted(member for members in PARTS.values() for member in members)
+
+
+def sections_of(protocol: dict, path: str = "") -> dict:
+    """The sections of a protocol; the parts of a link and the buses are sections."""
+    sections = {}
+    for name, part in protocol.items():
+        if f"{path}{name}" in ("link", "link.buses"):
+            sections |= sections_of(part, f"{path}{name}.")
+        else:
+            sections[f"{path}{name}"] = part
+    return sections
+
+
+def protocol_of_sections(sections: dict) -> dict:
+    """The protocol that has these sections."""
+    protocol: dict = {}
+    for path, part in sections.items():
+        *owners, name = path.split(".")
+        owner = protocol
+        for key in owners:
+            owner = owner.setdefault(key, {})
+        owner[name] = part
+    return protocol
 
 
 @pytest.fixture(scope="module")
@@ -54,16 +77,20 @@ def icd() -> Icd:
     for procedure in whole["procedures"].values():
         procedure.pop("nodes", None)
     protocols = {"whole": whole}
+    sections = sections_of(whole)
     needed = {"procedures": {"crc16"}}  # sections by those that need them
-    for section in whole:
-        protocols[f"without_{section}"] = {
-            name: part
-            for name, part in whole.items()
-            if name != section and section not in needed.get(name, ())
-        }
-        protocols[f"only_{section}"] = {
-            name: whole[name] for name in (section, *needed.get(section, ()))
-        }
+    for section in sections:
+        title = section.replace(".", "_")
+        protocols[f"without_{title}"] = protocol_of_sections(
+            {
+                name: part
+                for name, part in sections.items()
+                if name != section and section not in needed.get(name, ())
+            }
+        )
+        protocols[f"only_{title}"] = protocol_of_sections(
+            {name: sections[name] for name in (section, *needed.get(section, ()))}
+        )
     taken = {id for message in bootloader.messages for id in message.ids}
     names = {
         message.identifier for message in bootloader.messages
@@ -199,7 +226,7 @@ def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
     ).stdout.splitlines()
     ok, length, unsupported = "00", "14", "44"  # of the client and of the request
     buses = [
-        ["uart" in node.protocol, "i2c" in node.protocol, "can" in node.protocol]
+        [bus in buses_of(node.protocol) for bus in ("uart", "i2c", "can")]
         for node in nodes
     ]
     assert told == [
@@ -214,6 +241,8 @@ def parts(protocol: dict) -> list[str]:
         "telemetry_log",
         "unsolicited_log",
     }  # which nobody can read without the mask
-    sections = protocol.keys() - (logs if "log_mask" not in protocol else set())
+    sections = sections_of(protocol).keys() - (
+        logs if "log_mask" not in protocol else set()
+    )
     found = sorted(member for section in sections for member in PARTS[section])
-    return [*found, *(["at an address"] if "i2c" in protocol else [])]
+    return [*found, *(["at an address"] if "i2c" in buses_of(protocol) else [])]

@@ -196,10 +196,11 @@ icdgen: 1
 node: {name: relay, title: Relay, byte_order: big, bit_order: msb0}
 units: [{symbol: clicks, identifier: clicks, quantity: count}]
 protocol:
-  message_id:
-    direction_bit: 5
-    telecommand: {direction: 0, first: 10, last: 20}
-    telemetry: {direction: 1, first: 32, last: 40}
+  link:
+    ids:
+      direction_bit: 5
+      telecommand: {direction: 0, first: 10, last: 20}
+      telemetry: {direction: 1, first: 32, last: 40}
   identification: {source: {table: 3}, message: Identification, fields: {node_type: Model, interface_version: Clicks}}
   boot: {bootloader_s: 5, stop_request: Identification}
 enums:

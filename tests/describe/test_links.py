@@ -17,6 +17,7 @@ from icdgen.backends.literals import Brackets, Item, written
 from icdgen.describe import describe
 from icdgen.describe.links import Assumptions, LinkDescription, links_of
 from icdgen.icd.model import Icd
+from icdgen.icd.trees import at_path
 from icdgen.render import Renderer
 from tests.conformance.icds import shipped
 
@@ -37,9 +38,10 @@ def without(section: str, key: str) -> LinkDescription:
     icd = shipped()
     node = icd.node("cubeacp")
     protocol = copy.deepcopy(icd.protocol_of(node))
-    for name, rows in protocol[section].items():
+    part = at_path(protocol, section.split("."))
+    for name, rows in part.items():
         if isinstance(rows, list):
-            protocol[section][name] = [
+            part[name] = [
                 one for one in rows if key not in (one.get("role"), one.get("name"))
             ]
     changed = dataclasses.replace(node, protocol=protocol)
@@ -75,20 +77,20 @@ def test_every_assumption_stands_in_the_link_of_every_language(language):
 def test_an_assumption_is_told_once():
     facts = described()["cubeacp"].facts
     assumed = Assumptions(facts)
-    assert assumed.why("can.extended", "fill") and not assumed.why(
-        "can.extended", "fill"
+    assert assumed.why("link.buses.can.extended", "fill") and not assumed.why(
+        "link.buses.can.extended", "fill"
     )
-    assert [key for key, _ in assumed.of_section("can.extended")] == [
+    assert [key for key, _ in assumed.of_section("link.buses.can.extended")] == [
         "packet_timeout_ms"
     ]
-    assert not assumed.of_section("can.extended")
+    assert not assumed.of_section("link.buses.can.extended")
     assert len(assumed.others()) == len(facts.assumptions) - 2 and not assumed.others()
 
 
 @pytest.mark.parametrize(
     ("section", "key", "part"),
     [
-        ("can", "source", "can"),
+        ("link.buses.can", "source", "can"),
         ("msdos_time", "hour", "time"),
         ("index_file", "meta", "index"),
     ],

@@ -41,7 +41,9 @@ LOGGED = BASE + """\
     fields: [{at: 0, bits: 8, name: Current, type: uint}]
 loggable: [{bit: 0, id: 130}]
 protocol:
-  uart: {framing: {escape: 31, start_of_message: 127, end_of_message: 255, escaped_data: 31}}
+  link:
+    buses:
+      uart: {framing: {by: escape, escape: 31, start: 127, end: 255, data: 31}}
 """
 
 
@@ -137,7 +139,7 @@ def test_framing_concerns_everything_on_the_wire_and_nothing_in_logs(tmp_path):
         "partly",
         "yes",
     ]
-    assert "protocol.uart.framing.escape" in found["telemetry"].general[0]
+    assert "protocol.link.buses.uart.framing.escape" in found["telemetry"].general[0]
 
 
 def test_the_mask_concerns_logs(tmp_path):

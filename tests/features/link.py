@@ -9,25 +9,25 @@ enums:
   - name: Refusal of the line
     members: [{value: 0, name: None}, {value: 1, name: Unknown}, {value: 2, name: Length}, {value: 3, name: Value}]
 protocol:
-  errors: {enum: Refusal of the line, none: 0, unknown_id: 1, length: 2, parameter: 3}
-  link: {client: {reply_timeout_ms: 100, retries: 2}}
-  uart:
-    baud_rate: 115200
-    data_bits: 8
-    parity: none
-    stop_bits: 1
-    framing:
-      escape: 0x10
-      start_of_message: 0x02
-      end_of_message: 0x03
-      escaped_data: 0x10
-      other: error
-      escaped_in: [id, data]
-    acknowledge:
-      required_before_next: true
-      data:
-        - {byte: 0, bytes: 1, name: Number,  role: id,    type: uint}
-        - {byte: 1, bytes: 1, name: Refusal, role: error, type: enum, enum: Refusal of the line}
+  link:
+    reasons: {enum: Refusal of the line, none: 0, unknown_id: 1, length: 2, parameter: 3}
+    buses:
+      uart:
+        line: {baud_rate: 115200, data_bits: 8, parity: none, stop_bits: 1}
+        framing:
+          by: escape
+          escape: 0x10
+          start: 0x02
+          end: 0x03
+          data: 0x10
+          other: error
+          escaped_in: [id, data]
+        acknowledge:
+          required_before_next: true
+          data:
+            - {byte: 0, bytes: 1, name: Number,  role: id,    type: uint}
+            - {byte: 1, bytes: 1, name: Refusal, role: error, type: enum, enum: Refusal of the line}
+    client: {reply_timeout_ms: 100, retries: 2}
   log_mask:
     bytes: 2
     bit_order: lsb0

@@ -70,7 +70,98 @@ def test_times_of_a_client_alone_are_moved_too():
     assert converted["protocol"] == {"link": {"client": {"retries": 1}}}
 
 
-@pytest.mark.parametrize("text", [EARLIER, "icdgen: 1\nprotocol: {client: {}}\n"])
+BUSES = """\
+icdgen: 1
+node: {name: pump, title: Pump, byte_order: big, bit_order: msb0}
+protocol:
+  # by the first bit
+  message_id:
+    source: {table: 2}
+    direction_bit: 7
+    telecommand: {direction: 0, first: 0, last: 127}
+    telemetry: {direction: 1, first: 128, last: 255}
+  uart:
+    source: {table: 3}  # of the manual
+    baud_rate: 9600
+    parity: none
+    framing: {escape: 16, start_of_message: 2, end_of_message: 3, escaped_data: 16, assumptions: {escaped_data: Not given.}}
+    assumptions:
+      # measured
+      parity: Not given.
+  i2c: {write: {address_7bit: 0x57}}
+  client: {retries: 1}
+  errors: {enum: Code, none: 0, length: 1}
+enums:
+  - {name: Code, members: [{value: 0, name: None}, {value: 1, name: Length}]}
+messages:
+  - {name: Save, id: 8, kind: telecommand, length: 0}
+"""
+
+
+def test_buses_are_in_the_link_with_the_keys_of_framed_links(tmp_path):
+    text = format_text(BUSES, "pump.yaml")
+    link = yaml.safe_load(text)["protocol"]["link"]
+    assert yaml.safe_load(text)["protocol"].keys() == {"link"}
+    assert link.keys() == {"ids", "reasons", "client", "buses"}
+    assert link["ids"]["source"] == {"table": 2}
+    assert link["reasons"] == {"enum": "Code", "none": 0, "length": 1}
+    assert link["buses"] == {
+        "uart": {
+            "source": {"table": 3},
+            "line": {
+                "baud_rate": 9600,
+                "parity": "none",
+                "assumptions": {"parity": "Not given."},
+            },
+            "framing": {
+                "by": "escape",
+                "escape": 16,
+                "start": 2,
+                "end": 3,
+                "data": 16,
+                "assumptions": {"data": "Not given."},
+            },
+        },
+        "i2c": {"write": {"address_7bit": 0x57}},
+    }
+    comments = "# by the first bit", "# of the manual", "# measured"
+    assert [text.count(comment) for comment in comments] == [1, 1, 1]
+    (tmp_path / "pump.yaml").write_text(text, encoding="utf-8")
+    assert load([tmp_path / "pump.yaml"]).findings == []
+
+
+ERRATA = """\
+errata: 1
+node: pump
+notes:
+  - id: PUMP-001
+    title: Markers
+    where: {section: protocol.uart.framing}
+    printed: {escaped_data: 31}
+    what: W.
+  - id: PUMP-002
+    title: Places
+    where: [{section: protocol.uart.parity}, {section: protocol.can.identifier.0}, {section: protocol.message_id}]
+    what: W.
+  - {id: PUMP-003, title: Other, where: {section: protocol.canning}, what: W.}
+"""
+
+
+def test_errata_name_the_present_places():
+    marked, moved, other = yaml.safe_load(format_text(ERRATA, "pump.yaml"))["notes"]
+    assert marked["where"] == {"section": "protocol.link.buses.uart.framing"}
+    assert marked["printed"] == {"data": 31}
+    assert [place["section"] for place in moved["where"]] == [
+        "protocol.link.buses.uart.line.parity",
+        "protocol.link.buses.can.identifier.0",
+        "protocol.link.ids",
+    ]
+    assert other["where"] == {"section": "protocol.canning"}
+
+
+@pytest.mark.parametrize(
+    "text", [EARLIER, BUSES, ERRATA, "icdgen: 1\nprotocol: {client: {}}\n"]
+)
 def test_a_second_time_nothing_changes(text):
     once = format_text(text, "pump.yaml")
     assert format_text(once, "pump.yaml") == once

@@ -21,8 +21,8 @@ HELD_ELSEWHERE = {
         for key in ("polynomial", "init", "xor_out", "empty", "check")
     ),
     *(f"{crc}/printed_constant" for crc in ("crc8", "crc16")),
-    "can/extended/packets_left_in_last",
-    "can/extended/max_packets",
+    "link/buses/can/extended/packets_left_in_last",
+    "link/buses/can/extended/max_packets",
     "boot/attempts",
 }
 

@@ -25,11 +25,13 @@ vocabulary: [CubeSense]
 units:
   - {symbol: ticks, identifier: ticks, quantity: time}
 protocol:
-  message_id:
-    direction_bit: 7
-    telecommand: {direction: 0, first: 0, last: 127}
-    telemetry: {direction: 1, first: 128, last: 255}
-  i2c: {write: {address_8bit: 0xAE, address_7bit: 0x57, binary: "0b1010 1110"}, read: {address_8bit: 0xAF}}
+  link:
+    ids:
+      direction_bit: 7
+      telecommand: {direction: 0, first: 0, last: 127}
+      telemetry: {direction: 1, first: 128, last: 255}
+    buses:
+      i2c: {write: {address_8bit: 0xAE, address_7bit: 0x57, binary: "0b1010 1110"}, read: {address_8bit: 0xAF}}
   crc16: {width: 16, polynomial: 0x1021, init: 0, reflect_in: false, reflect_out: false, xor_out: 0, check: 0x31C3}
   log_mask: {bytes: 10, frame_bytes: 4, set_by: [Set Mode]}
 enums:
@@ -97,7 +99,7 @@ entries:
 notes:
   - id: DEMO-003
     title: Addresses
-    where: [{section: protocol.i2c.write}, {section: messages.0}, {loggable: 0}]
+    where: [{section: protocol.link.buses.i2c.write}, {section: messages.0}, {loggable: 0}]
     printed: {id: 130}
     what: Nothing is known.
     evidence: Table 7.

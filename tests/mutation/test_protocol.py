@@ -11,6 +11,8 @@ import pytest
 from tests.conformance.icds import icd_of
 from tests.mutation.protocol import REFERENCE, Mutant, measure, mutants
 
+FRAMING = ("link", "buses", "uart", "framing")
+
 
 @pytest.fixture(scope="module")
 def icd():
@@ -26,8 +28,8 @@ def test_no_sampled_mutant_survives(icd, tmp_path):
 
 
 def test_another_escape_byte_is_noticed_by_every_language_asked(icd, tmp_path):
-    framing = icd.node("common").protocol["uart"]["framing"]
-    other = Mutant("common", ("uart", "framing", "escape"), framing["escape"] ^ 0x10)
+    framing = icd.node("common").protocol["link"]["buses"]["uart"]["framing"]
+    other = Mutant("common", (*FRAMING, "escape"), framing["escape"] ^ 0x10)
     assert measure(icd, [other], [REFERENCE, "python"], tmp_path)[other] == {
         REFERENCE: "killed",
         "python": "killed",
@@ -35,8 +37,8 @@ def test_another_escape_byte_is_noticed_by_every_language_asked(icd, tmp_path):
 
 
 def test_a_node_that_only_repeats_the_section_answers_all_vectors(icd, tmp_path):
-    framing = icd.node("common").protocol["uart"]["framing"]
-    same = Mutant("common", ("uart", "framing", "escape"), framing["escape"])
+    framing = icd.node("common").protocol["link"]["buses"]["uart"]["framing"]
+    same = Mutant("common", (*FRAMING, "escape"), framing["escape"])
     assert measure(icd, [same], [REFERENCE, "python"], tmp_path)[same] == {
         REFERENCE: "same",
         "python": "same",

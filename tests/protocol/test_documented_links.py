@@ -57,10 +57,11 @@ def test_the_link_of_the_cubeadcs_is_that_of_its_icd():
         yaml.safe_load((ROOT / "icd" / f"{name}.yaml").read_text(encoding="utf-8"))
         for name in ("common", "cubeacp")
     )
-    assert shown["message_id"].items() <= common["protocol"]["message_id"].items()
+    shown_link, link = shown["link"], common["protocol"]["link"]
+    assert shown_link["ids"].items() <= link["ids"].items()
     assert (
-        shown["uart"]["framing"].items()
-        <= common["protocol"]["uart"]["framing"].items()
+        shown_link["buses"]["uart"]["framing"].items()
+        <= link["buses"]["uart"]["framing"].items()
     )
     crc = {key: value for key, value in shown["crc8"].items() if key != "telecommand"}
     assert crc.items() <= acp["protocol"]["crc8"].items()

@@ -38,10 +38,12 @@ WITHOUT_TELEMETRY = """\
 icdgen: 1
 node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
 protocol:
-  uart:
-    framing: {escape: 0x10, start_of_message: 0x02, end_of_message: 0x03, escaped_data: 0x10}
-    acknowledge:
-      data: [{byte: 0, bytes: 1, name: Id, role: id, type: uint}, {byte: 1, bytes: 1, name: Error, role: error, type: uint}]
+  link:
+    buses:
+      uart:
+        framing: {by: escape, escape: 0x10, start: 0x02, end: 0x03, data: 0x10}
+        acknowledge:
+          data: [{byte: 0, bytes: 1, name: Id, role: id, type: uint}, {byte: 1, bytes: 1, name: Error, role: error, type: uint}]
 messages:
   - {name: Stop, id: 7, kind: telecommand, length: 0}
 """
@@ -63,7 +65,7 @@ def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):
 
 def test_every_assumption_says_what_is_held_and_why(known):
     held = {(a.section, a.key): a for a in known.assumptions}
-    assert held["can.extended", "fill"].value == 0
+    assert held["link.buses.can.extended", "fill"].value == 0
     assert held["log_mask", "frame_order"].value == "rising bits"
     assert held["crc8", "covers_id"].value is False
     assert held["message Reset", "acknowledge"].value == "reset"

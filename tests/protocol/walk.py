@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from icdgen.icd import schema
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd, Message, Node, buses_of
 from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
@@ -245,7 +245,8 @@ class Source:
             return others or [f"{value} other"]
         types = [
             one["name"]
-            for one in self.section.get("can", {})
+            for one in buses_of(self.section)
+            .get("can", {})
             .get("message_types", {})
             .get("values", ())
         ]

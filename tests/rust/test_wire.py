@@ -16,8 +16,10 @@ SMALL = """\
 icdgen: 1
 node: {name: small, title: Small node, byte_order: big, bit_order: msb0}
 protocol:
-  uart:
-    framing: {escape: 0x10, start_of_message: 0x02, end_of_message: 0x03, escaped_data: 0x10, other: ignore, escaped_in: [data]}
+  link:
+    buses:
+      uart:
+        framing: {by: escape, escape: 0x10, start: 0x02, end: 0x03, data: 0x10, other: ignore, escaped_in: [data]}
 messages:
   - {name: Ping, kind: telecommand, id: 16, length: 2, fields: [{at: 0, bits: 12, name: Key, type: uint}]}
 """

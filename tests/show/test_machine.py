@@ -24,7 +24,7 @@ icdgen: 1
 node: {name: top, title: Top, node_type: 0, interface_version: 7, byte_order: little, bit_order: lsb0}
 include: [base.yaml]
 units: [{symbol: stars, identifier: stars, quantity: count}]
-protocol: {uart: {baud_rate: 115200}}
+protocol: {link: {buses: {uart: {line: {baud_rate: 115200}}}}}
 messages:
   - {name: Reset, id: 0, kind: telecommand, length: 1, acknowledge: false,
      fields: [{at: 0, bits: 8, name: Magic, type: uint, const: 0}]}
@@ -49,7 +49,7 @@ entries:
   - {id: TOP-001, title: Wrong unit, where: {message: Temperature, field: Air}, printed: {unit: C}, held: {unit: K},
      tables: [98], why: It is., evidence: Table 98., confidence: likely}
 notes:
-  - {id: TOP-002, title: A section, where: {section: protocol.uart}, what: W., evidence: E.}
+  - {id: TOP-002, title: A section, where: {section: protocol.link.buses.uart}, what: W., evidence: E.}
   - {id: TOP-003, title: Two places, where: [{message: Reset}, {loggable: 5}], what: W., evidence: E.,
      confidence: certain}
 """
@@ -130,7 +130,9 @@ def test_the_keys_that_programs_look_for(shown):
         "length": 0,
         "fields": [],
     }
-    assert top["protocol"] == {"uart": {"baud_rate": 115200}}
+    assert top["protocol"] == {
+        "link": {"buses": {"uart": {"line": {"baud_rate": 115200}}}}
+    }
 
 
 def test_loggable_frames_of_a_node_and_of_all(shown):

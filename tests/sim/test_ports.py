@@ -18,6 +18,7 @@ from icdgen_runtime.wire import (
 )
 
 from icdgen.errors import UserError
+from icdgen.icd.model import buses_of
 from icdgen.link.ports import Can, PortError, Serial, open_port
 from icdgen.link.session import session
 from icdgen.protocol import facts
@@ -29,7 +30,9 @@ from tests.sim.device import ICD, simulator
 def test_a_serial_port_by_pyserial():
     link = cubeacp()
     with simulator("--node", "cubeacp", "--pty") as (place, _):
-        port = Serial(place, ICD.protocol_of(ICD.node("cubeacp"))["uart"])
+        port = Serial(
+            place, buses_of(ICD.protocol_of(ICD.node("cubeacp")))["uart"]["line"]
+        )
         with session(link, port) as client:
             outcome = client.start(Request("telemetry", link.identification.telemetry))
             assert isinstance(outcome, Done) and identify(link, outcome.data).matches

@@ -31,7 +31,7 @@ RESPONSES = re.compile(r"protocol\.link\.(commands|requests)\b.*")
 class Fact(NamedTuple):
     """Fact that differs; ``old`` or ``new`` has the value None if it is not declared."""
 
-    path: str  # "protocol.uart.framing.escape"
+    path: str  # "protocol.link.framing.escape"
     old: object
     new: object
     places: Places

@@ -17,7 +17,7 @@ class Where(NamedTuple):
     field: str = ""
     enum: str = ""
     member: str = ""
-    section: str = ""  # "protocol.uart.framing.escape"
+    section: str = ""  # "protocol.link.framing.escape"
     erratum: str = ""
 
     def __str__(self) -> str:

@@ -228,7 +228,7 @@ class _ByName:
 
 
 def section(tree: Map, path: str) -> Iterator[Map]:
-    """Yield the mapping at a path of keys and list indices, such as ``protocol.uart``,
+    """Yield the mapping at a path of keys and list indices, such as ``protocol.link``,
     if it exists.
     """
     node: object = tree

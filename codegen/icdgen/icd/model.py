@@ -246,9 +246,10 @@ def protocol_of_all(owners: Iterable[Node]) -> dict[str, Any]:
 def merged_protocols(protocols: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """Return one protocol section for several.
 
-    A part of a later section replaces that of an earlier one. Procedures, checksums and
-    the parts of a link are parts of their own; but the packets and responses of a link
-    belong to its framing, which is replaced with them.
+    A part of a later section replaces that of an earlier one. Procedures, checksums,
+    buses and the other parts of a link are parts of their own; but the packets and
+    responses of a link belong to its framing, which is replaced with them. A framed
+    link replaces buses, and buses replace a framed link.
     """
     merged: dict[str, Any] = {}
     for protocol in protocols:
@@ -264,19 +265,28 @@ def merged_protocols(protocols: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 def _merged_links(earlier: Any, later: Any) -> Any:
     if not isinstance(earlier, dict) or not isinstance(later, dict):
         return later
-    if "framing" in later:
+    if "framing" in later or ("buses" in later and "framing" in earlier):
         earlier = {
             key: earlier[key] for key in ("client", "checksums") if key in earlier
         }
-    link = {**earlier, **later}
-    if "checksums" in earlier and "checksums" in later:
-        link["checksums"] = _by_name(earlier["checksums"], later["checksums"])
-    return link
+    both = {
+        key: _by_name(earlier[key], later[key])
+        for key in ("checksums", "buses")
+        if key in earlier and key in later
+    }
+    return {**earlier, **later, **both}
 
 
 def _by_name(earlier: Any, later: Any) -> Any:
     is_mapping = isinstance(earlier, dict) and isinstance(later, dict)
     return {**earlier, **later} if is_mapping else later
+
+
+def buses_of(protocol: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the sections of UART, I2C and CAN of a protocol section, by name."""
+    link = protocol.get("link")
+    buses = link.get("buses") if isinstance(link, dict) else None
+    return buses if isinstance(buses, dict) else {}
 
 
 def framed_link(protocol: Mapping[str, Any]) -> dict[str, Any]:

@@ -41,7 +41,9 @@ _KEYS = {
 }  # fmt: skip
 
 # Keys of earlier versions, which `icdgen fmt` converts.
-_EARLIER = frozenset({"stream", "checksums", "client"})
+_EARLIER = frozenset(
+    {"stream", "checksums", "client", "message_id", "errors", "uart", "i2c", "can"}
+)
 
 _IN_BYTES = {
     "byte": ("at", "the first bit, if bytes count from 0"),

@@ -20,6 +20,7 @@ from urllib.parse import urlsplit
 
 from icdgen_runtime.wire.can import CanPacket
 
+from icdgen.icd.model import buses_of
 from icdgen.link.exclusive import PortError as PortError
 from icdgen.link.exclusive import busy_error, lock_port
 
@@ -267,7 +268,7 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
                 *address(text),
                 MOST_OF_A_DATAGRAM if is_packet else MOST_OF_A_PACKET,
             ),
-            "can": lambda: _can(remainder, protocol.get("can", {})),
+            "can": lambda: _can(remainder, buses_of(protocol).get("can", {})),
         }
         if scheme not in openers:
             raise PortError(
@@ -286,7 +287,8 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
         raise PortError(
             f"there is no port `{text}`: no such file", f"a port is named so: {FORMS}"
         )
-    line = protocol.get("link", {}).get("line") or protocol.get("uart", {})
+    uart = buses_of(protocol).get("uart", {})
+    line = protocol.get("link", {}).get("line") or uart.get("line", {})
     return Serial(text, line)
 
 

@@ -80,8 +80,9 @@ class Facts:
     def parts(self) -> dict[str, object]:
         """Described parts with declared facts, by their sections of the ICD."""
         parts = {
-            "link.client": self.client, "uart.framing": self.framing, "uart.acknowledge": self.acknowledge, "can": self.can,
-            "can.extended": self.can and self.can.extended, "crc8": self.checksum, "crc16": self.crc16,
+            "link.client": self.client, "link.buses.uart.framing": self.framing,
+            "link.buses.uart.acknowledge": self.acknowledge, "link.buses.can": self.can,
+            "link.buses.can.extended": self.can and self.can.extended, "crc8": self.checksum, "crc16": self.crc16,
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
             "index_file": self.index,
         }  # fmt: skip
@@ -161,11 +162,14 @@ def of(icd: Icd, node: Node) -> Facts:
     """Return the protocol facts of a node."""
     reader = Reader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
-    framing, acknowledge = reader.part("uart.framing", Framing), reader.acknowledge()
+    framing, acknowledge = (
+        reader.part("link.buses.uart.framing", Framing),
+        reader.acknowledge(),
+    )
     i2c_address, polled, can = reader.i2c_address(), reader.polled(), reader.can()
     errors = {
         key: code
-        for key, code in reader.section("errors").items()
+        for key, code in reader.section("link", "reasons").items()
         if isinstance(code, int)
     }
     return Facts(

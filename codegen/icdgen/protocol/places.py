@@ -8,10 +8,10 @@ from icdgen.protocol import sections
 
 PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("link.client", sections.Settings),
-    ("uart.framing", sections.Framing),
-    ("uart.acknowledge", sections.Acknowledge),
-    ("can", sections.Can),
-    ("can.extended", sections.Extended),
+    ("link.buses.uart.framing", sections.Framing),
+    ("link.buses.uart.acknowledge", sections.Acknowledge),
+    ("link.buses.can", sections.Can),
+    ("link.buses.can.extended", sections.Extended),
     ("crc8", sections.Crc),
     ("crc8", sections.Checksum),
     ("crc16", sections.Crc),

@@ -46,7 +46,7 @@ class Assumption(NamedTuple):
     value and the reason.
     """
 
-    section: str  # "can.extended", or "message Reset"
+    section: str  # "link.client", or "message Reset"
     key: str
     value: object
     why: str
@@ -74,6 +74,10 @@ class Reader:
             section = section.get(key) if isinstance(section, dict) else None
         return section if isinstance(section, dict) else {}
 
+    def bus(self, *path: str) -> dict[str, Any]:
+        """Return the section of a bus, or a section in it; empty if it does not exist."""
+        return self.section("link", "buses", *path)
+
     def part(self, path: str, part: type[T], **computed: object) -> T | None:
         """Return a part as declared; None if the ICD does not describe it.
 
@@ -84,7 +88,7 @@ class Reader:
         return result
 
     def telemetry_ids(self) -> Direction:
-        ids = self.section("message_id", "telemetry")
+        ids = self.section("link", "ids", "telemetry")
         if framed_link(self.protocol):
             return Direction(1, 0)
         # Without telemetry the range is empty (first above last), and no received
@@ -95,14 +99,14 @@ class Reader:
         )
 
     def acknowledge(self) -> Acknowledge | None:
-        rows = self.section("uart", "acknowledge").get("data", ())
+        rows = self.bus("uart", "acknowledge").get("data", ())
         at = by_role(rows)
         if not {"id", "error"} <= set(at):
             return None
         return Acknowledge(end(rows), at["id"]["byte"], at["error"]["byte"])
 
     def polled(self) -> Polled | None:
-        given = self.section("i2c", "acknowledge")
+        given = self.bus("i2c", "acknowledge")
         message = self.messages.get(given.get("message", ""))
         names = [given.get(key) for key in ("id", "until", "error", "parameter")]
         return Polled(message, *names) if message and all(names) else None  # type: ignore[arg-type]
@@ -112,18 +116,18 @@ class Reader:
 
         The 8-bit form of the ICD has the direction bit appended.
         """
-        given = self.section("i2c", "write")
+        given = self.bus("i2c", "write")
         eight = given.get("address_8bit")
         return given.get("address_7bit", None if eight is None else eight >> 1)
 
     def i2c_repeated_start(self) -> bool:
         """Return whether a read can follow its write without a stop condition."""
-        return "repeated start" in self.section("i2c").get(
+        return "repeated start" in self.bus("i2c").get(
             "telemetry_request", ("repeated start",)
         )
 
     def can(self) -> Can | None:
-        given = self.section("can")
+        given = self.bus("can")
         if not {"identifier", "message_types", "telecommand", "telemetry"} <= set(
             given
         ):
@@ -150,7 +154,7 @@ class Reader:
             "reply": telemetry.get("extended_response"),
         }
         return self.part(
-            "can",
+            "link.buses.can",
             Can,
             parts=parts,
             types={
@@ -161,7 +165,7 @@ class Reader:
                 for kind, name in extended_named.items()
                 if name is not None
             },
-            extended=self.part("can.extended", Extended),
+            extended=self.part("link.buses.can.extended", Extended),
         )
 
     def checksum(self) -> Checksum | None:
@@ -274,7 +278,7 @@ class Reader:
         """
         return {
             self.messages[row["id_of"]].ids[0]: self.messages[row["message"]].ids[-1]
-            for row in self.section("uart").get("unsolicited", ())
+            for row in self.bus("uart").get("unsolicited", ())
         }
 
     def report(self, given: dict[str, Any]) -> Report | None:

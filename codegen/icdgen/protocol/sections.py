@@ -56,14 +56,10 @@ class Framing:
     """
 
     escape: int = octet("escape", "the escape byte")
-    start: int = octet(
-        "start_of_message", "follows the escape byte at the beginning of a message"
-    )
-    end: int = octet(
-        "end_of_message", "follows the escape byte at the end of a message"
-    )
+    start: int = octet("start", "follows the escape byte at the beginning of a message")
+    end: int = octet("end", "follows the escape byte at the end of a message")
     escaped: int = octet(
-        "escaped_data", "follows the escape byte if the escape byte itself is data"
+        "data", "follows the escape byte if the escape byte itself is data"
     )
     escapes_id: bool = flag(
         "escaped_in", "whether the id is escaped like the data", True, ("data", "id"), "id",

@@ -49,7 +49,7 @@ class Options:
     chosen: Sequence[str] = ()
 
 
-FRAMING = "describe the link in `protocol.link` or `protocol.uart`; `icdgen init NAME` writes an example"
+FRAMING = "describe the link in `protocol: link`; `icdgen init NAME` writes an example"
 
 
 def node_of(icd: Icd, name: str | None) -> Node:

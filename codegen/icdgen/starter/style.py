@@ -27,13 +27,7 @@ from icdgen.icd.rules.protocol_names import MESSAGES
 # Protocol sections about links. The other sections are about files, logs and programs
 # of the node itself.
 _SECTIONS = (
-    "message_id",
-    "errors",
-    "client",
     "identification",
-    "uart",
-    "i2c",
-    "can",
     "crc8",
     "link",
 )
@@ -272,7 +266,7 @@ def _lengthen(messages: list[Child], style: Style) -> None:
 
 def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
     """Return the first and last id of each direction."""
-    section = protocol.get("message_id") or {}
+    section = protocol.get("link", {}).get("ids") or {}
     packets = declared_packets(protocol.get("link", {})).all
     widths = (sum(row["bits"] for row in packet.of(ID_ROLE)) for packet in packets)
     bits = min((width for width in widths if width), default=8)

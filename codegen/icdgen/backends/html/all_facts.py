@@ -99,8 +99,10 @@ def with_others(
         else:
             url = urls.get(value, "") if isinstance(value, str) else ""
             rows = [Row(_about(form, key), _value_text(form, key, value), "", url)]
-        part = _part(path[0], [])
-        before = "".join(f"{step.replace('_', ' ')}: " for step in path[1:])
+        # Buses, and the other parts of a link, are sections of their own.
+        size = 3 if path[:2] == ("link", "buses") else 2 if path[0] == "link" else 1
+        part = _part(".".join(path[:size]), [])
+        before = "".join(f"{step.replace('_', ' ')}: " for step in path[size:])
         parts_by_anchor.setdefault(part.anchor, part).rows.extend(
             r._replace(about=capitalized(before + r.about)) for r in rows
         )
@@ -143,10 +145,15 @@ def _entry(row: Mapping[str, Any]) -> Row:
     return Row(str(row.get("name", "")), as_text(other_keys))
 
 
+def title_of(path: str) -> str:
+    """Return the title of a section of the ICD; that of a bus is its name."""
+    return path.removeprefix("link.buses.").replace(".", ": ").replace("_", " ")
+
+
 def _part(path: str, rows: list[Row]) -> Part:
     return Part(
         f"facts-{path.replace('.', '-')}",
-        path.replace(".", ": ").replace("_", " "),
+        title_of(path),
         rows,
     )
 

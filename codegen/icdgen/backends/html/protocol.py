@@ -18,7 +18,7 @@ from icdgen.backends.html import (
 from icdgen.backends.html.all_facts import Row, as_text, value_text
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.error_codes import error_enum
-from icdgen.icd.model import Node
+from icdgen.icd.model import Node, buses_of
 from icdgen.protocol import facts
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import LENGTH
@@ -85,7 +85,8 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
                 f"{message_type['value']} · {message_type['name']}",
                 message_type.get("summary", ""),
             )
-            for message_type in section.get("can", {})
+            for message_type in buses_of(section)
+            .get("can", {})
             .get("message_types", {})
             .get("values", ())
         ],
@@ -188,7 +189,7 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
         return []
     names = {
         row.get("role", row["name"]): row["name"]
-        for row in section["can"]["identifier"]
+        for row in buses_of(section)["can"]["identifier"]
     }
     ordered: list[tuple[str, CanPart]] = sorted(
         node_facts.can.parts.items(), key=lambda item: -item[1].shift

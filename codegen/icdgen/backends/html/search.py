@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from icdgen.backends.html import guide, protocol, texts
 from icdgen.backends.html.relations import Relations
-from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node
+from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node, buses_of
 from icdgen.icd.places import NodePlace
 from icdgen.naming import words
 
@@ -153,7 +153,7 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     phrases += _table(message.table)
     speakers = " ".join(speaker.name for speaker in relations.speakers[node.name])
     buses = " ".join(
-        bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node)
+        bus for bus in texts.BUSES if bus in buses_of(relations.icd.protocol_of(node))
     )
     about = f"{speakers} {message.group} {buses} {message.summary}"
     context = f"{message.kind} {shown_ids} · {node.title}"
@@ -189,9 +189,9 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
         relations.icd.protocol_of(speaker) for speaker in relations.speakers[node.name]
     ]
     return {
-        section["errors"]["enum"]
+        section["link"]["reasons"]["enum"]
         for section in protocols
-        if "enum" in section.get("errors", {})
+        if "reasons" in section.get("link", {})
     }
 
 

@@ -18,7 +18,7 @@ from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html import envelopes
-from icdgen.icd.model import Message
+from icdgen.icd.model import Message, buses_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Framing
 from icdgen.wording import count
@@ -243,7 +243,11 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
     if message.telemetry_id is not None:
         lines.append(Line("Request", _framed(wire.link, message.telemetry_id, b"")))
         lines.append(Line("Answer", _framed(wire.link, message.telemetry_id, data)))
-    return Bus("UART", _uart_note(wire.section["uart"], wire.facts.framing), lines)
+    return Bus(
+        "UART",
+        _uart_note(buses_of(wire.section)["uart"].get("line", {}), wire.facts.framing),
+        lines,
+    )
 
 
 def _framed(
@@ -299,7 +303,9 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
     if message.telemetry_id is not None:
         how = "repeated start" if wire.facts.i2c_repeated_start else "stop and start"
         restart = Chunk(
-            "note", how, " or ".join(wire.section["i2c"].get("telemetry_request", []))
+            "note",
+            how,
+            " or ".join(buses_of(wire.section)["i2c"].get("telemetry_request", [])),
         )
         read = Chunk("frame", f"{address << 1 | 1:02X}", "address, read")
         answer = [write, _id(message.telemetry_id), restart, read, *_data(data)]
@@ -386,7 +392,7 @@ def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
         role: id >> part.shift & (1 << part.bits) - 1
         for role, part in form.parts.items()
     }
-    rows = wire.section["can"]["message_types"]["values"]
+    rows = buses_of(wire.section)["can"]["message_types"]["values"]
     name = next(row["name"] for row in rows if row["value"] == parts["type"])
     addressing = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
     bits = sum(part.bits for part in form.parts.values())

@@ -113,7 +113,7 @@ class _Literal:
             part(
                 "acknowledge",
                 some(self.struct(facts.acknowledge)),
-                self.assumed.why("uart.acknowledge", "data"),
+                self.assumed.why("link.buses.uart.acknowledge", "data"),
             ),
             part("i2c_address", some(facts.i2c_address)),
             part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),

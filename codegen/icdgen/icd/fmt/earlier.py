@@ -1,47 +1,129 @@
-"""Conversion of ICDs that were written before `protocol.link` took the place of
-`stream`, `checksums` and `client` in the protocol section.
+"""Conversion of ICDs that were written before `protocol.link` took the place of other
+parts of the protocol section.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.icd.fmt.scalars import name
 
 
 def convert(root: Branch) -> bool:
-    """Change the tree of an ICD to the present keys. Return whether there was something
+    """Change the tree of an ICD or of errata to the present keys. Return whether there was something
     to change.
     """
+    if _entry(root, "errata"):
+        return _convert_errata(root)
     protocol = _entry(root, "protocol")
     if protocol is None or not isinstance(protocol.value, Branch):
         return False
-    moved = {"client": "client"}
-    if link := _entry(protocol.value, "stream"):
-        link.key = _text("link")
-        moved |= {"checksums": "checksums", "uart": "line"}
-    elif not _entry(protocol.value, "client"):
-        return False
-    elif not (link := _entry(protocol.value, "link")):
-        link = Child(_text("link"), Branch(True, False, 0))
-        protocol.value.children.append(link)
-    if not isinstance(link.value, Branch):
-        return False
-    for key, present_key in moved.items():
-        entry = _entry(protocol.value, key)
-        if entry:
-            protocol.value.children.remove(entry)
+    section, link = protocol.value, None
+    if stream := _entry(section, "stream"):
+        stream.key = _text("link")
+        link = _part_of(section, "link")
+        if link is None:
+            return False
+        _move(section, {"checksums": "checksums", "uart": "line"}, link)
+        _convert_framing(link)
+        _move_covers(link)
+    if any(_entry(section, key) for key in (*_PARTS, *_BUSES)):
+        link = _part_of(section, "link")
+        if link is None:
+            return False
+        _move(section, _PARTS, link)
+        if any(_entry(section, key) for key in _BUSES):
+            buses = _part_of(link, "buses")
+            if buses is None:
+                return False
+            _move(section, _BUSES, buses)
+            if uart := _entry(buses, "uart"):
+                _convert_uart(uart.value)
+    return link is not None
+
+
+def _convert_errata(root: Branch) -> bool:
+    """Change paths of protocol sections, and printed keys of the framing of a UART."""
+    is_converted = False
+    for item in [*_branches(root)]:
+        where = _value(item, "where")
+        for place in _branches(where) if isinstance(where, Branch) else ():
+            section = _entry(place, "section")
+            if not section or not isinstance(section.value, Text):
+                continue
+            path = str(section.value.value)
+            for earlier, present in _PATHS.items():
+                if path == earlier or path.startswith(f"{earlier}."):
+                    section.value = _text(present + path.removeprefix(earlier))
+                    is_converted = True
+                    break
+            if path == "protocol.uart.framing":
+                _rename(_value(item, "printed"), _FRAMING)
+    return is_converted
+
+
+def _rename(value: object, keys: Mapping[str, str]) -> None:
+    for entry in _entries(value):
+        if key := keys.get(name(entry.key)):
+            entry.key = _text(key)
+
+
+def _part_of(section: Branch, key: str) -> Branch | None:
+    """Return the mapping of a key, which is added if it is missing; None if the key has
+    another value.
+    """
+    entry = _entry(section, key)
+    if entry is None:
+        entry = Child(_text(key), Branch(True, False, 0))
+        section.children.append(entry)
+    is_mapping = isinstance(entry.value, Branch) and entry.value.mapping
+    return entry.value if is_mapping else None  # type: ignore[return-value]
+
+
+def _move(section: Branch, keys: Mapping[str, str], target: Branch) -> None:
+    """Move entries to another mapping, under their present keys."""
+    for key, present_key in keys.items():
+        if entry := _entry(section, key):
+            section.children.remove(entry)
             entry.key = _text(present_key)
-            link.value.children.append(entry)
-    framing = _entry(link.value, "delimited_by")
+            target.children.append(entry)
+
+
+def _convert_framing(link: Branch) -> None:
+    framing = _entry(link, "delimited_by")
     if framing and isinstance(framing.value, Text):
         by = _text("datagram") if framing.value.value == "none" else framing.value
         framing.key = _text("framing")
         framing.value = Branch(True, True, 0, [Child(_text("by"), by)])
-    _move_covers(link.value)
-    return True
+
+
+def _convert_uart(uart: object) -> None:
+    """Give a UART the keys of framed links for its line and its framing."""
+    if not isinstance(uart, Branch) or not uart.mapping:
+        return
+    if any(_entry(uart, key) for key in _LINE) and (line := _part_of(uart, "line")):
+        _move(uart, _LINE, line)
+        _move_assumptions(uart, _LINE, line)
+    framing = _entry(uart, "framing")
+    if framing and isinstance(framing.value, Branch) and framing.value.mapping:
+        for owner in (framing.value, _value(framing.value, "assumptions")):
+            _rename(owner, _FRAMING)
+        framing.value.children.insert(0, Child(_text("by"), _text("escape")))
+
+
+def _move_assumptions(section: Branch, keys: Mapping[str, str], target: Branch) -> None:
+    """Move the reasons for the assumed values of moved keys."""
+    reasons = _entry(section, "assumptions")
+    if reasons is None or not isinstance(reasons.value, Branch):
+        return
+    if any(_entry(reasons.value, key) for key in keys):
+        moved = _part_of(target, "assumptions")
+        if moved is not None:
+            _move(reasons.value, keys, moved)
+        if not reasons.value.children:
+            section.children.remove(reasons)
 
 
 def _move_covers(link: Branch) -> None:
@@ -62,6 +144,24 @@ def _move_covers(link: Branch) -> None:
             covers.before, covers.trailing = [], []  # only the first gets the comments
 
 
+# Parts of the protocol section that are in `link`, with their present keys
+_PARTS = {"client": "client", "message_id": "ids", "errors": "reasons"}
+_BUSES = {key: key for key in ("uart", "i2c", "can")}
+_LINE = {key: key for key in ("baud_rate", "data_bits", "parity", "stop_bits")}
+_FRAMING = {
+    "start_of_message": "start",
+    "end_of_message": "end",
+    "escaped_data": "data",
+}
+_PATHS = {
+    **{
+        f"protocol.{key}": f"protocol.link.{present}" for key, present in _PARTS.items()
+    },
+    **{f"protocol.uart.{key}": f"protocol.link.buses.uart.line.{key}" for key in _LINE},
+    **{f"protocol.{bus}": f"protocol.link.buses.{bus}" for bus in _BUSES},
+}
+
+
 def _text(word: str) -> Text:
     return Text(word, word)
 
@@ -74,6 +174,12 @@ def _entries(value: object) -> list[Child]:
 def _entry(value: object, key: str) -> Child | None:
     """Return the entry of a key; None without one."""
     return next((each for each in _entries(value) if name(each.key) == key), None)
+
+
+def _value(value: object, key: str) -> object:
+    """Return the value of a key; None without one."""
+    entry = _entry(value, key)
+    return entry.value if entry else None
 
 
 def _branches(branch: Branch) -> Iterator[Branch]:

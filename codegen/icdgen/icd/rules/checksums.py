@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Message, Node, buses_of
 from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.wording import count, quote
@@ -101,7 +101,7 @@ def checksums_have_an_effect(ctx: Context) -> Iterator[Fault]:
                 "a checksum has one size: correct one of the two",
             )
         uses_can = any(
-            CAN in ctx.protocol_of(user)
+            CAN in buses_of(ctx.protocol_of(user))
             for user in ctx.icd.nodes
             if node in ctx.scope(user)
         )

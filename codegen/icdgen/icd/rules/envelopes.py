@@ -40,7 +40,9 @@ ONLY_WITH = {
 # Keys of a protocol section with a framed link.
 ALLOWED_WITH_LINK = ("link", "boot", "procedures")
 # Keys of `link` that other links have as well.
-ALLOWED_WITHOUT_FRAMING = ("source", "client", "assumptions")
+ALLOWED_WITHOUT_FRAMING = ("source", "ids", "reasons", "buses", "client", "assumptions")
+# Keys of `link` that framed links do not have.
+WITHOUT_FRAMING_ONLY = ("ids", "reasons", "buses")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -166,9 +168,14 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
             if key not in ALLOWED_WITH_LINK:
                 message = f"`{key}` has no effect beside `link: framing`"
                 help = f"remove `{key}` or `framing`"
-                if key == "uart":
-                    help = "remove it: `link: line` describes a serial line"
                 yield Fault.at_key(protocol, key, message, help)
+        for key in WITHOUT_FRAMING_ONLY:
+            if key in link.section:
+                message = f"`{key}` has no effect beside `framing`"
+                help = f"remove `{key}` or `framing`"
+                if key == "buses":
+                    help = "remove one: a node has one framed link, or buses"
+                yield Fault.at_key(link.section, key, message, help)
         client = link.section.get("client")
         for key in ("poll_interval_ms", "poll_timeout_ms"):
             if isinstance(client, Map) and key in client:

@@ -10,7 +10,7 @@ from icdgen.icd import variants, wire_ids
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import BUSES, Context
 from icdgen.icd.rules.duplicates import brings_together, together
 from icdgen.icd.rules.protocol_limits import section_in_effect
 from icdgen.icd.rules.rule import rule
@@ -18,7 +18,7 @@ from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import mappings
 from icdgen.wording import count, listing, quote
 
-LINKED_BITS = 8  # width of ids on the links of a protocol section, other than `link`
+LINKED_BITS = 8  # width of ids on links that are not framed
 
 
 class Use(NamedTuple):
@@ -211,7 +211,7 @@ def _range_text(
     """
     if use.direction not in ranges:
         return f"0 to {(1 << node.id_bits) - 1}"
-    section = section_in_effect(ctx, node, "message_id", use.direction)
+    section = section_in_effect(ctx, node, "link", "ids", use.direction)
     assert section is not None
     return f"{ctx.written(section, 'first')} to {ctx.written(section, 'last')}"
 
@@ -221,7 +221,7 @@ def _remedy(
 ) -> str:
     """Return the help for an id that is out of range."""
     if not ranges and ctx.is_linked(node):
-        return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except those of `link`"
+        return f"correct `{use.key}`: UART, I2C and CAN carry ids of one byte here, and framed links any (`link: framing`)"
     if not ranges:
         # Identifiers of CAN have 11 or 29 bits, other ids whole bytes.
         widths = (29, 32) if node.id_bits == 11 else (8, 16, 24, 32)
@@ -241,7 +241,7 @@ def _remedy(
         if other
         else f"correct `{use.key}`"
     )
-    return f"{wrong}, or the range in `protocol: message_id`"
+    return f"{wrong}, or the range in `link: ids`"
 
 
 def _has_its_bytes(use: Use) -> bool:
@@ -282,7 +282,7 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         declared = _ranges(ctx, node)
         # ICD056 and ICD103 check declared ranges.
-        if ctx.fact(node, "uart", "framing") is None or len(declared) == 2:
+        if ctx.fact(node, *BUSES, "uart", "framing") is None or len(declared) == 2:
             continue
         uses = [use for use in _uses_in_scope(ctx, node) if use.message is not None]
         ids = [use.id for use in uses if use.direction == TELEMETRY]
@@ -299,7 +299,7 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
                 reported.add(id(use.source))
                 among = f"{_id(ctx, use)} is in the range of telemetry ids, {first} to {last}"
                 message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
-                help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"
+                help = "give each direction ids of its own, one range before the other; or leave `framing` out"
                 yield Fault.at(use.source, use.key, message, help)
 
 
@@ -329,13 +329,11 @@ def telemetry_has_no_keys_of_telecommands(ctx: Context) -> Iterator[Fault]:
 
 
 def _ranges(ctx: Context, node: Node) -> dict[str, tuple[int, int]]:
-    """Return the first and last id of each direction that the protocol section
-    `message_id` declares.
-    """
+    """Return the first and last id of each direction that `link: ids` declares."""
     ranges = {}
     for direction in (TELECOMMAND, TELEMETRY):
         first, last = (
-            ctx.fact(node, "message_id", direction, key) for key in ("first", "last")
+            ctx.fact(node, "link", "ids", direction, key) for key in ("first", "last")
         )
         if isinstance(first, int) and isinstance(last, int):
             ranges[direction] = first, last

@@ -9,7 +9,7 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.roles import INTEGERS, PROTOCOL, Role, reasons_against
-from icdgen.icd.rules.context import Context, section_of
+from icdgen.icd.rules.context import BUSES, Context, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_occur_once
 from icdgen.icd.rules.protocol_names import FIELDS
@@ -17,9 +17,9 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import mappings, named
 from icdgen.wording import quote
 
-BUSES = ("uart", "i2c", "can")
+NAMES_OF_BUSES = ("uart", "i2c", "can")
 INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")
-ROWS = (("uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
+ROWS = ((*BUSES, "uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
     ("unsolicited_log", "message"))  # fmt: skip
 ROWS_AS_BYTES = ("mask", "meta")
 
@@ -37,7 +37,7 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
     any case.
     """
     for bus in ("uart", "i2c"):
-        section = section_of(node, bus, "acknowledge")
+        section = section_of(node, *BUSES, bus, "acknowledge")
         if section is not None and section.get("required_before_next") is False:
             message = "a client waits for each acknowledge before it sends the next telecommand, whatever this key says"
             help = "remove `required_before_next`; a message that is not acknowledged has `acknowledge: false`"
@@ -54,7 +54,7 @@ def _can_data(node: Node) -> Iterator[Fault]:
         ),
         (TELEMETRY, "request_bytes", "a request on CAN is sent with no data"),
     ):
-        section = section_of(node, "can", direction)
+        section = section_of(node, *BUSES, "can", direction)
         if section is not None and section.get(key, 0) != 0:
             help = "correct it to 0, or leave `can` out: such a bus is not supported"
             yield Fault.at(section, key, what, help)
@@ -72,7 +72,7 @@ def _faults_of_unsolicited_log(node: Node) -> Iterator[Fault]:
         yield Fault.at(log, "framed", message, "remove it, or `unsolicited_log`")
     buses = log.get("buses")
     for bus, place in buses.placed() if isinstance(buses, Seq) else ():
-        if bus in BUSES and bus != "uart":
+        if bus in NAMES_OF_BUSES and bus != "uart":
             yield Fault(
                 log,
                 place,

@@ -11,7 +11,7 @@ from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, Node
-from icdgen.icd.rules.context import Context, own_fact, section_of
+from icdgen.icd.rules.context import BUSES, Context, own_fact, section_of
 from icdgen.icd.rules.protocol_sizes import of_one_number
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, of_wide_value
@@ -27,8 +27,10 @@ def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
     """Return the mapping at a path of the protocol section in effect for a node: its
     own, or that of an included node.
     """
+    # A bus, or another part of a link, replaces the included one.
+    size = 3 if path[:2] == BUSES else 2 if path[0] == "link" else 1
     for owner in reversed(ctx.scope(node)):
-        if section_of(owner, path[0]) is not None:
+        if section_of(owner, *path[:size]) is not None:
             return section_of(owner, *path)
     return None
 
@@ -36,8 +38,8 @@ def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
 @rule("ICD099")
 def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        can, extended = section_in_effect(ctx, node, "can"), section_in_effect(
-            ctx, node, "can", "extended"
+        can, extended = section_in_effect(ctx, node, *BUSES, "can"), section_in_effect(
+            ctx, node, *BUSES, "can", "extended"
         )
         size = extended.get("data_bytes") if extended is not None else None
         if can is None or extended is None or not isinstance(size, int) or size < 1:
@@ -59,7 +61,7 @@ def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
             if last + packets - 1 > BYTE:
                 takes = f"{quote(message.name)} takes {count(packets, 'CAN packet')}"
                 text = f"{takes}, the first with {last + packets - 1} left: a byte holds {BYTE}"
-                help = f"{count((BYTE + 1 - last) * size, 'byte')} can be sent: correct `length` or `can.extended`"
+                help = f"{count((BYTE + 1 - last) * size, 'byte')} can be sent: correct `length` or `extended` of `can`"
                 yield Fault.at(message.source, "length", text, help)
 
 
@@ -83,7 +85,7 @@ def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
 def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _on_can(ctx, node)
-    for errors in ctx.sections("errors"):
+    for errors in ctx.sections("link", "reasons"):
         for first, role, code in of_one_number(
             errors, "none", "unknown_id", "length", "parameter", "checksum"
         ):
@@ -100,14 +102,14 @@ def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
 
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     """Yield the faults of numbers that do not fit their part of a CAN identifier."""
-    own = section_of(node, "can")
-    can = section_in_effect(ctx, node, "can")
+    own = section_of(node, *BUSES, "can")
+    can = section_in_effect(ctx, node, *BUSES, "can")
     bits: dict[str, int] = {}  # of each part of a CAN identifier, by role or name
     for row in mappings(can.get("identifier")) if can is not None else ():
         if isinstance(row.get("bits"), int):
             bits[str(row.get("role", row.get("name")))] = row["bits"]
     if own is not None:
-        for row in mappings(own_fact(node, "can", "message_types", "values")):
+        for row in mappings(own_fact(node, *BUSES, "can", "message_types", "values")):
             yield from _fits(ctx, row, "value", bits.get("type"), "a message type")
         for role in ("source", "destination"):
             yield from _fits(
@@ -203,7 +205,7 @@ def roles_occur_once(
 
 @rule("ICD101")
 def can_identifier_has_all_parts(ctx: Context) -> Iterator[Fault]:
-    for can in ctx.sections("can"):
+    for can in ctx.sections(*BUSES, "can"):
         if {"message_types", "telecommand", "telemetry"} & can.keys():
             yield from roles_occur_once(
                 can, "identifier", ROLES, "the identifier has no part for"

@@ -9,8 +9,14 @@ from collections.abc import Iterator
 from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
-from icdgen.icd.rules.context import Context, own_fact, section_of
+from icdgen.icd.model import (
+    CAN_DATA_BYTES,
+    KEYS_OF_IDS,
+    TELECOMMAND,
+    TELEMETRY,
+    buses_of,
+)
+from icdgen.icd.rules.context import BUSES, Context, own_fact, section_of
 from icdgen.icd.rules.protocol_limits import roles_occur_once, section_in_effect
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
@@ -32,7 +38,7 @@ def id_ranges_determine_the_direction(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         ranges = {}
         for direction in (TELECOMMAND, TELEMETRY):
-            section = section_of(node, "message_id", direction)
+            section = section_of(node, "link", "ids", direction)
             ends = numbers(section, "first", "last")
             if section is None or ends is None:
                 continue
@@ -42,7 +48,10 @@ def id_ranges_determine_the_direction(ctx: Context) -> Iterator[Fault]:
                 message = f"the last id, {last}, comes before the first, {first}"
                 yield Fault.at(section, "last", message, "correct `first` or `last`")
             yield from _bit(
-                own_fact(node, "message_id", "direction_bit"), section, direction, *ends
+                own_fact(node, "link", "ids", "direction_bit"),
+                section,
+                direction,
+                *ends,
             )
         if len(ranges) == 2:
             yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
@@ -84,7 +93,7 @@ def _overlap(telecommands: Map, telemetry: Map) -> Iterator[Fault]:
 
 @rule("ICD104")
 def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
-    for types in ctx.sections("can", "message_types"):
+    for types in ctx.sections(*BUSES, "can", "message_types"):
         seen: dict[tuple[str, object], Map] = {}
         for row in mappings(types.get("values")):
             for key in ("value", "name"):
@@ -109,7 +118,7 @@ def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD105")
 def acknowledges_have_all_parts(ctx: Context) -> Iterator[Fault]:
-    for section in ctx.sections("uart", "acknowledge"):
+    for section in ctx.sections(*BUSES, "uart", "acknowledge"):
         yield from roles_occur_once(
             section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for"
         )
@@ -131,9 +140,9 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
         for path in (("crc8", TELECOMMAND), ("crc8", TELEMETRY), ("unsolicited_log",)):
             buses = own_fact(node, *path, "buses")
             for bus, place in buses.placed() if buses is not None else ():
-                if not any(bus in ctx.protocol_of(user) for user in users):
+                if not any(bus in buses_of(ctx.protocol_of(user)) for user in users):
                     text, help = (
-                        f"the protocol has no section `{bus}`",
+                        f"`link: buses` has no `{bus}`",
                         f"add it, or remove `{bus}`",
                     )
                     yield Fault(section_of(node, *path), place, text, help)
@@ -143,9 +152,11 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
 def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
     seen: set[int] = set()
     for node in ctx.icd.nodes:
-        can = section_in_effect(ctx, node, "can")
+        can = section_in_effect(ctx, node, *BUSES, "can")
         # Messages that are too long for CAN can be sent over another bus.
-        if can is None or not {"uart", "i2c"}.isdisjoint(ctx.protocol_of(node)):
+        if can is None or not {"uart", "i2c"}.isdisjoint(
+            buses_of(ctx.protocol_of(node))
+        ):
             continue
         room = can.get("max_data_bytes", CAN_DATA_BYTES)
         short = {direction for direction in CAN_TYPES if _is_short(can, direction)}
@@ -156,7 +167,7 @@ def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
             if is_short and message.length > room and id(message.source) not in seen:
                 seen.add(id(message.source))
                 text = f"{quote(message.name)} has {count(message.length, 'byte')}, but a packet has up to {room}"
-                help = "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
+                help = "correct `length`, or say how CAN sends several packets: `extended` of `can` and its message types"
                 yield Fault.at(message.source, "length", text, help)
 
 

@@ -14,7 +14,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import BUSES, Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
@@ -157,7 +157,7 @@ def named_fields_have_the_orders_of_the_node(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD095")
 def message_types_exist(ctx: Context) -> Iterator[Fault]:
-    for can in ctx.sections("can"):
+    for can in ctx.sections(*BUSES, "can"):
         values = at_path(can, ("message_types", "values"))
         if not isinstance(values, Seq):
             continue

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, own_fact
+from icdgen.icd.rules.context import BUSES, Context, own_fact
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import at_path, mappings
@@ -37,11 +37,9 @@ def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
 
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
-    markers = ("start_of_message", "end_of_message", "escaped_data")
-    for framing in ctx.sections("uart", "framing"):
-        yield from _equal_markers(framing, *markers)
-    for framing in ctx.sections("link", "framing"):
-        yield from _equal_markers(framing, "start", "end", "data")
+    for path in (("link", "framing"), (*BUSES, "uart", "framing")):
+        for framing in ctx.sections(*path):
+            yield from _equal_markers(framing, "start", "end", "data")
 
 
 def _equal_markers(section: Map, *keys: str) -> Iterator[Fault]:
@@ -63,7 +61,7 @@ def _equal_markers(section: Map, *keys: str) -> Iterator[Fault]:
 
 @rule("ICD097")
 def sizes_agree(ctx: Context) -> Iterator[Fault]:
-    for can in ctx.sections("can"):
+    for can in ctx.sections(*BUSES, "can"):
         yield from _identifier(can)
         extended = can.get("extended")
         if isinstance(extended, Map):

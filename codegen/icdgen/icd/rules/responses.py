@@ -32,7 +32,7 @@ from icdgen.icd.responses import (
     number_run,
     reason_of,
 )
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import BUSES, Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
@@ -44,7 +44,7 @@ WHOLE_NUMBERS = ("uint", "int", "bool", "enum")
 
 MOST_VALUES = 256  # of a range of reasons, since a client stores the name of each value
 
-OTHER_LINKS = (("uart", "framing"), ("i2c",), ("can",))
+OTHER_LINKS = ((*BUSES, "uart", "framing"), (*BUSES, "i2c"), (*BUSES, "can"))
 """Paths in a protocol section that describe a link other than a framed one."""
 
 STREAM_SETTINGS = ("busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")

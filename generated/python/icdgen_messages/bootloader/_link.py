@@ -780,13 +780,13 @@ LINK: link.Link[_Node] = link.Link(
             why="No time is given. It is ten times the longest message on the UART.",
         ),
         link.Assumption(
-            section="uart.framing",
+            section="link.buses.uart.framing",
             key="escaped_in",
             value=("id", "data"),
             why="By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.",
         ),
         link.Assumption(
-            section="uart.acknowledge",
+            section="link.buses.uart.acknowledge",
             key="data",
             value=(
                 {
@@ -808,13 +808,13 @@ LINK: link.Link[_Node] = link.Link(
             why="Two bytes are announced, the last being the error. That the first is the id of the telecommand, and that no other id heads the message, stood in a figure.",
         ),
         link.Assumption(
-            section="can.extended",
+            section="link.buses.can.extended",
             key="fill",
             value=0,
             why="Neither the value of the fill nor how the receiver learns the true length is said. The receiver takes the length of the message from its id.",
         ),
         link.Assumption(
-            section="can.extended",
+            section="link.buses.can.extended",
             key="packet_timeout_ms",
             value=1000,
             why="No time-out between packets is given.",
