@@ -147,6 +147,8 @@ def _best_pairs(
         for j in {j for key in keys(thing) for j in indexes_by_key.get(key, ())}:
             value = score(thing, new[j])
             if value >= least:
+                # The first three are the same if the sides are swapped, and so are the
+                # pairs.
                 candidates.append((-value, abs(i - j), i + j, i, j))
     # Highest score first, then the smallest distance of positions.
     candidates.sort()
@@ -243,6 +245,8 @@ def _paired(
             )
         )
         yield from (paired(node, node, *pair) for pair in pairs)
+        # Positions in these lists decide ties, so that they follow the ids and not the
+        # order of a file.
         left_old += [_Unmatched(node, thing) for thing in sorted(old, key=rank)]
         left_new += [_Unmatched(node, thing) for thing in sorted(new, key=rank)]
     # Each score only sees the objects that earlier scores left unmatched.
@@ -268,6 +272,7 @@ def _name(left: _Unmatched[Any]) -> Iterable[object]:
 def _moved_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
     return (
         1.0
+        # Many ICDs have an enumeration `Mode`, so the name alone proves nothing.
         if old.thing.name == new.thing.name and overlap(old.members, new.members) >= 0.3
         else 0.0
     )
@@ -447,6 +452,8 @@ def _renamed_fields(
         alike = likeness(old_line.name, new_line.name)
         same_sense = sense(old_line) == sense(new_line)
         if same_span:
+            # Position and interpretation alone reach `SAME_FIELD`: the name is what a
+            # renaming changes.
             if same_kind:
                 return 0.6 + 0.15 * alike + 0.2 * same_sense
             return 0.7 * alike + 0.1 if alike >= 0.75 else 0.0

@@ -120,6 +120,7 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
 
 def physical(place: Place) -> dict[str, Any]:
     """Return the `physicalLocation` of a place (SARIF, section 3.29)."""
+    # SARIF 2.1.0, 3.30.8: `endColumn` is the column behind the region.
     region = {
         "startLine": place.line,
         "startColumn": place.column,

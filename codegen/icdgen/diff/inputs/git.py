@@ -84,6 +84,7 @@ class Git:
                 "`git log --oneline` and `git tag` list them",
             )
         if since:
+            # As `git diff A...B`: without the changes of A since B branched off.
             base = _run("merge-base", "--end-of-options", *ends).strip()
             ends[0] = base[:12] or ends[0]
         return ends[0], ends[1]
@@ -191,6 +192,7 @@ def _contents(blobs: list[tuple[str, str]], top: str) -> Iterable[tuple[str, byt
             )
         size = int(words[2])
         yield path, output[:size]
+        # `cat-file --batch` ends each content with a line break.
         output = output[size + 1 :]
 
 
