@@ -88,6 +88,7 @@ def table_number(printed: str) -> int:
     """
     number = 0
     for part in re.split("[-.]", printed):
+        # At most six digits, so that a part stays below `_PART`.
         number = number * _PART + int(part[:6])
     return number
 

@@ -81,7 +81,9 @@ def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[boo
     """
     lines_of_cell = lines(words)
     return [line.text for line in lines_of_cell], [
-        len(n.words) == 1 and n.x1 > right - 1.6 * n.size for n in lines_of_cell
+        # Less room than for another short word: the word may be broken here.
+        len(n.words) == 1 and n.x1 > right - 1.6 * n.size
+        for n in lines_of_cell
     ]
 
 

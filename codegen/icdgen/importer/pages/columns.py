@@ -9,7 +9,7 @@ from typing import NamedTuple
 from icdgen.importer.pages import headings
 from icdgen.importer.pages.draft import Header
 from icdgen.importer.pages.extract import Word
-from icdgen.importer.pages.lines import Line, lines, runs, words_of
+from icdgen.importer.pages.lines import NARROW_GAP, Line, lines, runs, words_of
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, join
 
@@ -88,7 +88,7 @@ def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
     for (left, right), (before, after) in zip(
         itertools.pairwise(segments), itertools.pairwise(cells), strict=True
     ):
-        is_one_run = len(runs(Line([before[-1], after[0]]), 0.45)) == 1
+        is_one_run = len(runs(Line([before[-1], after[0]]), NARROW_GAP)) == 1
         if left.is_known != right.is_known and is_one_run:
             return None
     return cells
@@ -98,7 +98,7 @@ def _clustered(block: list[Line]) -> list[list[Word]]:
     """Return the cells of several lines: runs of words that are above each other."""
     cells: list[list[Word]] = []
     for run in sorted(
-        (run for line in block for run in runs(line, 0.45)),
+        (run for line in block for run in runs(line, NARROW_GAP)),
         key=lambda r: (r[0].top, r[0].x0),
     ):
         x0, x1 = run[0].x0, run[-1].x1
@@ -129,6 +129,8 @@ def boundaries(
     words = words_of(lines)
     edges = [min([x0, spans[0][0], *(w.x0 for w in words)]) - 1]
     last = max([x1, spans[-1][1], *(w.x1 for w in words)]) + 1
+    # An edge lies between the centres of two headings, since the words of a column can
+    # be wider than its heading.
     centres = [(a + b) / 2 for a, b in spans]
     for index, (low, high) in enumerate(itertools.pairwise(centres)):
         beyond = centres[index + 2] if index + 2 < len(centres) else last

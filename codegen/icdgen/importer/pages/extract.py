@@ -178,6 +178,7 @@ def _word(content: Page, word: Mapping[str, Any]) -> None:
             _style(word["chars"][0]["from"]),
         )
     )
+    # pdfminer writes `(cid:12)` for a glyph that the PDF maps to no character.
     content.unmapped += text.count("(cid:") + text.count("\ufffd")
 
 
@@ -258,6 +259,7 @@ def _white(colour: object) -> bool:
     values = _values(colour)
     if not all(isinstance(v, (int, float)) for v in values):
         return False
+    # Four values are CMYK, which is white without ink.
     return (
         all(v <= 0.01 for v in values)
         if len(values) == 4

@@ -14,7 +14,15 @@ from icdgen.importer.pages import columns, furniture, gutter, headings
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
 from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import Line, box_around, lines, runs, text_of
+from icdgen.importer.pages.lines import (
+    NARROW_GAP,
+    WIDE_GAP,
+    Line,
+    box_around,
+    lines,
+    runs,
+    text_of,
+)
 from icdgen.importer.pages.rules import Region, joined, regions
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded
@@ -340,7 +348,7 @@ class _Flow:
         """
         cell_lines = []
         for line in body:
-            first = runs(line, 0.45)[0]
+            first = runs(line, NARROW_GAP)[0]
             text = " ".join(w.text for w in first)
             if (
                 first[-1].x1 <= columns.spans[0][0]
@@ -422,7 +430,7 @@ class _Flow:
         )
 
     def has_key(self, line: Line) -> bool:
-        first = runs(line, 0.45)[0]
+        first = runs(line, NARROW_GAP)[0]
         return is_key(" ".join(w.text for w in first))
 
     def is_row(self, line: Line, header: Columns) -> bool:
@@ -433,7 +441,7 @@ class _Flow:
         return (
             self.has_key(line)
             or _begins_in_a_column(line, header.spans)
-            or len(runs(line, 0.9)) >= min(3, len(header.spans))
+            or len(runs(line, WIDE_GAP)) >= min(3, len(header.spans))
         )
 
     def is_group(self, following: list[Line], header: Columns) -> bool:
@@ -448,7 +456,7 @@ class _Flow:
 
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
         """Return whether text runs across three headings or more, as in a paragraph."""
-        for run in runs(line, 0.9):
+        for run in runs(line, WIDE_GAP):
             x0, x1 = run[0].x0, run[-1].x1
             if sum(
                 1 for a, b in spans if min(b, x1) - max(a, x0) > 0.5 * (b - a)
@@ -488,14 +496,14 @@ class _Flow:
 
 def _cells(line: Line) -> list[tuple[float, str]]:
     """Return the left side and the text of each run of words in a line."""
-    return [(run[0].x0, text_of(run)) for run in runs(line, 0.9)]
+    return [(run[0].x0, text_of(run)) for run in runs(line, WIDE_GAP)]
 
 
 def _value_column(line: Line) -> float:
     """Return the left side of the second run of words, which is the value next to a
     label.
     """
-    runs_of_line = runs(line, 0.45)
+    runs_of_line = runs(line, NARROW_GAP)
     return runs_of_line[1][0].x0 if len(runs_of_line) > 1 else line.x0
 
 

@@ -33,6 +33,8 @@ def without(
             if _in_margin(line, page):
                 for key in _keys(line):
                     seen[key].add(page.number)
+    # Left and right pages have different heads, so each is on half of the pages at
+    # most.
     needed = max(2, round(0.3 * len(pages)))
     offset = _offset(pages, lines)
     by_page = {}
@@ -93,6 +95,7 @@ def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
         figures = {
             line.text.strip() for line in lines[page.number] if _in_margin(line, page)
         }
+        # A set per page: a figure that a page prints twice counts once.
         offsets.update(
             {
                 int(text) - page.number

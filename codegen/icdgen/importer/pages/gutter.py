@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import Line, lines, runs, words_of
+from icdgen.importer.pages.lines import WIDE_GAP, Line, lines, runs, words_of
 from icdgen.importer.pages.rules import Region
 
 NARROWEST = 6.0  # minimum points of white space between the columns
@@ -60,4 +60,4 @@ def _middle(
 
 def _is_text(line: Line) -> bool:
     words = [word for word in line.words if any(c.islower() for c in word.text)]
-    return len(words) >= WORDS and len(runs(line, 0.9)) == 1
+    return len(words) >= WORDS and len(runs(line, WIDE_GAP)) == 1

@@ -9,6 +9,9 @@ from icdgen.importer.document import Box
 from icdgen.importer.pages.extract import SMALL, Word
 from icdgen.importer.words import SUPERSCRIPTS
 
+# Gaps between runs of words, as fractions of the type size; a blank has about 0.25.
+NARROW_GAP = 0.45  # between headings, whose columns are close together
+WIDE_GAP = 0.9  # between cells of a body: justified text has blanks of twice the size
 TOUCH = 0.12  # fraction of the type size: closer words are parts of one word
 
 

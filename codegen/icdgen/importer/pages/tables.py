@@ -112,6 +112,7 @@ class Builder:
             draft.head.append(PrintedRow([mark.text], page=mark.box.page))
             self.out.remove(mark)
         if number is not None:  # a repeated caption
+            # Text between the parts stands around the page break, not in the table.
             while self.out[-1] is not draft:
                 self.out.pop()
         return draft
@@ -184,8 +185,7 @@ class Builder:
         )  # no rule separates headings and rows
         return split[1] if split else None
 
-    # --- ruled
-    # -----------------------------------------------------------------------------------------------------
+    # Tables with vertical rules.
 
     def ruled(self, draft: Draft, piece: Piece) -> None:
         waiting = list(piece.bands)
@@ -358,8 +358,7 @@ class Builder:
             rows = [band.printed(self.document_words)]
         draft.rows += rows
 
-    # --- without vertical rules
-    # ------------------------------------------------------------------------------------
+    # Tables without vertical rules.
 
     def loose(self, draft: Draft, piece: Piece) -> None:
         draft.head += [PrintedRow([text], page=piece.box.page) for text in piece.head]

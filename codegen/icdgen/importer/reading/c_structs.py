@@ -150,6 +150,7 @@ def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
         ) from None
     source = CText(text)
     try:
+        # `#line` gives errors and nodes the lines of the source.
         tree = c_parser.CParser().parse(f"{_PRELUDE}\n#line 1\n{source.code}", "text")
     except c_parser.ParseError as error:
         match = re.match(r"[^:]*:([0-9]+):[0-9]+: (.*)", str(error))
@@ -292,9 +293,6 @@ class _Reader:
             )
         )
 
-    # --- layout
-    # ----------------------------------------------------------------------------------------------------
-
     def layout(self, node: Any) -> Layout:
         """Return the layout of a struct.
 
@@ -317,6 +315,7 @@ class _Reader:
                 width = self.number(declaration.bitsize)
                 # A bit field of a struct that is not packed crosses no boundary of its
                 # type (System V ABI, "Bit-Fields").
+                # C99 6.7.2.1: a width of 0 ends the unit.
                 crosses = at // size != (at + width - 1) // size if width else True
                 if width == 0 or (crosses and not is_packed):
                     at = self.aligned(at, size, layout, declaration.name or "")
@@ -453,6 +452,8 @@ class _Reader:
         Raises `Unreadable` for types whose size no standard states.
         """
         inner = self.resolved(kind)
+        # As gcc and clang do without `-fshort-enums`; C99 6.7.2.2 leaves the type to
+        # the compiler.
         if isinstance(inner, self.ast.Enum):
             return "enum", 32
         if not isinstance(inner, self.ast.IdentifierType):
@@ -503,6 +504,7 @@ class _Reader:
                 "+": left + right,
                 "-": left - right,
                 "*": left * right,
+                # A hostile shift must not exhaust the memory.
                 "<<": left << min(right, 64),
             }[node.op]
         raise Unreadable(

@@ -164,6 +164,7 @@ def _work(number: int) -> Page:
         _weigh(page)
         return extract(page)
     except Exception as error:  # one broken page must not cost the others
+        # The size of A4 in points.
         return Page(
             number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200]
         )

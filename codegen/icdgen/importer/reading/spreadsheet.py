@@ -44,6 +44,7 @@ def read_csv(path: Path) -> Document:
     """
     name = str(path)
     text = utf8_text(path, "save it as CSV in UTF-8")
+    # Spreadsheet programs write semicolons where the comma is the decimal point.
     delimiter = max(",;\t|", key=text[:10_000].count)
     rows: Cells = []
     reader = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)
@@ -84,6 +85,7 @@ def read_xlsx(path: Path) -> Document:
             "reading a spreadsheet needs openpyxl", "pip install 'icdgen[import]'"
         ) from None
     try:
+        # openpyxl gives either the values or the formulas of cells.
         book = openpyxl.load_workbook(path, data_only=True)
         formulas = openpyxl.load_workbook(path)
     except (
@@ -190,6 +192,7 @@ class _Sheet:
         if (
             isinstance(value, str)
             and value.startswith("#")
+            # `#REF!`, `#NAME?`, `#N/A`
             and value.endswith(("!", "?", "/A"))
         ):
             self.report(
@@ -221,6 +224,8 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
 
     for number, cells in rows:
         filled = [cell.text for cell in cells if cell.text]
+        # A row below a merged cell can have no text of its own, and does not end the
+        # table.
         open_rows = max(open_rows - 1, 0)
         if not filled and not open_rows:
             close()

@@ -112,8 +112,7 @@ class _Interpreter:
             choices, self.parts, survey, self.attributes, self.profile.rules
         )
 
-    # --- one table
-    # -------------------------------------------------------------------------------------------------
+    # One table.
 
     def read(self, rule: Rule, table: SourceTable) -> None:
         """Add the parts that a rule reads from a table."""
@@ -347,8 +346,7 @@ class _Interpreter:
                 rule.place,
             )
 
-    # --- all tables
-    # ------------------------------------------------------------------------------------------------
+    # All tables.
 
     def check_use(self, choices: list[Choice]) -> None:
         """Report rules and corrections that have no effect."""

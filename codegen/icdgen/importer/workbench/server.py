@@ -95,6 +95,8 @@ def handler(session: Session) -> type[BaseHTTPRequestHandler]:
             }
             action = actions.get(urlsplit(self.path).path)
             length = self.headers.get("Content-Length") or ""
+            # A form of another site can send a POST here, but no header of its own,
+            # without a preflight request (CORS) that this server does not answer.
             if (self.headers.get("Host") or "").rsplit(":", 1)[
                 0
             ] not in _NAMES or self.headers.get(_MARK) is None:

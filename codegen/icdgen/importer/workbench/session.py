@@ -85,8 +85,7 @@ class Session:
         except OSError as error:
             raise unreadable(self.path, error) from None
 
-    # --- answers
-    # ---------------------------------------------------------------------------------------------------
+    # Answers.
 
     def state(self) -> dict[str, Any]:
         """Everything but the contents of single tables."""
@@ -250,8 +249,7 @@ class Session:
                 self.pictures[number] = _render(Path(self.document.file), number)
             return self.pictures[number]
 
-    # --- changes
-    # ---------------------------------------------------------------------------------------------------
+    # Changes.
 
     def set_rule(
         self, index: int | None, rule: dict[str, Any] | None, behind: int | None = None
