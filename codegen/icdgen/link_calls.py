@@ -348,6 +348,7 @@ def _crc(crc: Crc) -> Call:
 def _envelope_field(field: EnvelopeField) -> Call:
     parts = _members(field)
     defaults = {"id_shift": 0, "unit": 1, "plus": 0}
+    # By keyword and only if needed: most fields of a header have the defaults.
     own = {name: parts.pop(name) for name in defaults}
     more = {name: value for name, value in own.items() if value != defaults[name]}
     return _row("EnvelopeField", *parts.values(), **more)

@@ -77,6 +77,7 @@ class PlugIn:
         except UserError:
             raise
         except Exception as error:
+            # The innermost frame, which is where the package failed.
             last = traceback.extract_tb(error.__traceback__)[-1]
             reason = f"{type(error).__name__}: {error}".rstrip(": ")
             raise UserError(

@@ -135,6 +135,7 @@ def _least(field: AnyScalar) -> _End | None:
         for value in (_type_ends(field)[0], limits.min)
         if value is not None
     ]
+    # Of equal values, the excluded one is the narrower limit: True is above False.
     return max(
         [*ends, *([(limits.above, True)] if limits.above is not None else [])],
         default=None,
@@ -149,6 +150,7 @@ def _most(field: AnyScalar) -> _End | None:
         if value is not None
     ]
     ends += [(limits.below, True)] if limits.below is not None else []
+    # Of equal values, the excluded one is the narrower limit.
     return min(ends, key=lambda end: (end[0], not end[1]), default=None)
 
 

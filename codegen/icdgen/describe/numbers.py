@@ -29,6 +29,7 @@ def exact_text(value: Fraction | int) -> str:
     scaled = value * 10**places
     if not places or len(str(abs(scaled.numerator))) > MOST_DIGITS:
         return repr(value.numerator / value.denominator)
+    # At least one digit in front of the point.
     digits = str(abs(scaled.numerator)).rjust(places + 1, "0")
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 

@@ -37,6 +37,8 @@ class NamingPolicy:
     """Words that cannot be identifiers."""
 
     def __init__(self) -> None:
+        # Weak references: a policy lives as long as the program, a description as long
+        # as its run.
         self._texts: WeakKeyDictionary[object, dict[str, str]] = WeakKeyDictionary()
         self.tables: WeakKeyDictionary[Description, tuple[Identifier, ...]] = (
             WeakKeyDictionary()

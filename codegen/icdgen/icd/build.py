@@ -96,6 +96,7 @@ class Builder:
         structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
         if isinstance(protocol, Map):
+            # Before `plain` copies the section.
             packets.place_fields(protocol.get("link"))
         words = tuple(
             w

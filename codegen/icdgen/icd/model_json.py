@@ -83,6 +83,8 @@ class _Writer:
                 item != default or type(item) is not type(default)
             ):
                 written[name] = item if type(item) in _SCALARS else self.plain(item)
+        # After its parts: the reader creates objects from the inside out, and counts in
+        # that order.
         self.numbers[id(value)] = len(self.numbers)
         return written
 
@@ -121,6 +123,7 @@ class _Reader:
             return Fraction(*attributes["parts"])
         if name == "raw":
             value = json.loads(attributes["json"])
+            # `_tuples` compares the exact type, so it leaves this list alone.
             return _List(value) if type(value) is list else value
         for key, value in attributes.items():
             if type(value) is list:

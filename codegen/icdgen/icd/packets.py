@@ -180,6 +180,8 @@ def place_fields(link: object) -> None:
         for part in ("header", "trailer"):
             end = 0
             for row in _fields(section.get(part)):
+                # In the tree itself, so that rules and tables of the link read the same
+                # positions.
                 at, bits = row.setdefault("at", end), row.get("bits")
                 if type(at) is int and type(bits) is int:
                     end = at + bits

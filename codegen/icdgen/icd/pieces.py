@@ -47,6 +47,7 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
     while start < end:
         byte, first = divmod(start, 8)
         count = min(8 - first, end - start)
+        # With msb0, the run begins at the top of the byte.
         shift = first if bit_order == "lsb0" else 8 - first - count
         runs.append((byte, shift, count))
         start += count

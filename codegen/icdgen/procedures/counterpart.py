@@ -57,6 +57,7 @@ class Counterpart:
         changes = [
             change for run in self.runs.values() for change in run.changes(now, message)
         ]
+        # The change by the latest telecommand is the last one.
         for _, change in sorted(changes, key=lambda numbered: numbered[0]):
             data = change(data)
         return data

@@ -163,6 +163,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     )
     # Highest bit of the counter, which a narrower implementation would ignore
     top = 1 << counter.bits - 1
+    # Number of elements in the frame, and in its counter.
     pairs = [
         (few, few + 1),
         (most, most - 1),

@@ -170,6 +170,7 @@ def with_counts(
 
 def shortened(message: Message, frame: bytes, sizes: Mapping[str, int]) -> bytes:
     """Return the longest frame without the elements beyond these sizes."""
+    # From the end, because a cut moves all bytes behind it.
     for gap in reversed(list(message.layout.gaps(sizes))):
         frame = frame[: gap.begin] + frame[gap.end :]
     return frame

@@ -68,6 +68,7 @@ def _texts(size: int) -> Iterator[str]:
     characters, which are refused.
     """
     every = "".join(map(chr, range(1, 0x80)))
+    # From "!" on, and one character more than fits.
     long = (every * (size // len(every) + 2))[32 : 32 + size + 1]
     yield from ("", long[:1], long[: size - 1], long[:size], long, "\x01", "\x7f")
     yield from ("\x80", "\u00e9", "\u4f4d", "\U0001f6f0")

@@ -34,6 +34,7 @@ def of_rows(node: Node, rows: list[Row]) -> bytes:
         ) from None
     book = Workbook()
     book.properties.creator = "icdgen"
+    # openpyxl would write the time of this run.
     book.properties.created = _EPOCH
     sheet = book.active
     sheet.title = "Messages"

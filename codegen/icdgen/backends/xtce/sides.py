@@ -79,6 +79,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
         types,
         head.bits,
         shared=shared,
+        # The template declares these containers itself.
         taken={"TelemetryFrame", "TelecommandFrame"},
     )
     frames = [maker.frame(message) for message, _ in messages]

@@ -126,6 +126,7 @@ def _are_apart(layout: Layout) -> bool:
     """
     end = 0
     for node in sorted(layout.fixed, key=attrgetter("at")):
+        # A bit order of its own counts other bits from the same `at`.
         if node.at < end or node.orders.bit:
             return False
         end = node.at + bits_of_node(node)
