@@ -37,20 +37,22 @@ pub fn dispatch(id: u8, bytes: &[u8]) -> Result<icd::cubeacp::Telemetry, icd::Er
 """
 CLIENT = """\
 use icd::cubeacp::{EstimatedAttitudeAngles, Node, LINK, LONGEST};
-use icd::wire::{Client, Error};
+use icd::wire::{uart, Client, Error};
+
+type Device = Client<Node, uart::Line<LONGEST>, 1>;
 
 #[no_mangle]
-pub fn unit_begin(client: &mut Option<Client<Node, LONGEST>>, now: u32) -> Result<(), Error> {
+pub fn unit_begin(client: &mut Option<Device>, now: u32) -> Result<(), Error> {
     client.insert(Client::uart(&LINK)?).request::<EstimatedAttitudeAngles>(now)
 }
 
 #[no_mangle]
-pub fn unit_send(client: &mut Client<Node, LONGEST>) -> Option<&[u8]> {
-    client.output()
+pub fn unit_send<'a>(client: &mut Device, line: &'a mut [u8]) -> Option<&'a [u8]> {
+    client.output(line).ok().flatten()
 }
 
 #[no_mangle]
-pub fn unit_receive(client: &mut Client<Node, LONGEST>, now: u32, bytes: &[u8], roll: &mut i16) {
+pub fn unit_receive(client: &mut Device, now: u32, bytes: &[u8], roll: &mut i16) {
     client.received(now, bytes, |event| {
         if let Some(angles) = event.message::<EstimatedAttitudeAngles>() {
             *roll = angles.estimated_roll_angle;

@@ -4,10 +4,12 @@
 //! `icdgen --lang rust --out build/wheel examples/links/wheel.yaml` writes the crate `icd`; this
 //! program needs its feature `std`.
 use icd::wheel::{enums::Mode, Events, Node, SetMode, SetSpeed, LINK, LONGEST, SEQUENCES};
-use icd::wire::{stream::Session, Failure};
+use icd::wire::{stream, Failure, Session};
 use std::{env, net::TcpStream, process::ExitCode, time::Duration};
 
-fn command(wheel: &mut Session<Node, TcpStream, LONGEST, SEQUENCES>) -> Result<(), Failure> {
+type Wheel = Session<Node, TcpStream, stream::Line<LONGEST, SEQUENCES>>;
+
+fn command(wheel: &mut Wheel) -> Result<(), Failure> {
     // Each line returns when the wheel has acknowledged.
     wheel.send(&SetMode {
         mode: Mode::Speed.into(),

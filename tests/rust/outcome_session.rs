@@ -1,14 +1,13 @@
 //! A session with the reaction wheel of the examples: each outcome of a telecommand; any surprise is a panic.
 
 use icd::wheel::{enums, Ack, Busy, Events, GetEvents, Nak, Node, Reset, Save, SetMode, SetSpeed, LINK, LONGEST, SEQUENCES};
-use icd::wire::stream::{self, Outcome};
-use icd::wire::{Direction, Failure, TelemetryOf};
+use icd::wire::{stream, Direction, Event, Failure, Outcome, TelemetryOf};
 use std::cell::RefCell;
 use std::io::{self, ErrorKind, Read, Write};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-type Session = stream::Session<Node, Line, LONGEST, SEQUENCES>;
+type Session = icd::wire::Session<Node, Line, stream::Line<LONGEST, SEQUENCES>>;
 
 /// A wheel that answers each telecommand with the next of its answers.
 #[derive(Default)]
@@ -96,7 +95,7 @@ fn main() {
     let mut session = Session::new(&LINK, line.clone())
         .unwrap()
         .with_settings(settings)
-        .with_events(move |event| *strays.borrow_mut() += usize::from(matches!(**event, stream::Event::Stray { .. })));
+        .with_events(move |event| *strays.borrow_mut() += usize::from(matches!(**event, Event::Stray { .. })));
     let speed = SetSpeed::default();
 
     // The acknowledge of another telecommand confirms nothing.

@@ -1,11 +1,13 @@
 //! Clients over ports that have the traits of `embedded-io` and `embedded-hal`, as drivers of microcontrollers have.
 
 use icd::cubeacp::{self, CurrentAdcsState};
-use icd::wire::{uart, Client, Event, Link, Linked, Request};
+use icd::wire::{i2c, uart, Client, Event, Link, Linked, Request};
 use receiver::receiver::{self as ubx, EndOfEpoch, NavigationClock};
-use receiver::wire::{stream, Direction, PortError};
+use receiver::wire::{stream, Client as FramedClient, Direction, PortError};
 use std::collections::VecDeque;
 use std::convert::Infallible;
+
+type Uart = Client<cubeacp::Node, uart::Line<{ cubeacp::LONGEST }>, 1>;
 
 const STATE: [u8; 7] = [132, 0xe2, 0, 0, 0, 0, 0];
 const ADDRESS: u8 = 0x57;
@@ -54,10 +56,11 @@ impl embedded_io::Read for Serial {
 
 fn over_uart() {
     let (mut port, mut found) = (Serial::default(), None);
-    let mut client = Client::<cubeacp::Node, { cubeacp::LONGEST }>::uart(&cubeacp::LINK).unwrap();
+    let mut room = [0; 2 * cubeacp::LONGEST + 4];
+    let mut client = Uart::uart(&cubeacp::LINK).unwrap();
     client.request::<CurrentAdcsState>(0).unwrap();
     client
-        .poll(0, &mut port, |_| panic!("nothing came"))
+        .poll(0, &mut port, &mut room, |_| panic!("nothing came"))
         .unwrap();
     assert_eq!(port.written, [0x1f, 0x7f, 132, 0x1f, 0xff]);
     assert_eq!(port.flushed, 5);
@@ -65,7 +68,7 @@ fn over_uart() {
     let size = uart::encode(&cubeacp::LINK, &STATE, &mut line).unwrap();
     port.coming.extend(&line[..size]);
     client
-        .poll(1, &mut port, |event| {
+        .poll(1, &mut port, &mut room, |event| {
             found = found.take().or(event.message::<CurrentAdcsState>())
         })
         .unwrap();
@@ -75,7 +78,7 @@ fn over_uart() {
     let mut ended = false;
     for now in (10..100_000).step_by(100) {
         client
-            .poll(now, &mut port, |event| {
+            .poll(now, &mut port, &mut room, |event| {
                 ended |= matches!(*event, Event::Timeout { .. })
             })
             .unwrap();
@@ -88,7 +91,7 @@ fn over_i2c_with_a_stop() {
     link.i2c_repeated_start = false;
     let (mut bus, mut found) = (Bus::default(), Vec::new());
     let link: &'static Link = Box::leak(Box::new(link));
-    let mut client = Client::<(), { cubeacp::LONGEST }>::i2c(link).unwrap();
+    let mut client = Client::<(), i2c::Line<{ cubeacp::LONGEST }>, 1>::i2c(link).unwrap();
     client.start(0, &Request::telemetry(132)).unwrap();
     client
         .poll_i2c(0, &mut bus, |event| {
@@ -101,7 +104,7 @@ fn over_i2c_with_a_stop() {
 }
 
 fn over_envelopes() {
-    type Receiver = stream::Client<ubx::Node, { ubx::LONGEST }, { ubx::SEQUENCES }, 2>;
+    type Receiver = FramedClient<ubx::Node, stream::Line<{ ubx::LONGEST }, { ubx::SEQUENCES }>, 2>;
     let (mut port, mut line) = (Serial::default(), [0; ubx::LONGEST]);
     let mut client = Receiver::new(&ubx::LINK).unwrap();
     client.request::<NavigationClock>(0).unwrap();
@@ -188,7 +191,7 @@ impl embedded_hal::i2c::I2c for Bus {
 
 fn over_i2c() {
     let (mut bus, mut found) = (Bus::default(), None);
-    let mut client = Client::<cubeacp::Node, { cubeacp::LONGEST }>::i2c(&cubeacp::LINK).unwrap();
+    let mut client = Client::<_, i2c::Line<{ cubeacp::LONGEST }>, 1>::i2c(&cubeacp::LINK).unwrap();
     client.request::<CurrentAdcsState>(0).unwrap();
     client
         .poll_i2c(0, &mut bus, |event| {

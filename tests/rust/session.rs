@@ -1,8 +1,8 @@
 //! A session whose port fails, requests that are given up, messages that nodes share; any surprise is a panic.
 
 use icd::common::{Identification, Reset};
-use icd::cubeacp::{ClearErrors, EstimatedAngularRates, EstimatedAttitudeAngles, Node, LINK, LONGEST};
-use icd::wire::{uart, Client, NodeLink, Session, Started, TelecommandOf, TelemetryOf};
+use icd::cubeacp::{ClearErrors, EstimatedAngularRates, EstimatedAttitudeAngles, LINK, LONGEST};
+use icd::wire::{i2c, uart, Client, NodeLink, Session, TelecommandOf, TelemetryOf};
 use icd::wire::session::Failure;
 use std::cell::{Cell, RefCell};
 use std::io::{self, ErrorKind, Read, Write};
@@ -57,7 +57,7 @@ impl Write for Line {
 
 fn failing() {
     let line = Line::default();
-    let mut session = Session::<Node, _, LONGEST>::new(&LINK, line.clone()).unwrap();
+    let mut session = Session::<_, _, uart::Line<LONGEST>>::uart(&LINK, line.clone()).unwrap();
     session.get::<Identification>().unwrap();
     line.fails.set(true);
     for _ in 0..2 {
@@ -86,39 +86,46 @@ where
     Identification: TelemetryOf<T>,
     Reset: TelecommandOf<T>,
 {
-    let mut client = Client::<T, LONGEST>::uart(link).unwrap();
+    let mut client = Client::<T, uart::Line<LONGEST>, 1>::uart(link).unwrap();
     client.request::<Identification>(0).unwrap();
-    while client.output().is_some() {}
     let (mut line, mut found) = ([0; 64], None);
+    assert!(client.output(&mut line).unwrap().is_some());
     let count = uart::encode(link, &[Identification::ID, 1, 2, 3, 4, 5, 6, 7, 8], &mut line).unwrap();
     client.received(1, &line[..count], |event| found = event.message::<Identification>());
     assert!(found.is_some());
-    assert_eq!(client.send(2, &Reset::default()), Ok(Started::Sent));
+    client.send(2, &Reset::default()).unwrap();
+    let mut events = Vec::new();
+    client.tick(2, |event| events.push(format!("{event:?}")));
+    assert!(events.is_empty(), "it is not even taken");
+    assert!(client.output(&mut line).unwrap().is_some());
+    client.tick(2, |event| events.push(format!("{event:?}")));
+    assert!(events.remove(0).starts_with("Sent {") && events.is_empty());
 }
 
 fn late() {
-    let mut client = Client::<Node, LONGEST>::i2c(&LINK).unwrap();
+    let mut client = Client::<_, i2c::Line<LONGEST>, 1>::i2c(&LINK).unwrap();
     let mut events = Vec::new();
     client.request::<EstimatedAttitudeAngles>(0).unwrap();
     assert!(client.output_transaction().is_some());
     client.cancel();
     client.send(1, &Reset::default()).unwrap();
     client.transferred(2, Some(&[0; 6]), |event| events.push(format!("{event:?}")));
-    assert!(events.remove(0).starts_with("Late { id: 146") && client.deadline().is_some(), "the reset is not even taken");
+    assert!(events.remove(0).starts_with("Late { id: 146"));
     assert!(client.output_transaction().is_some());
     client.transferred(3, Some(&[]), |event| events.push(format!("{event:?}")));
-    assert!(events.remove(0).starts_with("Sent { id: 1"));
+    assert!(events.remove(0).starts_with("Sent { direction: Telecommand, id: 1"));
 }
 
 fn cancelled() {
-    let mut client = Client::<Node, LONGEST>::uart(&LINK).unwrap();
+    let mut client = Client::<_, uart::Line<LONGEST>, 1>::uart(&LINK).unwrap();
     client.cancel();
     client.request::<EstimatedAttitudeAngles>(0).unwrap();
     client.cancel();
-    assert!(client.output().is_none() && client.deadline().is_none(), "what was not taken is not sent");
+    let mut line = [0; 64];
+    assert!(client.output(&mut line).unwrap().is_none() && client.deadline().is_none(), "what was not taken is not sent");
     client.request::<EstimatedAngularRates>(1).unwrap();
-    while client.output().is_some() {}
-    let (mut line, mut events) = ([0; 64], Vec::new());
+    assert!(client.output(&mut line).unwrap().is_some());
+    let mut events = Vec::new();
     let count = uart::encode(&LINK, &[EstimatedAttitudeAngles::ID, 0, 0, 0, 0, 0, 0], &mut line).unwrap();
     client.received(2, &line[..count], |event| events.push(format!("{event:?}")));
     assert!(events.remove(0).starts_with("Stray { id: Some(146)") && events.is_empty() && client.deadline().is_some());

@@ -1,7 +1,7 @@
 //! A session with a simulated node: in a hurry, and patient with what happens to acknowledges.
 
 use icd::wire::session::{Failure, Outcome};
-use icd::wire::{NodeLink, Session, Settings, TelecommandOf};
+use icd::wire::{uart, NodeLink, Session, Settings, TelecommandOf};
 use icd::{Error, Telecommand};
 use std::net::TcpStream;
 use std::ops::{Deref, DerefMut};
@@ -27,7 +27,7 @@ pub type Problem = Box<dyn std::error::Error>;
 pub struct Device<const N: usize, T: 'static> {
     pub link: &'static NodeLink<T>,
     port: TcpStream,
-    session: Session<T, TcpStream, N>,
+    session: Session<T, TcpStream, uart::Line<N>>,
 }
 
 impl<const N: usize, T: 'static> Device<N, T> {
@@ -44,7 +44,7 @@ impl<const N: usize, T: 'static> Device<N, T> {
     }
 
     fn over(port: TcpStream, link: &'static NodeLink<T>) -> Result<Self, Problem> {
-        let session = Session::new(link, port.try_clone()?)?.with_settings(SETTINGS);
+        let session = Session::uart(link, port.try_clone()?)?.with_settings(SETTINGS);
         Ok(Self { link, port, session })
     }
 
@@ -63,7 +63,7 @@ impl<const N: usize, T: 'static> Device<N, T> {
 }
 
 impl<const N: usize, T> Deref for Device<N, T> {
-    type Target = Session<T, TcpStream, N>;
+    type Target = Session<T, TcpStream, uart::Line<N>>;
 
     fn deref(&self) -> &Self::Target {
         &self.session

@@ -1,12 +1,12 @@
 //! A session over envelopes: replies that are lost, what comes unasked, a port that fails; any surprise is a panic.
 
 use icd::receiver::{NavigationClock, Node, PollClock, SetMessageRate, LINK, LONGEST, SEQUENCES};
-use icd::wire::{stream, Direction, Failure};
+use icd::wire::{stream, Direction, Failure, Outcome};
 use std::cell::RefCell;
 use std::io::{self, ErrorKind, Read, Write};
 use std::rc::Rc;
 
-type Session = stream::Session<Node, Line, LONGEST, SEQUENCES>;
+type Session = icd::wire::Session<Node, Line, stream::Line<LONGEST, SEQUENCES>>;
 
 /// A receiver that answers each poll with its number; `lost` of the answers do not come.
 #[derive(Default)]
@@ -87,7 +87,7 @@ fn main() {
     assert_eq!(session.get::<NavigationClock>().unwrap().clock_bias, 4);
     assert_eq!(session.ask::<NavigationClock, _>(&PollClock {}).unwrap().clock_bias, 5);
     let rate = SetMessageRate { rate: 1, ..SetMessageRate::default() };
-    assert_eq!(session.send(&rate).unwrap(), stream::Outcome::Sent);
+    assert_eq!(session.send(&rate).unwrap(), Outcome::Sent);
     assert_eq!(line.0.borrow().written.last(), Some(&SetMessageRate::ID.into()));
 
     line.0.borrow_mut().says(-9);

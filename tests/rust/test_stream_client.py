@@ -13,9 +13,9 @@ from tests.rust.tools import USED, Toolchain, run, toolchains
 
 PROGRAM = """
 use icd::datagram::{self, LevelOfAnother, LevelOfTheFirst, ShortLevel, LINK};
-use icd::wire::{stream, Direction};
+use icd::wire::{self, stream, Direction};
 
-type Client = stream::Client<datagram::Node, { datagram::LONGEST }, { datagram::SEQUENCES }, 2>;
+type Client = wire::Client<datagram::Node, stream::Line<{ datagram::LONGEST }, { datagram::SEQUENCES }>, 2>;
 
 fn seen(data: &[u8]) -> (Option<u8>, Option<u32>, bool) {
     let mut line = [0; 200];
@@ -44,10 +44,9 @@ fn main() {
 
 OUTCOMES = """
 use icd::wheel::{self, enums::NakReason, Ack, Busy, Events, Nak, Node, Reset, SetMode, SetSpeed, LINK};
-use icd::wire::{stream, Direction, Settings, TelemetryOf};
-use stream::Event;
+use icd::wire::{self, stream, Direction, Event, NodeEvent, Settings, TelemetryOf};
 
-type Client = stream::Client<Node, { wheel::LONGEST }, { wheel::SEQUENCES }, 2>;
+type Client = wire::Client<Node, stream::Line<{ wheel::LONGEST }, { wheel::SEQUENCES }>, 2>;
 
 fn encoded<M: TelemetryOf<Node>>(message: M) -> Vec<u8> {
     let (data, mut line) = (message.to_bytes().unwrap(), [0; 100]);
@@ -62,7 +61,7 @@ fn sent(client: &mut Client) -> Option<u8> {
 }
 
 /// What is to be known of an event: its kind, and what is read from it.
-fn told(event: &stream::NodeEvent<'_, Node>) -> String {
+fn told(event: &NodeEvent<'_, Node>) -> String {
     let command = event.message::<Ack>().map(|ack| ack.command);
     let command = command.or_else(|| event.message::<Nak>().map(|nak| nak.command));
     let command = command.or_else(|| event.message::<Busy>().map(|busy| busy.command));
@@ -77,7 +76,7 @@ fn told(event: &stream::NodeEvent<'_, Node>) -> String {
         Event::Sent { id, attempts, .. } => format!("sent {id} {attempts} {command:?}"),
         Event::Progress { id, .. } => format!("progress {id} {command:?}"),
         Event::Late { id, .. } => format!("late {id} {command:?}"),
-        Event::Stray { id, .. } => format!("stray {id} {command:?}"),
+        Event::Stray { id, .. } => format!("stray {} {command:?}", id.unwrap()),
         Event::Reply { id, .. } => format!("reply {id} {:?}", event.message::<Events>().map(|events| events.count)),
         other => panic!("{other:?}"),
     }
@@ -149,10 +148,9 @@ fn main() {
 
 PACKETS = """
 use icd::jbd::{self, enums::Status, CellVoltages, Node, SwitchOff, LINK};
-use icd::wire::{stream, Error};
-use stream::Event;
+use icd::wire::{self, stream, Error, Event};
 
-type Client = stream::Client<Node, { jbd::LONGEST }, { jbd::SEQUENCES }, 2>;
+type Client = wire::Client<Node, stream::Line<{ jbd::LONGEST }, { jbd::SEQUENCES }>, 2>;
 
 const CELLS: [u8; 9] = [0xdd, 4, 0, 2, 0x0f, 0xa0, 0xff, 0x4f, 0x77];
 const CELLS_REFUSED: [u8; 7] = [0xdd, 4, 0x80, 0, 0xff, 0x80, 0x77];
@@ -173,7 +171,7 @@ fn received(client: &mut Client, bytes: &[u8]) -> String {
                 assert_eq!(event.reason(), Some(Status::Error));
                 format!("refused {id} {code:?} {cells:?}")
             }
-            Event::Stray { id, packet, data } => format!("stray {id} {packet:?} {data:x?} {cells:?}"),
+            Event::Stray { id, packet, data } => format!("stray {} {packet:?} {data:x?} {cells:?}", id.unwrap()),
             other => panic!("{other:?}"),
         };
     });

@@ -20,7 +20,7 @@ WHOLE = """\
 use icd::cubeacp::{Node, LINK, LONGEST};
 
 fn main() {
-    let mut client = icd::wire::Client::<Node, LONGEST>::uart(&LINK).unwrap();
+    let mut client = icd::wire::Client::<Node, icd::wire::uart::Line<LONGEST>, 1>::uart(&LINK).unwrap();
     %s;
 }
 """
@@ -63,12 +63,12 @@ def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(
 DOCUMENTED = """\
 use icd::wheel::enums::{Mode, NakReason};
 use icd::wheel::{self, SetMode};
-use icd::wire::{stream, Failure};
+use icd::wire::{stream, Failure, Session};
 use std::io::{Read, Write};
 
 #[allow(dead_code)]
 fn set<P: Read + Write>(
-    session: &mut stream::Session<wheel::Node, P, { wheel::LONGEST }, { wheel::SEQUENCES }>,
+    session: &mut Session<wheel::Node, P, stream::Line<{ wheel::LONGEST }, { wheel::SEQUENCES }>>,
 ) -> Result<(), Failure> {
 %s
     Ok(())

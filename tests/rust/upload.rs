@@ -2,10 +2,10 @@
 
 use icd::loader::enums::Area;
 use icd::loader::procedures::{Upload, UPLOAD_MEMORY};
-use icd::loader::{ImageChecksum, Node, LINK, LONGEST, SEQUENCES};
+use icd::loader::{ImageChecksum, LINK, LONGEST, SEQUENCES};
 use icd::wire::procedure::End;
 use icd::wire::session::Failure;
-use icd::wire::{stream::Session, Error};
+use icd::wire::{stream, Error, Session};
 use std::net::TcpStream;
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ fn main() {
     let words: Vec<String> = std::env::args().collect();
     let port = TcpStream::connect(format!("{}:{}", words[1], words[2])).unwrap();
     port.set_read_timeout(Some(Duration::from_millis(5))).unwrap();
-    let mut session = Session::<Node, _, LONGEST, SEQUENCES>::new(&LINK, port).unwrap();
+    let mut session = Session::<_, _, stream::Line<LONGEST, SEQUENCES>>::new(&LINK, port).unwrap();
     let size: u32 = words[3].parse().unwrap();
     let image: Vec<u8> = (0..size).map(|number| (number % 251) as u8).collect();
     let mut memory = [0; UPLOAD_MEMORY];

@@ -6,7 +6,11 @@ use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, EstimatedAttitudeAngles,
 use icd::common::enums::FileType;
 use icd::cubeacp::procedures::{Download, DOWNLOAD_MEMORY};
 use icd::wire::procedure::End;
-use icd::wire::{crc16, identify, uart, Client, Crc, Event, Link, Reason, Started, Table};
+use icd::wire::{can, crc16, identify, uart, Client, Crc, Direction, Event, Link, Reason, Table};
+
+type Uart = Client<icd::cubeacp::Node, uart::Line<{ icd::cubeacp::LONGEST }>, 1>;
+
+const ROOM: usize = 2 * icd::cubeacp::LONGEST + 4;
 use icd::{Coded, Error, Message};
 
 fn main() {
@@ -135,13 +139,14 @@ fn floats() {
 }
 
 fn requesting() {
-    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap();
+    let mut client = Uart::uart(&icd::cubeacp::LINK).unwrap();
     let before = u32::MAX - 5; // time wraps while the reply is awaited
     client.request::<EstimatedAttitudeAngles>(before).unwrap();
     assert_eq!(client.request::<CurrentAdcsState>(before), Err(icd::wire::Error::Busy));
-    assert_eq!(client.output(), Some(&[0x1f, 0x7f, 146, 0x1f, 0xff][..]));
-    assert_eq!(client.output(), None);
     let mut line = [0; 32];
+    assert!(client.output(&mut [0; 4]).is_err(), "no room");
+    assert_eq!(client.output(&mut line), Ok(Some(&[0x1f, 0x7f, 146, 0x1f, 0xff][..])));
+    assert_eq!(client.output(&mut line), Ok(None));
     let size = uart::encode(&icd::cubeacp::LINK, &[146, 0x2e, 0xfb, 0x0a, 0, 0, 0], &mut line).unwrap();
     let mut angles = None;
     for byte in &line[..size] {
@@ -149,23 +154,25 @@ fn requesting() {
     }
     assert_eq!(angles.unwrap().estimated_roll_angle, -1234);
     assert_eq!(client.deadline(), None);
-    assert!(Client::<icd::cubeacp::Node, 16>::uart(&icd::cubeacp::LINK).is_err(), "a buffer that is too small");
+    assert!(Client::<_, uart::Line<16>, 1>::uart(&icd::cubeacp::LINK).is_err(), "a buffer that is too small");
 }
 
 fn sending() {
-    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::can(&icd::cubeacp::LINK, 7).unwrap();
-    assert_eq!(client.send(0, &Reset::default()), Ok(Started::Sent), "it is answered by a reset");
+    let mut client = Client::<_, can::Line<{ icd::cubeacp::LONGEST }>, 1>::can(&icd::cubeacp::LINK, 7).unwrap();
+    client.send(0, &Reset::default()).unwrap(); // it is answered by a reset
     let packet = client.output_packet().unwrap();
     assert_eq!((packet.id, packet.data()), (0x0101_0701, &[90][..]));
     assert!(client.output_packet().is_none());
-    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap().with_checksums();
+    let mut ended = false;
+    client.tick(0, |event| ended = matches!(*event, Event::Sent { .. }));
+    assert!(ended);
+    several_packets();
+    let mut client = Uart::uart(&icd::cubeacp::LINK).unwrap().with_checksums();
     let command = SetAttitudeControlMode::default();
-    assert_eq!(client.send(10, &command), Ok(Started::Waiting));
-    let mut sent = Vec::new();
-    while let Some(bytes) = client.output() {
-        sent.extend_from_slice(bytes);
-    }
-    assert_eq!(sent.len(), 4 + 1 + 3 + 1);
+    client.send(10, &command).unwrap();
+    let mut room = [0; ROOM];
+    let sent = client.output(&mut room).unwrap();
+    assert_eq!(sent.map(<[u8]>::len), Some(4 + 1 + 3 + 1));
     let mut seen = Vec::new();
     client.received(20, &[0x1f, 0x7f, 13, 3, 0x1f, 0xff], |event| {
         if let Event::Refused { id, code, reason, .. } = *event {
@@ -173,6 +180,23 @@ fn sending() {
         }
     });
     assert_eq!(seen, [(13, Some(3), Some(Reason::Parameter))]);
+}
+
+/// The packets of a message are taken one by one; nothing comes between them.
+fn several_packets() {
+    let mut client = Client::<_, can::Line<{ icd::cubeacp::LONGEST }>, 2>::can(&icd::cubeacp::LINK, 7).unwrap();
+    let packets = |client: &mut Client<_, _, 2>| std::iter::from_fn(|| client.output_packet()).count();
+    client.send(0, &AdcsConfiguration::default()).unwrap();
+    client.request::<CurrentAdcsState>(0).unwrap();
+    let all = packets(&mut client);
+    assert!(all > 70, "and the request waits");
+    client.cancel();
+    client.send(10_000, &AdcsConfiguration::default()).unwrap();
+    client.send(10_000, &Reset::default()).unwrap();
+    assert!(client.output_packet().is_some());
+    client.tick(10_000, |event| panic!("{event:?}"));
+    client.cancel_request(Direction::Telecommand, AdcsConfiguration::SET_ID.into());
+    assert_eq!(packets(&mut client), 1, "the remaining packets are dropped");
 }
 
 /// A node that has one file, and loses every third packet.
@@ -216,7 +240,7 @@ impl Node {
 
 fn downloading() {
     let link = &icd::cubeacp::LINK;
-    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(link).unwrap();
+    let mut client = Uart::uart(link).unwrap();
     let file: Vec<u8> = (0..45_000_u32).map(|n| (n * n >> 3) as u8).collect();
     let mut node = Node { file: file.clone(), block: Vec::new(), burst: false, sent: 0 };
     let (mut memory, mut found) = (vec![0; DOWNLOAD_MEMORY], Vec::new());
@@ -237,7 +261,8 @@ fn downloading() {
         assert!(now < 1_000_000);
         while client.advance(now, &mut download).unwrap() {}
         let mut answers = Vec::new();
-        while let Some(bytes) = client.output() {
+        let mut room = [0; ROOM];
+        while let Some(bytes) = client.output(&mut room).unwrap() {
             hears.feed(bytes, |event| {
                 if let uart::Event::Message(message) = event {
                     answers.extend(node.answer(link, message));

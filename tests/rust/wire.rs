@@ -4,10 +4,13 @@ use icd::bootloader::procedures::{Download, Erase, Format, List, ProgramInformat
 use icd::common::enums::{FileType, FileUploadDestination};
 use icd::wire::files::{IndexEntries, IndexEntry};
 use icd::wire::procedure::{Procedure, Sink};
-use icd::wire::{can, i2c, log, stream, uart, Client, Crc, DosTime, Error, Event, Identity, Link, NodeEvent, NodeLink, Request, Started, Table};
+use icd::wire::{can, i2c, log, uart, Client, Crc, DosTime, Error, Event, Identity, Link, NodeEvent, NodeLink, Request, Table};
 
 const LONGEST: usize = icd::cubeacp::LONGEST;
-type ClientOf = Client<icd::cubeacp::Node, LONGEST>;
+type Node = icd::cubeacp::Node;
+type Uart = Client<Node, uart::Line<LONGEST>, 2>;
+type I2c = Client<Node, i2c::Line<LONGEST>, 2>;
+type Can = Client<Node, can::Line<LONGEST>, 2>;
 type LinkOf = NodeLink<icd::cubeacp::Node>;
 type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 
@@ -37,24 +40,24 @@ type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 #[no_mangle] pub fn wire_index_encode(entry: &IndexEntry<'_>, link: &Link, out: &mut [u8]) -> Result<usize, Error> { entry.encode(link, out) }
 #[no_mangle] pub fn wire_identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> { icd::wire::identify(link, frame) }
 
-#[no_mangle] pub fn wire_client_uart(link: &'static LinkOf, to: &mut Option<ClientOf>) { *to = Client::uart(link).ok().map(Client::with_checksums); }
-#[no_mangle] pub fn wire_client_i2c(link: &'static LinkOf, to: &mut Option<ClientOf>) { *to = Client::i2c(link).ok(); }
-#[no_mangle] pub fn wire_client_can(link: &'static LinkOf, to: &mut Option<ClientOf>) { *to = Client::can(link, 2).ok(); }
-#[no_mangle] pub fn wire_client_start(client: &mut ClientOf, now: u32, request: &Request<'_>) -> Result<Started, Error> { client.start(now, request) }
-#[no_mangle] pub fn wire_client_request(client: &mut ClientOf, now: u32) -> Result<(), Error> { client.request::<icd::cubeacp::EstimatedAttitudeAngles>(now) }
-#[no_mangle] pub fn wire_client_send(client: &mut ClientOf, now: u32, message: &icd::cubeacp::AdcsConfiguration) -> Result<Started, Error> { client.send(now, message) }
-#[no_mangle] pub fn wire_client_advance(client: &mut ClientOf, now: u32, procedure: &mut Procedure<'_, &'static mut dyn Sink>) -> Result<bool, Error> { client.advance(now, procedure) }
-#[no_mangle] pub fn wire_client_output(client: &mut ClientOf) -> Option<&[u8]> { client.output() }
-#[no_mangle] pub fn wire_client_packet(client: &mut ClientOf) -> Option<can::Packet> { client.output_packet() }
-#[no_mangle] pub fn wire_client_transaction(client: &mut ClientOf) -> Option<icd::wire::Transaction<'_>> { client.output_transaction() }
-#[no_mangle] pub fn wire_client_tick(client: &mut ClientOf, now: u32, hear: Hear) { client.tick(now, hear) }
-#[no_mangle] pub fn wire_client_received(client: &mut ClientOf, now: u32, bytes: &[u8], hear: Hear) { client.received(now, bytes, hear) }
-#[no_mangle] pub fn wire_client_joined(client: &mut ClientOf, now: u32, packet: &can::Packet, hear: Hear) { client.packet(now, packet, hear) }
-#[no_mangle] pub fn wire_client_transferred(client: &mut ClientOf, now: u32, bytes: Option<&[u8]>, hear: Hear) { client.transferred(now, bytes, hear) }
+#[no_mangle] pub fn wire_client_uart(link: &'static LinkOf, to: &mut Option<Uart>) { *to = Client::uart(link).ok().map(Client::with_checksums); }
+#[no_mangle] pub fn wire_client_i2c(link: &'static LinkOf, to: &mut Option<I2c>) { *to = Client::i2c(link).ok(); }
+#[no_mangle] pub fn wire_client_can(link: &'static LinkOf, to: &mut Option<Can>) { *to = Client::can(link, 2).ok(); }
+#[no_mangle] pub fn wire_client_start(client: &mut Uart, now: u32, request: &Request<'_>) -> Result<(), Error> { client.start(now, request) }
+#[no_mangle] pub fn wire_client_request(client: &mut Uart, now: u32) -> Result<(), Error> { client.request::<icd::cubeacp::EstimatedAttitudeAngles>(now) }
+#[no_mangle] pub fn wire_client_send(client: &mut Uart, now: u32, message: &icd::cubeacp::AdcsConfiguration) -> Result<(), Error> { client.send(now, message) }
+#[no_mangle] pub fn wire_client_advance(client: &mut Uart, now: u32, procedure: &mut Procedure<'_, &'static mut dyn Sink>) -> Result<bool, Error> { client.advance(now, procedure) }
+#[no_mangle] pub fn wire_client_output<'a>(client: &mut Uart, line: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> { client.output(line) }
+#[no_mangle] pub fn wire_client_packet(client: &mut Can) -> Option<can::Packet> { client.output_packet() }
+#[no_mangle] pub fn wire_client_transaction(client: &mut I2c) -> Option<i2c::Transaction<'_>> { client.output_transaction() }
+#[no_mangle] pub fn wire_client_tick(client: &mut Uart, now: u32, hear: Hear) { client.tick(now, hear) }
+#[no_mangle] pub fn wire_client_received(client: &mut Uart, now: u32, bytes: &[u8], hear: Hear) { client.received(now, bytes, hear) }
+#[no_mangle] pub fn wire_client_joined(client: &mut Can, now: u32, packet: &can::Packet, hear: Hear) { client.packet(now, packet, hear) }
+#[no_mangle] pub fn wire_client_transferred(client: &mut I2c, now: u32, bytes: Option<&[u8]>, hear: Hear) { client.transferred(now, bytes, hear) }
 
 macro_rules! procedure {
     ($next:ident, $event:ident, $type:ty) => {
-        #[no_mangle] pub fn $next<'a>(procedure: &'a mut $type, now: u32) -> Option<stream::Request<'a>> { procedure.next(now) }
+        #[no_mangle] pub fn $next<'a>(procedure: &'a mut $type, now: u32) -> Option<Request<'a>> { procedure.next(now) }
         #[no_mangle] pub fn $event(procedure: &mut $type, now: u32, event: &Event<'_>) { procedure.event(now, event) }
     };
 }

@@ -1,7 +1,7 @@
 //! What stands on the page about the API, between [key] and []: it is built and run by a test.
 
-use icd::imu::{enums::Mode, Attitude, Climate, Node, Setup, State, Telemetry, LINK, LONGEST};
-use icd::wire::Client;
+use icd::imu::{enums::Mode, Attitude, Climate, Setup, State, Telemetry, LINK, LONGEST};
+use icd::wire::{uart, Client};
 use icd::{is_special, Message};
 
 const FRAME: [u8; 16] = *b"\x2e\xfb\x0a\x00\xd7\x00\xfb\xffIMU\x00\x11\x52\x64\x00";
@@ -161,14 +161,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!(holds);
 
     // [client]
-    let mut client = Client::<Node, LONGEST>::uart(&LINK)?;
+    let mut client = Client::<_, uart::Line<LONGEST>, 1>::uart(&LINK)?;
     // []
     // [request]
     client.request::<State>(now)?;
     // []
-    let mut sent = Vec::new();
+    let (mut sent, mut line) = (Vec::new(), [0; 2 * LONGEST + 4]);
     // [output]
-    while let Some(bytes) = client.output() {
+    while let Some(bytes) = client.output(&mut line)? {
         sent.extend_from_slice(bytes);
     }
     // []

@@ -19,7 +19,7 @@ from icdgen.backends.rust.literals import (
     struct,
 )
 from icdgen.backends.rust.names import variant
-from icdgen.backends.rust.streams import crc_tables, stream_of
+from icdgen.backends.rust.streams import bus_exchanges_of, crc_tables, stream_of
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
@@ -117,7 +117,6 @@ class _Literal:
             ),
             part("i2c_address", some(facts.i2c_address)),
             part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),
-            part("polled", some(_polled(link.polled))),
             part("can", some(self.can())),
             part("checksum", some(self.checksum())),
             part("crc16", some(self.struct(facts.crc16))),
@@ -131,6 +130,7 @@ class _Literal:
             part("time", some(self.time())),
             part("index", some(self.index())),
             part("unsolicited", flat_rows(unsolicited)),
+            part("exchanges", bus_exchanges_of(facts.bus_exchanges)),
             part("identification", some(_identification(link.identification))),
             part("boot_ms", some(facts.boot_ms)),
             part("stream", some(stream_of(facts.stream) if facts.stream else None)),
@@ -228,16 +228,6 @@ def _can_types(types: dict[str, int]) -> Brackets:
 def _place(field: FieldDescription) -> Expression:
     """Return the position of a number."""
     return flat_rows(flat("Piece", **piece._asdict()) for piece in field.pieces)
-
-
-def _polled(report: ReportDescription | None) -> Brackets | None:
-    if report is None:
-        return None
-    return struct(
-        "Polled",
-        part("frame", integer(report.message.ids[0])),
-        *(part(place.role, _place(place.field)) for place in report.places),
-    )
 
 
 def _identification(report: ReportDescription | None) -> Brackets | None:

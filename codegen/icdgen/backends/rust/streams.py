@@ -19,6 +19,7 @@ from icdgen.backends.rust.literals import (
 )
 from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.text import mask, string
+from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import (
     CRC,
@@ -31,7 +32,8 @@ from icdgen.protocol.envelope import (
     Stream,
     StreamRow,
 )
-from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.exchange import Exchange, NumberPlace, Poll, Response
+from icdgen.protocol.sections import BUSES
 
 _CONTENTS = {NOTHING: "Nothing"}
 
@@ -50,6 +52,23 @@ def stream_of(form: Stream) -> Brackets:
         part("exchanges", rows(map(_exchange, form.exchanges))),
         part("confirming", flat_rows(map(spelled, form.confirming))),
         part("request", some(_request(form, indices))),
+    )
+
+
+def bus_exchanges_of(exchanges: Mapping[str, BusExchanges]) -> Brackets:
+    """Return the expression of the responses on each bus."""
+    buses = ((bus, exchanges.get(bus)) for bus in BUSES)
+    return struct(
+        "PerBus", *(part(bus, some(_on_bus(on) if on else None)) for bus, on in buses)
+    )
+
+
+def _on_bus(exchanges: BusExchanges) -> Brackets:
+    command = exchanges.command
+    return struct(
+        "BusExchanges",
+        part("command", some(_exchange(command) if command else None)),
+        part("request", _exchange(exchanges.request)),
     )
 
 
@@ -163,7 +182,12 @@ def _exchange(exchange: Exchange) -> Brackets:
         part("in_header", spelled(exchange.in_header)),
         part("responses", rows(map(_response, exchange.responses))),
         part("timeout_ms", spelled(exchange.timeout)),
+        part("poll", some(_poll(exchange.poll) if exchange.poll else None)),
     )
+
+
+def _poll(poll: Poll) -> Brackets:
+    return flat("Poll", telemetry=poll.telemetry, until=_place(poll.until))
 
 
 def _response(response: Response) -> Brackets:
@@ -183,6 +207,7 @@ def _response(response: Response) -> Brackets:
         part("status", _optional_place(response.status)),
         part("meanings", flat_rows(meanings)),
         part("reason", _optional_place(response.reason)),
+        part("detail", _optional_place(response.detail)),
     )
 
 

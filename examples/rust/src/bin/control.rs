@@ -4,10 +4,10 @@ use icd::cubeacp::{
     enums::EstimModeSelect, CommandedAttitudeAngles, CurrentAdcsState, EstimatedAttitudeAngles,
     Node, SetWheelSpeed, LINK, LONGEST,
 };
-use icd::wire::{Failure, Session};
+use icd::wire::{uart, Failure, Session};
 use std::{env, net::TcpStream, process::ExitCode, time::Duration};
 
-fn control(device: &mut Session<Node, TcpStream, LONGEST>) -> Result<(), Failure> {
+fn control(device: &mut Session<Node, TcpStream, uart::Line<LONGEST>>) -> Result<(), Failure> {
     device.send(&SetWheelSpeed {
         commanded_x_speed: 100, // a field without a formula: its raw value is in rpm
         ..SetWheelSpeed::default()
@@ -32,7 +32,7 @@ fn control(device: &mut Session<Node, TcpStream, LONGEST>) -> Result<(), Failure
 fn run(place: &str) -> Result<(), Failure> {
     let port = TcpStream::connect(format!("127.0.0.1:{place}"))?;
     port.set_read_timeout(Some(Duration::from_millis(10)))?;
-    control(&mut Session::new(&LINK, port)?)
+    control(&mut Session::uart(&LINK, port)?)
 }
 
 fn main() -> ExitCode {

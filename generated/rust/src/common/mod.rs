@@ -8,12 +8,12 @@
 //! use icd::common::Identification;
 //! use icd::{common, wire};
 //!
-//! let mut client = wire::Client::<common::Node, { common::LONGEST }>::uart(&common::LINK)?;
+//! let mut client = wire::Client::<_, wire::uart::Line<{ common::LONGEST }>, 1>::uart(&common::LINK)?;
 //! client.request::<Identification>(0)?; // at 0 ms, by any clock
-//! assert!(client.output().is_some()); // bytes for the port
+//! let mut line = [0; 64];
+//! assert!(client.output(&mut line)?.is_some()); // bytes for the port
 //!
 //! // What the node answers; the client is given it 20 ms later.
-//! let mut line = [0; 64];
 //! let size = wire::uart::encode(&common::LINK, &[0x80, 0x7b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00], &mut line)?;
 //! let mut answer = None;
 //! client.received(20, &line[..size], |event| answer = event.message::<Identification>());

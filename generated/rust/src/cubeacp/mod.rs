@@ -10,12 +10,12 @@
 //! use icd::cubeacp::EstimatedAttitudeAngles;
 //! use icd::{cubeacp, wire};
 //!
-//! let mut client = wire::Client::<cubeacp::Node, { cubeacp::LONGEST }>::uart(&cubeacp::LINK)?;
+//! let mut client = wire::Client::<_, wire::uart::Line<{ cubeacp::LONGEST }>, 1>::uart(&cubeacp::LINK)?;
 //! client.request::<EstimatedAttitudeAngles>(0)?; // at 0 ms, by any clock
-//! assert!(client.output().is_some()); // bytes for the port
+//! let mut line = [0; 64];
+//! assert!(client.output(&mut line)?.is_some()); // bytes for the port
 //!
 //! // What the node answers; the client is given it 20 ms later.
-//! let mut line = [0; 64];
 //! let size = wire::uart::encode(&cubeacp::LINK, &[0x92, 0xd2, 0x04, 0x00, 0x00, 0x00, 0x00], &mut line)?;
 //! let mut answer = None;
 //! client.received(20, &line[..size], |event| answer = event.message::<EstimatedAttitudeAngles>());

@@ -7,6 +7,8 @@ use super::crc::Crc;
 use super::link::{Checksum, Link};
 use super::Error;
 
+pub use super::client::i2c::{Line, Transaction};
+
 /// Encode a telecommand (id, data and, if `checked`, the checksum) and return the number of bytes.
 /// I2C writes these bytes; the UART frames them.
 ///

@@ -2,9 +2,10 @@
 
 //! UART: framing of messages in a stream of bytes. Messages start with their id.
 
-use super::bits::part;
 use super::link::{Form, Framing, Link};
 use super::Error;
+
+pub use super::client::uart::Line;
 
 /// Return the size of the framed message in bytes.
 ///
@@ -344,12 +345,4 @@ pub(crate) fn unsolicited(link: &Link, first: u8) -> Option<&'static Form> {
     let mut rows = link.unsolicited.iter();
     let (_, telemetry) = rows.find(|(id, _)| *id == first)?;
     link.telemetry(*telemetry)
-}
-
-/// Id of the telecommand and error code of an acknowledge.
-pub(crate) fn acknowledged(link: &Link, message: &[u8]) -> Option<(u8, u8)> {
-    let form = link.acknowledge.as_ref()?;
-    let id = part(message, form.id_at, 1).first()?;
-    let code = part(message, form.error_at, 1).first()?;
-    Some((*id, *code))
 }

@@ -8,9 +8,8 @@
 //! The [`Link`] of a node describes its protocol. It is the `LINK` of the module of the node. A
 //! client that is created with it accepts only messages of this node at compile time.
 //!
-//! Feature `std` adds `Session` (and `stream::Session` for messages with header and trailer): a
-//! blocking client over any port that implements `Read` and `Write`. Features `embedded-io` and
-//! `embedded-hal` add the methods `poll` and `poll_i2c` of clients.
+//! Feature `std` adds `Session`: a blocking client over any port that implements `Read` and `Write`.
+//! Features `embedded-io` and `embedded-hal` add the methods `poll` and `poll_i2c` of clients.
 
 mod bits;
 pub mod can;
@@ -35,7 +34,8 @@ pub mod stream;
 mod time;
 pub mod uart;
 
-pub use self::client::{Client, Transaction};
+pub use self::client::bus::{ACKNOWLEDGE, OTHER, REFUSAL, REQUEST_REFUSAL};
+pub use self::client::{ByteLine, Client, Line};
 pub use self::crc::{crc16, crc8, Crc, Table};
 pub use self::error::Error;
 pub use self::event::{Event, NodeEvent};
@@ -44,7 +44,7 @@ pub use self::link::{Bus, Link, Reason, Settings};
 pub use self::message::{Linked, NodeLink, Refusals, TelecommandOf, TelemetryOf};
 #[cfg(feature = "embedded-io")]
 pub use self::port::PortError;
-pub use self::request::{Direction, Request, Started};
+pub use self::request::{Direction, Request};
 #[cfg(feature = "std")]
 pub use self::session::{Failure, Outcome, Session};
 pub use self::time::DosTime;

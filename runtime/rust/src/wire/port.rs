@@ -3,7 +3,7 @@
 //! The method `poll` of a client sends pending output, processes received bytes, and returns
 //! without waiting. Call it regularly with the current time in milliseconds, which may wrap around.
 
-use super::{bits, stream, Client, Error, NodeEvent};
+use super::{bits, ByteLine, Client, Error, NodeEvent};
 use core::fmt;
 use embedded_io::{Read, ReadReady, Write};
 
@@ -28,37 +28,8 @@ impl<E: fmt::Debug> fmt::Display for PortError<E> {
     }
 }
 
-impl<T, const N: usize> Client<T, N> {
-    /// UART: process timeouts, send pending output and process received bytes, without waiting.
-    ///
-    /// # Errors
-    ///
-    /// [`PortError::Port`]; the request continues unless it is cancelled.
-    pub fn poll<P: Read + ReadReady + Write>(
-        &mut self,
-        now: u32,
-        port: &mut P,
-        mut on_event: impl FnMut(NodeEvent<'_, T>),
-    ) -> Result<(), PortError<P::Error>> {
-        self.tick(now, &mut on_event);
-        let mut is_sent = false;
-        while let Some(bytes) = self.output() {
-            port.write_all(bytes).map_err(PortError::Port)?;
-            is_sent = true;
-        }
-        if is_sent {
-            port.flush().map_err(PortError::Port)?;
-        }
-        let mut input = [0; PIECE];
-        while let Some(bytes) = came(port, &mut input)? {
-            self.received(now, bytes, &mut on_event);
-        }
-        Ok(())
-    }
-}
-
-impl<T, const N: usize, const S: usize, const R: usize> stream::Client<T, N, S, R> {
-    /// Process timeouts, send pending output and process received bytes, without waiting. `line` is
+impl<T, L: ByteLine, const R: usize> Client<T, L, R> {
+    /// UART and framed links: process timeouts, send pending output and process received bytes, without waiting. `line` is
     /// a buffer for one encoded message.
     ///
     /// # Errors
@@ -70,7 +41,7 @@ impl<T, const N: usize, const S: usize, const R: usize> stream::Client<T, N, S, 
         now: u32,
         port: &mut P,
         line: &mut [u8],
-        mut on_event: impl FnMut(stream::NodeEvent<'_, T>),
+        mut on_event: impl FnMut(NodeEvent<'_, T>),
     ) -> Result<(), PortError<P::Error>> {
         self.tick(now, &mut on_event);
         let mut is_sent = false;

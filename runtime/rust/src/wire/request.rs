@@ -2,6 +2,7 @@
 
 /// Kind of the request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Direction {
     /// A telecommand is sent.
     Telecommand,
@@ -22,43 +23,39 @@ pub struct Request<'a> {
     /// Kind of the request.
     pub direction: Direction,
     /// The id of the message.
-    pub id: u8,
+    pub id: u32,
     /// The data of a telecommand.
     pub data: &'a [u8],
     /// Whether the client may send it again if the node may already have received it. Telemetry and
     /// configuration requests are always repeated.
     pub repeat: bool,
+    /// Framed links: id of the telemetry that replies to a telecommand; None: the reply of the ICD.
+    pub reply: Option<u32>,
 }
 
 impl<'a> Request<'a> {
-    /// Telemetry is requested.
+    /// Request telemetry. On a framed link, a telecommand or packet requests it.
     #[must_use]
-    pub const fn telemetry(id: u8) -> Self {
+    pub const fn telemetry(id: u32) -> Self {
         Self {
             direction: Direction::Telemetry,
             id,
             data: &[],
             repeat: true,
+            reply: None,
         }
     }
 
-    /// Create a telecommand. It is sent again only if the node certainly did not receive it.
+    /// Create a telecommand that has the responses of the ICD. It is sent again only if the node
+    /// certainly did not receive it.
     #[must_use]
-    pub const fn telecommand(id: u8, data: &'a [u8]) -> Self {
+    pub const fn telecommand(id: u32, data: &'a [u8]) -> Self {
         Self {
             direction: Direction::Telecommand,
             id,
             data,
             repeat: false,
+            reply: None,
         }
     }
-}
-
-/// Result of starting a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Started {
-    /// The outcome is reported by an event.
-    Waiting,
-    /// The request has ended, because nothing responds to it.
-    Sent,
 }

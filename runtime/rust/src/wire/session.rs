@@ -1,14 +1,18 @@
 //! Blocking client over a port that implements `Read` and `Write`. Feature `std`.
 
+use super::client::{LineBuffer, Transport};
 use super::link::{Reason, Settings};
 use super::procedure::{End, Procedure, Sink};
+use super::stream::Values;
 use super::{
-    Client, Error, Event, Linked, NodeEvent, Refusals, Request, Started, TelecommandOf, TelemetryOf,
+    stream, uart, ByteLine, Client, Error, Event, Linked, NodeEvent, Refusals, Request,
+    TelecommandOf, TelemetryOf,
 };
 use std::boxed::Box;
 use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Instant;
+use std::vec;
 use std::vec::Vec;
 
 /// How a request ended that did not fail.
@@ -34,7 +38,7 @@ pub enum Failure {
         id: u32,
         /// The error code.
         code: Option<u32>,
-        /// Meaning of the code in the ICD. With header and trailer see [`Failure::reason`].
+        /// UART: meaning of the code in the ICD. For framed links see [`Failure::reason`].
         reason: Option<Reason>,
     },
     /// The device was busy each time, so the request was not executed.
@@ -126,25 +130,25 @@ impl std::error::Error for Failure {
 }
 
 /// A port, and the time since it was handed over.
-pub(super) struct Waiting<P> {
+struct Waiting<P> {
     port: P,
     began: Instant,
 }
 
 impl<P: Read + Write> Waiting<P> {
-    pub(super) fn new(port: P) -> Self {
+    fn new(port: P) -> Self {
         let began = Instant::now();
         Self { port, began }
     }
 
     /// Milliseconds, which may wrap.
     #[allow(clippy::cast_possible_truncation)]
-    pub(super) fn now(&self) -> u32 {
+    fn now(&self) -> u32 {
         self.began.elapsed().as_millis() as u32
     }
 
     /// What has come after as long as the port's `read` waits.
-    pub(super) fn read<'a>(&mut self, input: &'a mut [u8; 512]) -> io::Result<&'a [u8]> {
+    fn read<'a>(&mut self, input: &'a mut [u8; 512]) -> io::Result<&'a [u8]> {
         match self.port.read(input) {
             Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
             Ok(count) => Ok(super::bits::head(input, count)),
@@ -153,7 +157,7 @@ impl<P: Read + Write> Waiting<P> {
         }
     }
 
-    pub(super) fn write(&mut self, line: &[u8]) -> io::Result<()> {
+    fn write(&mut self, line: &[u8]) -> io::Result<()> {
         if !line.is_empty() {
             self.port.write_all(line)?;
             self.port.flush()?;
@@ -164,42 +168,42 @@ impl<P: Read + Write> Waiting<P> {
 
 type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 
-/// Blocking client over a UART, or any other port for its bytes. `N` is the constant `LONGEST` and
-/// `T` the type `Node` of the module of the node.
+/// Blocking client of a UART or a framed link, over any port for its bytes. `T` is the type `Node`
+/// of the module of the node. `L` is the line: [`uart::Line`] or [`stream::Line`].
 ///
 /// The application opens the port. Set a read timeout of some milliseconds: `read` must return
 /// regularly, even without data (`WouldBlock` or `TimedOut`), because the session checks its clock
 /// between reads.
 ///
 /// ```
-/// use icdgen_runtime::wire::{session::Failure, Session, TelemetryOf};
+/// use icdgen_runtime::wire::{ByteLine, Failure, Session, TelemetryOf};
 /// use std::io::{Read, Write};
 ///
-/// fn show<T, P: Read + Write, M: TelemetryOf<T>, const N: usize>(
-///     session: &mut Session<T, P, N>,
+/// fn show<T, P: Read + Write, L: ByteLine, M: TelemetryOf<T>>(
+///     session: &mut Session<T, P, L>,
 /// ) -> Result<(), Failure> {
 ///     println!("{}", session.get::<M>()?);
+///     while let Some(unasked) = session.message::<M>(1000)? {
+///         println!("{unasked}");
+///     }
 ///     Ok(())
 /// }
 /// ```
-pub struct Session<T, P, const N: usize> {
-    client: Client<T, N>,
+pub struct Session<T, P, L: ByteLine> {
+    client: Client<T, L, 1>,
     port: Waiting<P>,
+    line: Vec<u8>,
     on_event: OnEvent<T>,
 }
 
-impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
-    /// Create a session with the node.
+impl<T, P: Read + Write, const N: usize> Session<T, P, uart::Line<N>> {
+    /// Create a session with a node on the UART.
     ///
     /// # Errors
     ///
     /// See [`Client::uart`].
-    pub fn new<L: Linked<Node = T>>(link: &'static L, port: P) -> Result<Self, Error> {
-        Ok(Self {
-            client: Client::uart(link)?,
-            port: Waiting::new(port),
-            on_event: Box::new(|_| {}),
-        })
+    pub fn uart(link: &'static impl Linked<Node = T>, port: P) -> Result<Self, Error> {
+        Ok(Self::over(Client::uart(link)?, port))
     }
 
     /// Enable optional checksums. Checksums that the ICD requires are always used.
@@ -207,6 +211,38 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     pub fn with_checksums(mut self) -> Self {
         self.client = self.client.with_checksums();
         self
+    }
+}
+
+impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, stream::Line<N, S>> {
+    /// Create a session with a node of a framed link.
+    ///
+    /// # Errors
+    ///
+    /// See [`Client::new`].
+    pub fn new(link: &'static impl Linked<Node = T>, port: P) -> Result<Self, Error> {
+        Ok(Self::over(Client::new(link)?, port))
+    }
+
+    /// Set the header and trailer values of the following messages.
+    ///
+    /// # Errors
+    ///
+    /// See [`Client::set_values`].
+    pub fn set_values(&mut self, values: Values) -> Result<(), Error> {
+        self.client.set_values(values)
+    }
+}
+
+impl<T, P: Read + Write, L: ByteLine> Session<T, P, L> {
+    fn over(client: Client<T, L, 1>, port: P) -> Self {
+        let longest = <L as Transport>::Buffer::EMPTY.as_ref().len();
+        Self {
+            client,
+            port: Waiting::new(port),
+            line: vec![0; 2 * longest + 4], // each byte escaped, between delimiters
+            on_event: Box::new(|_| {}),
+        }
     }
 
     /// Replace the timeouts and retries of the ICD.
@@ -216,7 +252,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         self
     }
 
-    /// Set a callback for all events, such as unsolicited logs.
+    /// Set a callback for all events, including dropped messages.
     #[must_use]
     pub fn with_events(mut self, on_event: impl FnMut(&NodeEvent<'_, T>) + 'static) -> Self {
         self.on_event = Box::new(on_event);
@@ -230,27 +266,41 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// [`Failure`]
     pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
         self.client.request::<M>(self.port.now())?;
-        Ok(M::read(&self.outcome(Started::Waiting)?.1)?)
+        Ok(M::read(&self.outcome()?.1)?)
     }
 
-    /// Send a telecommand or set a configuration, and wait for the acknowledge if it has one.
+    /// Send a telecommand or set a configuration, and wait for the responses that the ICD describes.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`]; for the reason of a refusal see [`Failure::reason`].
+    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<Outcome, Failure> {
+        self.client.send(self.port.now(), message)?;
+        Ok(self.outcome()?.0)
+    }
+
+    /// Framed links: send a telecommand and wait for telemetry `A`, although the ICD does not describe that reply.
     ///
     /// # Errors
     ///
     /// [`Failure`]
-    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<Outcome, Failure> {
-        let started = self.client.send(self.port.now(), message)?;
-        Ok(self.outcome(started)?.0)
+    pub fn ask<A: TelemetryOf<T>, M: TelecommandOf<T>>(
+        &mut self,
+        message: &M,
+    ) -> Result<A, Failure> {
+        self.client.ask::<A, M>(self.port.now(), message)?;
+        Ok(A::read(&self.outcome()?.1)?)
     }
 
-    /// Send any request, wait for its outcome, and return the received frame.
+    /// Send any request and wait for its outcome. Return the data of the requested telemetry, or of
+    /// the response that confirmed the request; no data if nothing responds to it.
     ///
     /// # Errors
     ///
     /// [`Failure`]
     pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
-        let started = self.client.start(self.port.now(), request)?;
-        Ok(self.outcome(started)?.1)
+        self.client.start(self.port.now(), request)?;
+        Ok(self.outcome()?.1)
     }
 
     /// Run a procedure to its end.
@@ -258,25 +308,47 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// # Errors
     ///
     /// [`Failure`]
-    pub fn run<'p, S: Sink>(
+    pub fn run<'p, W: Sink>(
         &mut self,
-        procedure: &mut impl AsMut<Procedure<'p, S>>,
+        procedure: &mut impl AsMut<Procedure<'p, W>>,
     ) -> Result<(), Failure> {
         let ended = self.driven(procedure.as_mut());
-        self.cancelled(ended)
+        if ended.is_err() {
+            self.client.cancel();
+        }
+        ended
     }
 
-    fn driven<S: Sink>(&mut self, procedure: &mut Procedure<'_, S>) -> Result<(), Failure> {
+    fn driven<W: Sink>(&mut self, procedure: &mut Procedure<'_, W>) -> Result<(), Failure> {
         loop {
-            while self.client.advance(self.port.now(), procedure)? {
-                self.flush()?;
-            }
+            let is_started = self.client.advance(self.port.now(), procedure)?;
             match procedure.result() {
                 Some(End::Done) => return Ok(()),
                 Some(end) => return Err(Failure::Procedure(end)),
-                None => self.wait(|now, event| procedure.event(now, event))?,
+                None => {}
+            }
+            if is_started {
+                self.flush()?;
+                // One to which nothing responds has ended now.
+                self.process(&[], |now, event| procedure.event(now, event));
+            } else {
+                self.wait(|now, event| procedure.event(now, event))?;
             }
         }
+    }
+
+    /// Wait for the next telemetry `M`, unsolicited or not. Return None if none arrives within this
+    /// number of milliseconds.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Port`]
+    pub fn message<M: TelemetryOf<T>>(&mut self, milliseconds: u32) -> Result<Option<M>, Failure> {
+        let (began, mut found) = (self.port.now(), None);
+        while found.is_none() && self.port.now().wrapping_sub(began) < milliseconds {
+            self.wait(|_, event| found = found.take().or_else(|| event.message()))?;
+        }
+        Ok(found)
     }
 
     /// Process unsolicited messages. Returns after one `read` of the port.
@@ -288,75 +360,89 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         self.wait(|_, _| {})
     }
 
-    fn outcome(&mut self, started: Started) -> Result<(Outcome, Vec<u8>), Failure> {
-        let outcome = match started {
-            Started::Sent => self.flush().map(|()| (Outcome::Sent, Vec::new())),
-            Started::Waiting => self.awaited(),
-        };
-        self.cancelled(outcome)
-    }
-
-    fn awaited(&mut self) -> Result<(Outcome, Vec<u8>), Failure> {
-        let mut found = None;
-        loop {
-            self.wait(|_, event| found = found.take().or_else(|| outcome_of(event)))?;
-            if let Some(outcome) = found {
-                return outcome;
-            }
-        }
-    }
-
-    /// A request that failed with its port must not be in the way of the next one.
-    fn cancelled<R>(&mut self, result: Result<R, Failure>) -> Result<R, Failure> {
-        if result.is_err() {
+    /// Wait until the request has ended. One that failed with its port must not be in the way of the
+    /// next.
+    fn outcome(&mut self) -> Result<(Outcome, Vec<u8>), Failure> {
+        let outcome = self.ended();
+        if outcome.is_err() {
             self.client.cancel();
         }
-        result
+        outcome
     }
 
-    fn wait(&mut self, mut on_event: impl FnMut(u32, &Event<'_>)) -> Result<(), Failure> {
+    fn ended(&mut self) -> Result<(Outcome, Vec<u8>), Failure> {
+        let mut ending = Ending::default();
+        self.flush()?;
+        // One to which nothing responds has ended now.
+        self.process(&[], |_, event| ending.hear(event));
+        loop {
+            if let Some(outcome) = ending.outcome.take() {
+                let (outcome, data) = outcome?;
+                return Ok((outcome, ending.reply.unwrap_or(data)));
+            }
+            self.wait(|_, event| ending.hear(event))?;
+        }
+    }
+
+    fn wait(&mut self, on_event: impl FnMut(u32, &NodeEvent<'_, T>)) -> Result<(), Failure> {
         self.flush()?;
         let mut input = [0; 512];
         let bytes = self.port.read(&mut input)?;
-        let now = self.port.now();
-        let told = &mut self.on_event;
-        self.client.received(now, bytes, |event| {
-            on_event(now, &event);
-            told(&event);
-        });
+        self.process(bytes, on_event);
         self.flush()
     }
 
-    fn flush(&mut self) -> Result<(), Failure> {
-        let mut line = Vec::new();
-        while let Some(bytes) = self.client.output() {
-            line.extend_from_slice(bytes);
+    fn process(&mut self, bytes: &[u8], mut on_event: impl FnMut(u32, &NodeEvent<'_, T>)) {
+        let (now, told) = (self.port.now(), &mut self.on_event);
+        let both = |event: NodeEvent<'_, T>| {
+            on_event(now, &event);
+            told(&event);
+        };
+        if bytes.is_empty() {
+            self.client.tick(now, both);
+        } else {
+            self.client.received(now, bytes, both);
         }
-        self.port.write(&line)?;
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        while let Some(bytes) = self.client.output(&mut self.line)? {
+            self.port.write(bytes)?;
+        }
         Ok(())
+    }
+}
+
+/// The events of a request until it has ended.
+#[derive(Default)]
+struct Ending {
+    reply: Option<Vec<u8>>, // the requested telemetry, if it came before the acknowledge
+    outcome: Option<Result<(Outcome, Vec<u8>), Failure>>,
+}
+
+impl Ending {
+    fn hear(&mut self, event: &Event<'_>) {
+        let outcome = match *event {
+            Event::Done { data, .. } => Ok((Outcome::Done, data.to_vec())),
+            Event::Sent { .. } => Ok((Outcome::Sent, Vec::new())),
+            Event::Refused {
+                id, code, reason, ..
+            } => Err(Failure::Refused { id, code, reason }),
+            Event::Busy {
+                id, attempts, code, ..
+            } => Err(Failure::Busy { id, attempts, code }),
+            Event::Timeout { id, attempts, .. } => Err(Failure::Timeout { id, attempts }),
+            Event::Reply { data, .. } => {
+                self.reply = Some(data.to_vec());
+                return;
+            }
+            _ => return,
+        };
+        self.outcome = self.outcome.take().or(Some(outcome));
     }
 }
 
 fn came_to_nothing(error: &io::Error) -> bool {
     use ErrorKind::{Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
-}
-
-/// What the event says of the request.
-fn outcome_of(event: &Event<'_>) -> Option<Result<(Outcome, Vec<u8>), Failure>> {
-    match *event {
-        Event::Done { data, .. } => Some(Ok((Outcome::Done, data.to_vec()))),
-        Event::Sent { .. } => Some(Ok((Outcome::Sent, Vec::new()))),
-        Event::Refused {
-            id, code, reason, ..
-        } => {
-            let id = id.into();
-            Some(Err(Failure::Refused { id, code, reason }))
-        }
-        Event::Timeout { id, attempts } => {
-            let id = id.into();
-            Some(Err(Failure::Timeout { id, attempts }))
-        }
-        _ => None,
-    }
 }

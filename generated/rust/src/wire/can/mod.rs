@@ -10,6 +10,7 @@ use super::link::{Can, CanPart, CanTypes};
 
 pub use self::joiner::{Event, Joiner};
 pub use self::splitter::Splitter;
+pub use super::client::can::Line;
 
 /// Most bytes of a CAN frame.
 pub const PACKET_BYTES: usize = 8;

@@ -13,9 +13,9 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::places::{Identification, Piece, Place};
 pub use self::stream::{
-    CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole, Escaping,
-    Exchange, NumberPlace, PacketForm, RequestForm, Response, ResponseKind, Stream, StreamRow,
-    Verdict,
+    BusExchanges, CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole,
+    Escaping, Exchange, NumberPlace, PacketForm, Poll, RequestForm, Response, ResponseKind, Stream,
+    StreamRow, Verdict,
 };
 
 pub(crate) use self::places::get;
@@ -53,8 +53,6 @@ pub struct Link {
     pub i2c_address: Option<u8>,
     /// Whether a read may follow its write on the I2C bus without a stop.
     pub i2c_repeated_start: bool,
-    /// Frame that reports the result of a telecommand on I2C.
-    pub polled: Option<Polled>,
     /// CAN.
     pub can: Option<Can>,
     /// The optional checksum of messages.
@@ -73,6 +71,8 @@ pub struct Link {
     pub index: Option<IndexForm>,
     /// UART: telemetry that the node sends unasked, by the id at the beginning of the message.
     pub unsolicited: &'static [(u8, u8)],
+    /// Responses on each bus.
+    pub exchanges: PerBus<Option<BusExchanges>>,
     /// The frame that identifies the node.
     pub identification: Option<Identification>,
     /// Time in milliseconds that the bootloader waits before it starts the program.
@@ -99,13 +99,6 @@ impl Link {
     pub fn reason(&self, code: u32) -> Option<Reason> {
         let found = self.errors.iter().find(|(known, _)| *known == code);
         found.map(|(_, reason)| *reason)
-    }
-
-    /// Return whether the code means success.
-    pub(crate) fn is_success(&self, code: u32) -> bool {
-        let mut rows = self.errors.iter();
-        let none = rows.find(|(_, reason)| *reason == Reason::NoError);
-        code == none.map_or(0, |(known, _)| *known)
     }
 }
 
@@ -240,21 +233,6 @@ pub struct Acknowledge {
     pub id_at: usize,
     /// Offset of the error code.
     pub error_at: usize,
-}
-
-/// Frame that reports the result of a telecommand.
-#[derive(Clone, Copy, Debug)]
-pub struct Polled {
-    /// The telemetry id of the frame.
-    pub frame: u8,
-    /// The id of the last telecommand.
-    pub id: Place,
-    /// Whether it is processed.
-    pub processed: Place,
-    /// Its error code.
-    pub error: Place,
-    /// Index of the invalid parameter.
-    pub parameter: Place,
 }
 
 /// Parameters of a CRC of up to 32 bits in the notation of the usual catalogues.

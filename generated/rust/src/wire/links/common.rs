@@ -124,13 +124,6 @@ pub static LINK: NodeLink<crate::common::Node> = NodeLink::new(link::Link {
     }),
     i2c_address: Some(87),
     i2c_repeated_start: true,
-    polled: Some(link::Polled {
-        frame: 240,
-        id: &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
-        processed: &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }],
-        error: &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }],
-        parameter: &[link::Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
-    }),
     can: Some(link::Can {
         node_address: 0x01,
         data_bytes: 8,
@@ -199,6 +192,134 @@ pub static LINK: NodeLink<crate::common::Node> = NodeLink::new(link::Link {
         meta: link::Span { at: 12, bytes: 25 },
     }),
     unsolicited: &[(119, 241)],
+    exchanges: link::PerBus {
+        uart: Some(link::BusExchanges {
+            command: Some(link::Exchange {
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                in_header: 0,
+                responses: &[
+                    link::Response {
+                        kind: link::ResponseKind::Packet(0),
+                        verdict: link::Verdict::Nak,
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        status: Some(link::NumberPlace { at: 1, size: 1, shift: 0, bits: 8, little: false }),
+                        meanings: &[(0, link::Verdict::Ack), (4, link::Verdict::Again)],
+                        reason: Some(link::NumberPlace { at: 1, size: 1, shift: 0, bits: 8, little: false }),
+                        detail: None,
+                    },
+                ],
+                timeout_ms: 0,
+                poll: None,
+            }),
+            request: link::Exchange {
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                in_header: 0,
+                responses: &[
+                    link::Response {
+                        kind: link::ResponseKind::Requested,
+                        verdict: link::Verdict::Reply,
+                        echoes: &[],
+                        status: None,
+                        meanings: &[],
+                        reason: None,
+                        detail: None,
+                    },
+                ],
+                timeout_ms: 0,
+                poll: None,
+            },
+        }),
+        i2c: Some(link::BusExchanges {
+            command: Some(link::Exchange {
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                in_header: 0,
+                responses: &[
+                    link::Response {
+                        kind: link::ResponseKind::Telemetry(240),
+                        verdict: link::Verdict::Nak,
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: true }, source: 0 }],
+                        status: Some(link::NumberPlace { at: 2, size: 1, shift: 0, bits: 8, little: true }),
+                        meanings: &[(0, link::Verdict::Ack), (4, link::Verdict::Again)],
+                        reason: Some(link::NumberPlace { at: 2, size: 1, shift: 0, bits: 8, little: true }),
+                        detail: Some(link::NumberPlace { at: 3, size: 1, shift: 0, bits: 8, little: true }),
+                    },
+                ],
+                timeout_ms: 0,
+                poll: Some(link::Poll { telemetry: 240, until: link::NumberPlace { at: 1, size: 1, shift: 0, bits: 1, little: true } }),
+            }),
+            request: link::Exchange {
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                in_header: 0,
+                responses: &[
+                    link::Response {
+                        kind: link::ResponseKind::Requested,
+                        verdict: link::Verdict::Reply,
+                        echoes: &[],
+                        status: None,
+                        meanings: &[],
+                        reason: None,
+                        detail: None,
+                    },
+                ],
+                timeout_ms: 0,
+                poll: None,
+            },
+        }),
+        can: Some(link::BusExchanges {
+            command: Some(link::Exchange {
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                in_header: 0,
+                responses: &[
+                    link::Response {
+                        kind: link::ResponseKind::Packet(0),
+                        verdict: link::Verdict::Ack,
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        status: None,
+                        meanings: &[],
+                        reason: None,
+                        detail: None,
+                    },
+                    link::Response {
+                        kind: link::ResponseKind::Packet(1),
+                        verdict: link::Verdict::Nak,
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        status: None,
+                        meanings: &[],
+                        reason: None,
+                        detail: None,
+                    },
+                ],
+                timeout_ms: 0,
+                poll: None,
+            }),
+            request: link::Exchange {
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                in_header: 0,
+                responses: &[
+                    link::Response {
+                        kind: link::ResponseKind::Requested,
+                        verdict: link::Verdict::Reply,
+                        echoes: &[],
+                        status: None,
+                        meanings: &[],
+                        reason: None,
+                        detail: None,
+                    },
+                    link::Response {
+                        kind: link::ResponseKind::Packet(2),
+                        verdict: link::Verdict::Nak,
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        status: None,
+                        meanings: &[],
+                        reason: None,
+                        detail: None,
+                    },
+                ],
+                timeout_ms: 0,
+                poll: None,
+            },
+        }),
+    },
     identification: Some(link::Identification {
         length: 8,
         node_type: &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }],

@@ -6,7 +6,7 @@ use super::engine::{
     End, Engine, Flow, Turn, BLOCK_IS_EMPTY, BLOCK_LENGTH, BLOCK_OFFSET, PACKET_NUMBER,
     PACKET_OFFSET,
 };
-use super::event::Sink;
+use super::sink::Sink;
 use super::tables::{Blocks, Input, PacketMap, Value, UNKNOWN};
 use crate::wire::bits::{copy, count, head, index, part, part_mut, pieces};
 use crate::wire::crc::Crc;

@@ -22,7 +22,7 @@ pub(super) const COBS_WHOLE: u8 = 0xff;
 const ENVELOPE_BYTES: usize = 64;
 
 /// A header, followed by zeros.
-pub(super) type Header = [u8; ENVELOPE_BYTES];
+pub(in crate::wire) type Header = [u8; ENVELOPE_BYTES];
 
 /// Values of the header and trailer fields that the sender chooses.
 ///
@@ -30,6 +30,7 @@ pub(super) type Header = [u8; ENVELOPE_BYTES];
 /// packet does not have are ignored. In a received message, None means that its packet does not have
 /// the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Values {
     /// Counts messages.
     pub sequence: Option<u32>,
@@ -50,6 +51,18 @@ pub struct Values {
 }
 
 impl Values {
+    /// No values.
+    pub(in crate::wire) const NONE: Self = Self {
+        sequence: None,
+        source: None,
+        destination: None,
+        kind: None,
+        flags: None,
+        time: None,
+        status: None,
+        reason: None,
+    };
+
     /// Return these values, and those of `other` for the fields without a value.
     pub(super) fn or(self, other: Self) -> Self {
         Self {
@@ -65,7 +78,7 @@ impl Values {
     }
 
     /// Check that each value fits its field in the packets of the host.
-    pub(super) fn check(mut self, form: &Stream) -> Result<(), Error> {
+    pub(in crate::wire) fn check(mut self, form: &Stream) -> Result<(), Error> {
         let packets = form.packets_of(Direction::Telecommand);
         for field in packets.flat_map(|(_, packet)| packet.fields) {
             let value = self.place(field.role).and_then(|value| *value);

@@ -102,7 +102,11 @@ impl Stream {
     }
 
     /// The place and the row of a message.
-    pub(super) fn row(&self, direction: Direction, id: u32) -> Option<(usize, &'static StreamRow)> {
+    pub(in crate::wire) fn row(
+        &self,
+        direction: Direction,
+        id: u32,
+    ) -> Option<(usize, &'static StreamRow)> {
         let rows = self.rows(direction);
         let at = rows.binary_search_by_key(&id, |row| row.id).ok()?;
         Some((at, rows.get(at)?))

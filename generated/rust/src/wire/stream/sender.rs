@@ -7,14 +7,6 @@ use crate::wire::link::{EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
 
-/// What is sent, with its id.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sent {
-    Telecommand(u32),
-    /// The packet that requests telemetry.
-    Request(u32),
-}
-
 /// Encodes telecommands of node `T` with header and trailer; for the tests of a driver also
 /// telemetry and packets without a message, as the device sends them. `S` is the number of sequence
 /// counters: `SEQUENCES` of the module of the node.
@@ -138,20 +130,13 @@ impl<T, const S: usize> Sender<T, S> {
         sent.map(|(size, _)| size)
     }
 
-    /// Encode what is sent for a request. Return its size and its header.
-    pub(super) fn put_sent(
+    /// Encode a message. Return its size and its header.
+    pub(in crate::wire) fn message(
         &mut self,
-        sent: Sent,
+        id: u32,
         data: &[u8],
         out: &mut [u8],
     ) -> Result<(usize, Header), Error> {
-        match sent {
-            Sent::Telecommand(id) => self.message(id, data, out),
-            Sent::Request(id) => self.request(id, out),
-        }
-    }
-
-    fn message(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<(usize, Header), Error> {
         let (link, direction) = (self.link, self.direction);
         let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
         let row = form.row(direction, id);
@@ -162,7 +147,12 @@ impl<T, const S: usize> Sender<T, S> {
         })
     }
 
-    fn request(&mut self, id: u32, out: &mut [u8]) -> Result<(usize, Header), Error> {
+    /// Encode a request of telemetry. Return its size and its header.
+    pub(in crate::wire) fn request(
+        &mut self,
+        id: u32,
+        out: &mut [u8],
+    ) -> Result<(usize, Header), Error> {
         let link = self.link;
         let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
         let request = form.request.as_ref().ok_or(Error::Unsupported)?;

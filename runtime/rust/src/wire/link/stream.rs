@@ -175,6 +175,8 @@ pub enum Verdict {
     Busy,
     /// It is still being executed.
     Progress,
+    /// It was damaged on the line, and is sent again.
+    Again,
 }
 
 /// Place of a number: the `size` bytes (at most 4) from byte `at` on, shifted right by `shift` and
@@ -229,6 +231,17 @@ pub struct Response {
     pub meanings: &'static [(u32, Verdict)],
     /// Reason of a refusal.
     pub reason: Option<NumberPlace>,
+    /// Number that says more about a refusal.
+    pub detail: Option<NumberPlace>,
+}
+
+/// Telemetry that a client requests until it is the response to a telecommand.
+#[derive(Clone, Copy, Debug)]
+pub struct Poll {
+    /// Its id.
+    pub telemetry: u32,
+    /// Number that is not 0 if it is the response.
+    pub until: NumberPlace,
 }
 
 /// The possible responses to a request.
@@ -244,6 +257,17 @@ pub struct Exchange {
     pub responses: &'static [Response],
     /// The time-out; 0: that of the client.
     pub timeout_ms: u32,
+    /// How the response is polled; None: it comes by itself.
+    pub poll: Option<Poll>,
+}
+
+/// The possible responses on a bus.
+#[derive(Clone, Copy, Debug)]
+pub struct BusExchanges {
+    /// To telecommands that are acknowledged.
+    pub command: Option<Exchange>,
+    /// To requests of telemetry.
+    pub request: Exchange,
 }
 
 impl Exchange {

@@ -1,12 +1,11 @@
 //! Runs the steps of a procedure.
 
-use super::event::{Happened, Outcome, Sink};
+use super::sink::Sink;
 use super::tables::{Blocks, Form, Put, Step, Take, Test, Value, MOST_REGISTERS};
 use crate::wire::bits::{copy, head, index, part_mut, reached};
 use crate::wire::link::Bus;
 use crate::wire::links::{ENTRY_BYTES, STEP_BYTES};
-use crate::wire::stream::Request;
-use crate::wire::{Direction, Error};
+use crate::wire::{Direction, Error, Event, Request};
 
 // The registers with a fixed meaning; the next ones are those of the inputs.
 pub(super) const BLOCK_OFFSET: usize = 0;
@@ -70,11 +69,11 @@ pub(super) type Turn = Result<Flow, End>;
 ///
 /// ```
 /// use icdgen_runtime::wire::procedure::{End, Procedure, Sink};
-/// use icdgen_runtime::wire::{Client, Error};
+/// use icdgen_runtime::wire::{ByteLine, Client, Error};
 ///
 /// /// Runs a procedure. `exchange` writes bytes to the port and returns received bytes; `now` is a clock.
-/// fn run<T, S: Sink, const N: usize>(
-///     client: &mut Client<T, N>,
+/// fn run<T, S: Sink, L: ByteLine>(
+///     client: &mut Client<T, L, 1>,
 ///     procedure: &mut Procedure<'_, S>,
 ///     mut exchange: impl FnMut(Option<&[u8]>) -> Vec<u8>,
 ///     now: impl Fn() -> u32,
@@ -84,7 +83,8 @@ pub(super) type Turn = Result<Flow, End>;
 ///         if let Some(end) = procedure.result() {
 ///             return Ok(end);
 ///         }
-///         let input = exchange(client.output());
+///         let mut line = [0; 600];
+///         let input = exchange(client.output(&mut line)?);
 ///         client.received(now(), &input, |event| procedure.event(now(), &event));
 ///     }
 /// }
@@ -123,10 +123,11 @@ impl<S: Sink> Procedure<'_, S> {
         self.engine.size = bytes.min(self.engine.size).max(1);
     }
 
-    /// Set the bus of the client; without this call: the UART. [`Client::advance`] does so.
+    /// Set the bus of the client; None: a framed link; without this call: the UART.
+    /// [`Client::advance`] does so.
     ///
     /// [`Client::advance`]: crate::wire::Client::advance
-    pub fn set_bus(&mut self, bus: Bus) {
+    pub fn set_bus(&mut self, bus: Option<Bus>) {
         self.engine.bus = bus;
     }
 
@@ -138,8 +139,8 @@ impl<S: Sink> Procedure<'_, S> {
 
     /// Pass an event of the client to the procedure. Unrelated events are ignored. Call `next` after
     /// it.
-    pub fn event<'e>(&mut self, now: u32, event: impl Into<Happened<'e>>) {
-        self.engine.event(now, event.into());
+    pub fn event(&mut self, now: u32, event: &Event<'_>) {
+        self.engine.event(now, event);
     }
 
     /// Return the time in milliseconds at which `next` must be called at the latest; None while a
@@ -183,7 +184,7 @@ impl<'a, S> AsMut<Procedure<'a, S>> for Procedure<'a, S> {
 #[derive(Debug)]
 pub(super) struct Engine<'a> {
     form: &'static Form,
-    bus: Bus,
+    bus: Option<Bus>,
     pub(super) registers: [u32; MOST_REGISTERS],
     pub(super) now: u32,
     began: Option<u32>,
@@ -242,7 +243,7 @@ impl<'a> Engine<'a> {
         let size = blocks.size_in(block, there)?;
         Ok(Self {
             form,
-            bus: Bus::Uart,
+            bus: Some(Bus::Uart),
             registers,
             now: 0,
             began: None,
@@ -313,34 +314,43 @@ impl<'a> Engine<'a> {
         }
     }
 
-    fn event(&mut self, now: u32, event: Happened<'_>) {
+    fn event(&mut self, now: u32, event: &Event<'_>) {
         self.now = now;
+        if let Event::Arrived { id, data, .. } = *event {
+            return self.arrived(id, data);
+        }
+        if !self.is_of_request(event) {
+            return;
+        }
         let mut is_damaged = false;
-        let outcome = match event.outcome {
-            Outcome::Arrived { id, data } => return self.arrived(id, data),
-            Outcome::Unrelated => return,
-            _ if !self.is_asked || !self.is_of_request(&event) => return,
-            Outcome::Reply(data) => {
+        let outcome = match *event {
+            Event::Reply { data, .. } => {
                 self.take(data);
                 self.has_reply = true;
                 return;
             }
-            Outcome::Done(data) => {
+            Event::Done { .. } | Event::Sent { .. } => {
+                let data = match *event {
+                    Event::Done { data, .. } => data,
+                    _ => &[],
+                };
                 if !self.has_reply {
                     self.take(data);
                 }
                 Ok(())
             }
-            Outcome::Refused { may_be_damaged } => {
-                is_damaged = may_be_damaged;
+            Event::Refused { code, reason, .. } => {
+                // Packets of a framed link have a checksum: no refusal is damaged.
+                is_damaged = self.bus.is_some() && code.is_some() && reason.is_none();
                 Err(if is_damaged {
                     End::Timeout
                 } else {
                     End::Refused
                 })
             }
-            Outcome::Busy => Err(End::Busy),
-            Outcome::Timeout => Err(End::Timeout),
+            Event::Busy { .. } => Err(End::Busy),
+            Event::Timeout { .. } => Err(End::Timeout),
+            _ => return,
         };
         self.is_asked = false;
         if is_damaged && self.asks_again() {
@@ -351,10 +361,12 @@ impl<'a> Engine<'a> {
     }
 
     /// Return whether an event is about the request; a client can have several.
-    fn is_of_request(&self, event: &Happened<'_>) -> bool {
-        match (self.want, event.request) {
-            (Want::Ask(direction, id, ..), Some(request)) => request == (direction, id),
-            _ => true,
+    fn is_of_request(&self, event: &Event<'_>) -> bool {
+        match (self.want, event.request()) {
+            (Want::Ask(direction, id, ..), Some(request)) => {
+                self.is_asked && request == (direction, id)
+            }
+            _ => false,
         }
     }
 
@@ -445,7 +457,7 @@ impl<'a> Engine<'a> {
                 silence_ms,
                 requested_on,
                 ..
-            } => Ok(if requested_on.of(self.bus) {
+            } => Ok(if requested_on.of(self.bus.unwrap_or(Bus::Uart)) {
                 self.request_packets(id)
             } else {
                 self.await_packets(silence_ms)

@@ -5,9 +5,9 @@
 
 mod blocks;
 mod engine;
-mod event;
+mod sink;
 mod tables;
 
 pub use self::engine::{End, Procedure};
-pub use self::event::{Entries, Happened, Outcome, Received, Sink};
+pub use self::sink::{Entries, Received, Sink};
 pub use self::tables::{Blocks, Form, Input, PacketMap, Put, Step, Take, Test, Value};

@@ -3,8 +3,9 @@
 use crate::line::{hex, list, Answer, Refusal, Words};
 use crate::nodes;
 use crate::wire::bus;
-use icd::wire::procedure::{End, Outcome, Procedure, Sink};
-use icd::wire::{Bus, Direction};
+use icd::wire::procedure::{End, Procedure, Sink};
+use icd::wire::stream::Values;
+use icd::wire::{Bus, Direction, Event, Reason};
 use std::fmt::Write;
 
 /// What a procedure delivered.
@@ -30,15 +31,15 @@ pub fn procedure(node: usize, words: &mut Words) -> Answer {
     let size = form.blocks.map_or(0, |blocks| blocks.size as usize);
     let (mut memory, mut delivered) = (vec![0; 2 * size + 1], Delivered::default());
     let mut procedure = Procedure::new(form, &inputs, &bytes, &mut memory, &mut delivered)?;
-    procedure.set_bus(bus);
+    let is_framed = nodes::link(node).map_or(false, |link| link.stream.is_some());
+    procedure.set_bus(Some(bus).filter(|_| !is_framed));
     if let Some(block) = block {
         procedure.set_block(block);
     }
     let mut answer = String::new();
-    // Packets with header and trailer have a checksum: no refusal is damaged.
-    let has_stream = nodes::link(node).map_or(false, |link| link.stream.is_some());
+    let mut asked = (Direction::Telecommand, 0);
     while words.more() {
-        step(&mut procedure, has_stream, words, &mut answer);
+        step(&mut procedure, &mut asked, words, &mut answer);
     }
     if form.blocks.map_or(false, |blocks| blocks.sends) {
         let (sent, _) = procedure.progress();
@@ -56,35 +57,69 @@ pub fn procedure(node: usize, words: &mut Words) -> Answer {
     Ok(answer + &delivered.0)
 }
 
+/// `asked`: direction and id of the last request.
 fn step<S: Sink>(
     procedure: &mut Procedure<'_, S>,
-    has_stream: bool,
+    asked: &mut (Direction, u32),
     words: &mut Words,
     answer: &mut String,
 ) {
-    let now = words.number();
-    let data;
+    let (now, (direction, id), attempts) = (words.number(), *asked, 1);
+    let (data, values) = (&mut Vec::new(), &Values::default());
     let event = match words.word() {
         "done" => {
-            data = words.octets();
-            Outcome::Done(&data)
+            *data = words.octets();
+            Event::Done {
+                direction,
+                id,
+                attempts,
+                reply: id,
+                packet: None,
+                data,
+                values,
+            }
         }
         "arrived" => {
             let id = words.number();
-            data = words.octets();
-            Outcome::Arrived { id, data: &data }
+            *data = words.octets();
+            Event::Arrived { id, data, values }
         }
-        "sent" => Outcome::Done(&[]),
-        "busy" => Outcome::Busy,
-        "timeout" => Outcome::Timeout,
-        name @ ("refused" | "damaged") => Outcome::Refused {
-            may_be_damaged: name == "damaged" && !has_stream,
+        "sent" => Event::Sent {
+            direction,
+            id,
+            attempts,
         },
-        _ => Outcome::Unrelated,
+        "busy" => Event::Busy {
+            direction,
+            id,
+            attempts,
+            code: None,
+            reply: 0,
+            packet: None,
+            data,
+        },
+        "timeout" => Event::Timeout {
+            direction,
+            id,
+            attempts,
+        },
+        name @ ("refused" | "damaged") => Event::Refused {
+            direction,
+            id,
+            attempts,
+            code: Some(1),
+            reason: Some(Reason::Parameter).filter(|_| name == "refused"),
+            detail: None,
+            reply: 0,
+            packet: None,
+            data,
+        },
+        _ => Event::Empty,
     };
-    procedure.event(now, event);
+    procedure.event(now, &event);
     *answer += " step";
     if let Some(request) = procedure.next(now) {
+        *asked = (request.direction, request.id);
         let (id, bytes) = (request.id, hex(request.data));
         let repeat = u8::from(request.repeat);
         let _ = match request.direction {
