@@ -40,7 +40,7 @@ type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 #[no_mangle] pub fn wire_index_encode(entry: &IndexEntry<'_>, link: &Link, out: &mut [u8]) -> Result<usize, Error> { entry.encode(link, out) }
 #[no_mangle] pub fn wire_identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> { icd::wire::identify(link, frame) }
 
-#[no_mangle] pub fn wire_client_uart(link: &'static LinkOf, to: &mut Option<Uart>) { *to = Client::uart(link).ok().map(Client::with_checksums); }
+#[no_mangle] pub fn wire_client_uart(link: &'static LinkOf, to: &mut Option<Uart>) { *to = Uart::uart(link).ok().map(Uart::with_checksums); }
 #[no_mangle] pub fn wire_client_i2c(link: &'static LinkOf, to: &mut Option<I2c>) { *to = Client::i2c(link).ok(); }
 #[no_mangle] pub fn wire_client_can(link: &'static LinkOf, to: &mut Option<Can>) { *to = Client::can(link, 2).ok(); }
 #[no_mangle] pub fn wire_client_start(client: &mut Uart, now: u32, request: &Request<'_>) -> Result<(), Error> { client.start(now, request) }
