@@ -29,19 +29,20 @@ UNIT = """\
 #include "cubeacp.h"
 
 icd_status_t unit_begin(cubeacp_client_t *client, uint8_t *buffer, size_t size, uint32_t now);
-bool unit_send(icd_client_t *client, const uint8_t **bytes, size_t *count);
+bool unit_send(icd_client_t *client, uint8_t *bytes, size_t capacity, size_t *count);
 void unit_receive(icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count);
 int32_t unit_roll;
 
 icd_status_t unit_begin(cubeacp_client_t *client, uint8_t *buffer, size_t size, uint32_t now)
 {
-    const icd_status_t status = cubeacp_client_uart(client, buffer, size);
+    static icd_slot_t slots[1];
+    const icd_status_t status = cubeacp_client_uart(client, slots, 1, buffer, size);
     return status != ICD_OK ? status : cubeacp_request_estimated_attitude_angles(client, now);
 }
 
-bool unit_send(icd_client_t *client, const uint8_t **bytes, size_t *count)
+bool unit_send(icd_client_t *client, uint8_t *bytes, size_t capacity, size_t *count)
 {
-    return icd_client_output(client, bytes, count);
+    return icd_client_output(client, bytes, capacity, count);
 }
 
 static void on_event(void *context, const icd_event_t *event)
@@ -60,8 +61,8 @@ void unit_receive(icd_client_t *client, uint32_t now, const uint8_t *bytes, size
 """
 OUTPUT = {
     "uart": (
-        "const uint8_t *bytes; size_t count;",
-        "icd_client_output(&acp.client, &bytes, &count)",
+        "uint8_t bytes[32]; size_t count;",
+        "icd_client_output(&acp.client, bytes, sizeof bytes, &count)",
         "(uintptr_t)bytes + count",
     ),
     "i2c": (
@@ -95,10 +96,11 @@ void program(volatile uint32_t *place);
 void program(volatile uint32_t *place)
 {{
     static cubeacp_client_t acp;
+    static icd_slot_t slots[1];
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
     const uint32_t *const port = (const uint32_t *)(uintptr_t)place;
     {declared}
-    (void)cubeacp_client_{bus}(&acp, {address}buffer, sizeof buffer);
+    (void)cubeacp_client_{bus}(&acp, {address}slots, 1, buffer, sizeof buffer);
     (void)cubeacp_request_estimated_attitude_angles(&acp, 0);
     while ({output}) {{
         *place = (uint32_t)({used});
@@ -109,7 +111,7 @@ void program(volatile uint32_t *place)
 FRAMED = """\
 #include "receiver.h"
 uint32_t program_time;
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     receiver_navigation_clock_t clock;
     (void)context;
@@ -121,8 +123,8 @@ void program(volatile uint32_t *place);
 void program(volatile uint32_t *place)
 {
     static receiver_client_t client;
-    static icd_stream_slot_t slots[1];
-    static uint8_t buffer[RECEIVER_LONGEST + RECEIVER_REQUEST_BYTES];
+    static icd_slot_t slots[1];
+    static uint8_t buffer[RECEIVER_CLIENT_BYTES];
     uint8_t line[RECEIVER_LINE_BYTES];
     size_t count = 0;
     uint32_t next = 0;
@@ -134,8 +136,8 @@ void program(volatile uint32_t *place)
             next += 1000u;
             (void)receiver_request_navigation_clock(&client, now);
         }
-        icd_stream_client_received(&client.client, now, &byte, 1, on_event, NULL);
-        while (icd_stream_client_output(&client.client, line, sizeof line, &count)) {
+        icd_client_received(&client.client, now, &byte, 1, on_event, NULL);
+        while (icd_client_output(&client.client, line, sizeof line, &count)) {
             *place = (uint32_t)((uintptr_t)line + count);
         }
     }

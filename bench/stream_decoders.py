@@ -35,9 +35,9 @@ CALLS = """\
 #include "common.h"
 #include <string.h>
 unsigned long ours(const uint8_t *stream, size_t size, size_t piece);
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
-    *(unsigned long *)context += event->kind == ICD_STREAM_MESSAGE;
+    *(unsigned long *)context += event->kind == ICD_EVENT_MESSAGE;
 }
 unsigned long ours(const uint8_t *stream, size_t size, size_t piece)
 {

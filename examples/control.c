@@ -9,6 +9,7 @@
 #include "port.h"
 
 static cubeacp_client_t acp;
+static icd_slot_t slots[1]; /* one request at a time */
 static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
 
 /*
@@ -45,19 +46,19 @@ int main(int argc, char **argv)
     cubeacp_current_adcs_state_t state;
     icd_event_t end;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
-    if (cubeacp_client_uart(&acp, buffer, sizeof buffer) != ICD_OK) {
+    if (cubeacp_client_uart(&acp, slots, 1, buffer, sizeof buffer) != ICD_OK) {
         return 1;
     }
 
     cubeacp_set_wheel_speed_init(&speed);
     speed.commanded_x_speed = 100; /* a field without a formula: its raw value is in rpm */
-    done(port, cubeacp_send_set_wheel_speed(&acp, port_now(), &speed, NULL, NULL));
+    done(port, cubeacp_send_set_wheel_speed(&acp, port_now(), &speed));
 
     cubeacp_commanded_attitude_angles_init(&commanded);
     if (cubeacp_commanded_attitude_angles_set_commanded_roll_angle_deg(&commanded, 1.5) != ICD_OK) {
         return 1; /* 1.5 deg does not fit the field */
     }
-    done(port, cubeacp_send_commanded_attitude_angles(&acp, port_now(), &commanded, NULL, NULL));
+    done(port, cubeacp_send_commanded_attitude_angles(&acp, port_now(), &commanded));
 
     end = done(port, cubeacp_request_estimated_attitude_angles(&acp, port_now()));
     if (cubeacp_receive_estimated_attitude_angles(&angles, &end) == ICD_OK) {

@@ -14,6 +14,7 @@ extern size_t uart_read(uint8_t *bytes, size_t capacity);
 extern void uart_write(const uint8_t *bytes, size_t count);
 
 static cubeacp_client_t acp;
+static icd_slot_t slots[1]; /* one request at a time */
 static uint8_t buffer[CUBEACP_CLIENT_BYTES]; /* memory of the client: a request and a response */
 
 /* The client calls this function for each event. The event's data are valid during the call. */
@@ -32,19 +33,19 @@ static void show_event(void *context, const icd_event_t *event)
 int main(void)
 {
     uint32_t next = milliseconds(); /* time of the next request */
-    if (cubeacp_client_uart(&acp, buffer, sizeof buffer) != ICD_OK) {
+    if (cubeacp_client_uart(&acp, slots, 1, buffer, sizeof buffer) != ICD_OK) {
         return 1;
     }
     for (;;) {
         const uint32_t now = milliseconds();
-        const uint8_t *bytes;
+        uint8_t bytes[64];
         uint8_t input[64];
         size_t count;
         const bool is_due = (int32_t)(now - next) >= 0;
         if (is_due && cubeacp_request_estimated_attitude_angles(&acp, now) == ICD_OK) {
             next = now + 1000u;
         }
-        while (icd_client_output(&acp.client, &bytes, &count)) {
+        while (icd_client_output(&acp.client, bytes, sizeof bytes, &count)) {
             uart_write(bytes, count);
         }
         count = uart_read(input, sizeof input);

@@ -79,9 +79,9 @@ static inline size_t port_read(int port, uint8_t *bytes, size_t capacity, uint32
 /* Sends all that the client has to send. */
 static inline void port_send(int port, icd_client_t *client)
 {
-    const uint8_t *bytes;
+    uint8_t bytes[1024];
     size_t count;
-    while (icd_client_output(client, &bytes, &count)) {
+    while (icd_client_output(client, bytes, sizeof bytes, &count)) {
         port_write(port, bytes, count);
     }
 }
@@ -106,7 +106,7 @@ static inline void port_on_event(void *context, const icd_event_t *event)
 {
     port_outcome_t *const outcome = (port_outcome_t *)context;
     const bool ends = event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT ||
-        event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT;
+        event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_BUSY || event->kind == ICD_EVENT_TIMEOUT;
     if (ends && event->length <= outcome->capacity) {
         outcome->event = *event;
         outcome->event.data = outcome->frame;

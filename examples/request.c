@@ -9,10 +9,11 @@ int main(int argc, char **argv)
 {
     /* The client has a type of its own: the compiler rejects messages of other devices. */
     static cubeacp_client_t acp;
+    static icd_slot_t slots[1]; /* one request at a time */
     static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
     cubeacp_estimated_attitude_angles_t angles;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
-    cubeacp_client_uart(&acp, buffer, sizeof buffer);
+    cubeacp_client_uart(&acp, slots, 1, buffer, sizeof buffer);
     cubeacp_request_estimated_attitude_angles(&acp, port_now());
     /* Sends, waits and repeats. */
     const icd_event_t end = port_ask(port, &acp.client, frame, sizeof frame);

@@ -10,30 +10,30 @@
 #include "wheel.h"
 
 static wheel_client_t wheel;
-static icd_stream_slot_t slots[1]; /* one request at a time */
-static uint8_t buffer[WHEEL_LONGEST + WHEEL_REQUEST_BYTES];
+static icd_slot_t slots[1]; /* one request at a time */
+static uint8_t buffer[WHEEL_CLIENT_BYTES];
 
 /* The client calls this function for each event. The event's data are valid during the call. */
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     wheel_nak_reason_t reason;
     wheel_events_t events;
     (void)context;
     switch (event->kind) {
-    case ICD_STREAM_DONE: /* acknowledged, or the requested telemetry */
+    case ICD_EVENT_DONE: /* acknowledged, or the requested telemetry */
         if (wheel_receive_events(&events, event) == ICD_OK) {
             printf("%u events\n", (unsigned)events.count);
         }
         break;
-    case ICD_STREAM_REFUSED:
+    case ICD_EVENT_REFUSED:
         if (wheel_refusal(event, &reason)) {
             fprintf(stderr, "refused: %s\n", wheel_nak_reason_name(reason));
         }
         exit(EXIT_FAILURE);
-    case ICD_STREAM_BUSY: /* also at the last attempt */
+    case ICD_EVENT_BUSY: /* also at the last attempt */
         fprintf(stderr, "busy, attempts: %u\n", (unsigned)event->attempts);
         exit(EXIT_FAILURE);
-    case ICD_STREAM_TIMEOUT: /* it is not known whether the telecommand was executed */
+    case ICD_EVENT_TIMEOUT: /* it is not known whether the telecommand was executed */
         fprintf(stderr, "no response, attempts: %u\n", (unsigned)event->attempts);
         exit(EXIT_FAILURE);
     default: /* progress, unsolicited and late telemetry, errors of the line */
@@ -52,14 +52,14 @@ static void wait(int port, icd_status_t started)
         exit(EXIT_FAILURE);
     }
     for (;;) {
-        while (icd_stream_client_output(&wheel.client, line, sizeof line, &count)) {
+        while (icd_client_output(&wheel.client, line, sizeof line, &count)) {
             port_write(port, line, count);
         }
-        if (!icd_stream_client_deadline(&wheel.client, &deadline)) {
+        if (!icd_client_deadline(&wheel.client, &deadline)) {
             return; /* no request is in progress */
         }
         count = port_read(port, input, sizeof input, deadline);
-        icd_stream_client_received(&wheel.client, port_now(), input, count, on_event, NULL);
+        icd_client_received(&wheel.client, port_now(), input, count, on_event, NULL);
     }
 }
 

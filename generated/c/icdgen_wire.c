@@ -118,14 +118,19 @@ icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_id
     return ICD_OK;
 }
 
-static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
+static inline icd_event_t icdgen_event(icd_event_kind_t kind)
 {
     icd_event_t event;
     (void)memset(&event, 0, sizeof event);
     event.kind = kind;
+    return event;
+}
+
+static inline icd_event_t icdgen_event_of(icd_event_kind_t kind, uint32_t id)
+{
+    icd_event_t event = icdgen_event(kind);
+    event.has_id = true;
     event.id = id;
-    event.code = -1;
-    event.parameter = -1;
     return event;
 }
 
@@ -332,8 +337,9 @@ static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped
 static inline void icdgen_uart_tell(
     const icd_uart_decoder_t *decoder, icd_event_kind_t kind, icd_event_fn *on_event, void *context)
 {
-    icd_event_t event = icdgen_event(kind, 0);
+    icd_event_t event = icdgen_event(kind);
     if (kind == ICD_EVENT_MESSAGE) {
+        event.has_id = true;
         event.id = decoder->buffer[0];
         event.data = decoder->buffer;
         event.length = decoder->length;
@@ -1115,28 +1121,20 @@ typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
 /* The event callback. */
 typedef struct {
-    icd_stream_event_fn *on_event;
+    icd_event_fn *on_event;
     void *context;
 } icdgen_listener_t;
 
-static inline icd_stream_event_t icdgen_stream_event(icd_stream_kind_t kind)
-{
-    icd_stream_event_t event;
-    (void)memset(&event, 0, sizeof event);
-    event.kind = kind;
-    return event;
-}
-
 static inline void icdgen_stream_tell_of(
-    const icdgen_listener_t *listener, icd_stream_kind_t kind, bool has_id, uint32_t id)
+    const icdgen_listener_t *listener, icd_event_kind_t kind, bool has_id, uint32_t id)
 {
-    icd_stream_event_t event = icdgen_stream_event(kind);
+    icd_event_t event = icdgen_event(kind);
     event.has_id = has_id;
     event.id = id;
     listener->on_event(listener->context, &event);
 }
 
-static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
+static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_event_kind_t kind)
 {
     icdgen_stream_tell_of(listener, kind, false, 0);
 }
@@ -1183,7 +1181,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
 
 /* What a packet contains. */
 typedef struct {
-    icd_stream_kind_t kind;      /* of its event; ICD_STREAM_UNKNOWN_ID if there is no message with its id */
+    icd_event_kind_t kind;       /* of its event; ICD_EVENT_UNKNOWN_ID if there is no message with its id */
     const icd_stream_row_t *row; /* the message, or the requested telemetry; otherwise NULL */
     size_t least;                /* bounds of the number of data bytes */
     size_t most;
@@ -1209,7 +1207,7 @@ static inline icdgen_incoming_t icdgen_incoming(
 {
     const icd_stream_form_t *const form = decoder->form;
     const size_t index = ICDGEN_SIZE(packet - form->packets);
-    icdgen_incoming_t incoming = {ICD_STREAM_PACKET, NULL, packet->reserved, packet->reserved};
+    icdgen_incoming_t incoming = {ICD_EVENT_PACKET, NULL, packet->reserved, packet->reserved};
     if (packet->content == ICD_PACKET_NOTHING) {
         return incoming;
     }
@@ -1219,17 +1217,17 @@ static inline icdgen_incoming_t icdgen_incoming(
     }
     const icd_stream_row_t *row = icdgen_stream_row(form, decoder->direction, id);
     if (row != NULL && row->packet == index) {
-        incoming.kind = ICD_STREAM_MESSAGE;
+        incoming.kind = ICD_EVENT_MESSAGE;
         incoming.row = row;
         incoming.least = row->least;
         incoming.most = row->most;
         return incoming;
     }
-    incoming.kind = ICD_STREAM_UNKNOWN_ID;
+    incoming.kind = ICD_EVENT_UNKNOWN_ID;
     if (decoder->direction == ICD_TELECOMMAND && form->request != NULL && form->request->packet == index) {
         row = icdgen_stream_row(form, ICD_TELEMETRY, id);
         if (row != NULL && (row->flags & ICD_STREAM_REQUESTED) != 0u) {
-            incoming.kind = ICD_STREAM_REQUEST;
+            incoming.kind = ICD_EVENT_REQUEST;
             incoming.row = row;
         }
     }
@@ -1241,12 +1239,12 @@ static inline void icdgen_stream_count(
     icd_stream_decoder_t *decoder,
     const icdgen_incoming_t *incoming,
     const icd_envelope_field_t *field,
-    const icd_stream_event_t *message,
+    const icd_event_t *message,
     const icdgen_listener_t *listener)
 {
     const icd_stream_form_t *const form = decoder->form;
     /* With a sequence for each id, other packets than messages have no counter. */
-    if (field == NULL || (form->per_id && incoming->kind != ICD_STREAM_MESSAGE)) {
+    if (field == NULL || (form->per_id && incoming->kind != ICD_EVENT_MESSAGE)) {
         return;
     }
     const size_t key = form->per_id ? ICDGEN_SIZE(incoming->row - form->rows[decoder->direction]) : 0u;
@@ -1258,7 +1256,7 @@ static inline void icdgen_stream_count(
     const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
-        icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_GAP);
+        icd_event_t event = icdgen_event(ICD_EVENT_GAP);
         event.has_id = true;
         event.id = message->id;
         event.missing = number == last ? 0u : missing;
@@ -1333,7 +1331,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
 {
     const size_t around = icdgen_packet_around(packet);
     if (count < around) {
-        icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
+        icdgen_stream_tell(listener, ICD_EVENT_LENGTH);
         return ICDGEN_DOUBTFUL;
     }
     const size_t length = count - around;
@@ -1344,7 +1342,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     uint32_t sum = 0;
     bool is_framed = true;
     bool is_long = true; /* whether each length is right */
-    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
+    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
@@ -1380,34 +1378,34 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         }
     }
     if (!is_framed || !is_long) {
-        icdgen_stream_tell(listener, is_framed ? ICD_STREAM_LENGTH : ICD_STREAM_FRAMING);
+        icdgen_stream_tell(listener, is_framed ? ICD_EVENT_LENGTH : ICD_EVENT_FRAMING);
         return ICDGEN_DOUBTFUL;
     }
     const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, event.id);
     icdgen_verdict_t verdict = ICDGEN_PROVEN;
     event.kind = incoming.kind;
     if (packet->check != NULL) {
-        if (packet->check->is_seeded && incoming.kind == ICD_STREAM_UNKNOWN_ID) {
+        if (packet->check->is_seeded && incoming.kind == ICD_EVENT_UNKNOWN_ID) {
             verdict = ICDGEN_DOUBTFUL;
         } else if (icdgen_envelope_check(packet, incoming.row, frame, data, length, trailer) != sum) {
-            event.kind = ICD_STREAM_CHECKSUM;
+            event.kind = ICD_EVENT_CHECKSUM;
             verdict = ICDGEN_DOUBTFUL;
         } else {
             /* the checksum is correct */
         }
     }
-    if (verdict == ICDGEN_PROVEN && event.kind != ICD_STREAM_UNKNOWN_ID &&
+    if (verdict == ICDGEN_PROVEN && event.kind != ICD_EVENT_UNKNOWN_ID &&
         (length < incoming.least || length > incoming.most ||
-         (incoming.kind == ICD_STREAM_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
-        event.kind = ICD_STREAM_LENGTH;
+         (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
+        event.kind = ICD_EVENT_LENGTH;
     }
-    if (event.kind != incoming.kind || event.kind == ICD_STREAM_UNKNOWN_ID) {
+    if (event.kind != incoming.kind || event.kind == ICD_EVENT_UNKNOWN_ID) {
         icdgen_stream_tell_of(listener, event.kind, true, event.id);
         return verdict;
     }
     event.has_id = true;
     event.packet = ICDGEN_U8(packet - decoder->form->packets);
-    event.is_packet = incoming.kind == ICD_STREAM_PACKET;
+    event.is_packet = incoming.kind == ICD_EVENT_PACKET;
     event.data = event.is_packet ? frame : data;
     event.length = event.is_packet ? count : length;
     icdgen_stream_count(decoder, &incoming, sequence, &event, listener);
@@ -1449,8 +1447,8 @@ static inline size_t icdgen_stream_front(
     } else {
         const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
-        if (incoming.kind == ICD_STREAM_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
+        if (incoming.kind == ICD_EVENT_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
+            icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
             return icdgen_stream_skip(decoder);
         }
         length = ICDGEN_I64(incoming.most);
@@ -1458,7 +1456,7 @@ static inline size_t icdgen_stream_front(
     const int64_t size = length + ICDGEN_I64(icdgen_packet_around(packet));
     if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
         const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
-        icdgen_stream_tell(listener, fits ? ICD_STREAM_OVERRUN : ICD_STREAM_LENGTH);
+        icdgen_stream_tell(listener, fits ? ICD_EVENT_OVERRUN : ICD_EVENT_LENGTH);
         return icdgen_stream_skip(decoder);
     }
     const size_t whole = ICDGEN_SIZE(size);
@@ -1509,7 +1507,7 @@ static inline void icdgen_stream_append(
     }
 }
 
-static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_stream_kind_t fault)
+static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_event_kind_t fault)
 {
     if (!decoder->faulty) {
         decoder->faulty = true;
@@ -1523,7 +1521,7 @@ static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byt
         decoder->buffer[decoder->length] = ICDGEN_U8(byte);
         decoder->length++;
     } else {
-        icdgen_stream_fail(decoder, ICD_STREAM_OVERRUN);
+        icdgen_stream_fail(decoder, ICD_EVENT_OVERRUN);
     }
 }
 
@@ -1551,7 +1549,7 @@ static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t b
         } else if (byte == ICDGEN_SLIP_ESCAPED_ESCAPE) {
             icdgen_stream_put(decoder, ICDGEN_SLIP_ESCAPE);
         } else {
-            icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+            icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
         }
     } else if (byte == escape) {
         decoder->escaped = true;
@@ -1565,7 +1563,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
 {
     bool taken = false;
     if (decoder->escaped || decoder->left != 0u) {
-        icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+        icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
     }
     if (decoder->faulty) {
         icdgen_stream_tell(listener, decoder->fault);
@@ -1593,7 +1591,7 @@ static inline void icdgen_stream_plain(icd_stream_decoder_t *decoder, const uint
         (void)memcpy(decoder->buffer + decoder->length, bytes, piece);
         decoder->length += piece;
         if (piece < count) {
-            icdgen_stream_fail(decoder, ICD_STREAM_OVERRUN);
+            icdgen_stream_fail(decoder, ICD_EVENT_OVERRUN);
         }
     }
 }
@@ -1616,7 +1614,7 @@ static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t 
     if (icdgen_stream_begins(escaping, byte)) {
         if (decoder->inside) { /* the end of the packet before was lost */
             decoder->pending -= 2u;
-            icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+            icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
             icdgen_stream_end(decoder, listener);
         }
         decoder->inside = true;
@@ -1636,7 +1634,7 @@ static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t 
             icdgen_stream_put(decoder, escaping->escape);
         }
     } else if (!escaping->ignores_other) {
-        icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+        icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
         decoder->escaped = byte == escaping->escape;
     } else {
         /* both bytes are ignored */
@@ -1670,13 +1668,13 @@ static inline void icdgen_stream_unescape(
 }
 
 ICDGEN_API void icd_stream_feed(
-    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context)
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     const icd_delimiter_t delimiter = decoder->form->delimited_by;
     const icdgen_listener_t listener = {on_event, context};
     if (delimiter == ICD_DELIMITED_BY_DATAGRAM) {
         if (count > decoder->capacity) {
-            icdgen_stream_tell(&listener, ICD_STREAM_OVERRUN);
+            icdgen_stream_tell(&listener, ICD_EVENT_OVERRUN);
             decoder->discarded += count;
         } else if (!icdgen_stream_frame(decoder, bytes, count, &listener)) {
             decoder->discarded += count;
@@ -1910,7 +1908,7 @@ static inline void icdgen_can_tell(
     icd_event_fn *on_event,
     void *context)
 {
-    icd_event_t event = icdgen_event(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event = icdgen_event_of(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.missing = missing;
     on_event(context, &event);
@@ -1926,11 +1924,11 @@ static inline void icdgen_can_tell_message(
     icd_event_fn *on_event,
     void *context)
 {
-    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event = icdgen_event_of(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.destination = ICDGEN_U8(icdgen_can_part(link->can->destination, key));
     event.can_kind = kind;
-    data[-1] = event.id;
+    data[-1] = ICDGEN_U8(event.id);
     event.data = data;
     event.length = length;
     on_event(context, &event);
@@ -2082,7 +2080,7 @@ static inline void icdgen_can_extended(
     if (slot == NULL) {
         slot = icdgen_can_slot(joiner);
         if (slot == NULL) {
-            icdgen_can_tell(link, packet->id, ICD_EVENT_BUSY, 0, on_event, context);
+            icdgen_can_tell(link, packet->id, ICD_EVENT_NO_SLOT, 0, on_event, context);
             return;
         }
         fresh.data = slot->data;
@@ -2488,823 +2486,85 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
     return ICD_OK;
 }
 
-ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
-{
-    const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
-}
-
-static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
-{
-    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
-}
-
-/* Initialize the part that is the same for all buses. */
-static inline icd_status_t icdgen_client_init(
-    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
-{
-    (void)memset(client, 0, sizeof *client);
-    client->link = link;
-    client->bus = bus;
-    client->settings = link->client;
-    if (link->checksum != NULL) {
-        client->checks_telecommands = icdgen_on_bus(link->checksum->telecommand_always, bus);
-        client->checks_telemetry = icdgen_on_bus(link->checksum->telemetry_always, bus);
-    }
-    client->whole = buffer;
-    client->encoder.ended = true;
-    return size < icd_client_bytes(link) ? ICD_ERROR_LENGTH : ICD_OK;
-}
-
-ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size)
-{
-    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_UART, buffer, size);
-    if (status == ICD_OK) {
-        status = icd_uart_decoder_init(
-            &client->decoder, link, buffer + ICDGEN_SIZE(link->longest_telecommand), ICDGEN_SIZE(link->longest));
-    }
-    client->ready = status == ICD_OK;
-    return status;
-}
-
-ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size)
-{
-    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_I2C, buffer, size);
-    if (status == ICD_OK && link->i2c_address < 0) {
-        status = ICD_ERROR_UNSUPPORTED;
-    }
-    client->ready = status == ICD_OK;
-    return status;
-}
-
-static inline icd_status_t icdgen_client_split(const icd_client_t *client, icd_can_splitter_t *splitter)
-{
-    const icd_can_kind_t kind = client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST;
-    return icd_can_split(
-        splitter, client->link, kind, client->whole[0], client->address, client->link->can->node_address,
-        client->whole + 1, client->whole_length - 1u);
-}
-
-static inline bool icdgen_client_fits_can(const icd_client_t *client)
-{
-    icd_can_splitter_t splitter;
-    return icdgen_client_split(client, &splitter) == ICD_OK;
-}
-
-static inline void icdgen_client_expire_can(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    icd_can_expire(&client->joiner, now, on_event, context);
-}
-
-ICDGEN_API icd_status_t
-icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size)
-{
-    const size_t first = ICDGEN_SIZE(link->longest_telecommand);
-    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_CAN, buffer, size);
-    client->address = address;
-    client->fits = icdgen_client_fits_can;
-    client->expire = icdgen_client_expire_can;
-    if (status == ICD_OK) {
-        status = icd_can_joiner_init(&client->joiner, link, address, &client->slot, 1, buffer + first, size - first);
-    }
-    client->ready = status == ICD_OK;
-    return status;
-}
-
-ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
-{
-    const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands = form != NULL && icdgen_on_bus(form->telecommand_buses, client->bus);
-    client->checks_telemetry = form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus);
-}
-
-ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
-{
-    *deadline = client->until;
-    return client->state != ICD_CLIENT_IDLE;
-}
-
-/* Forget the late responses that can no longer arrive. */
-static inline void icdgen_client_forget(icd_client_t *client, uint32_t now)
-{
-    const icd_client_settings_t *const settings = &client->settings;
-    const bool polls = client->bus == ICD_BUS_I2C && settings->poll_timeout > settings->reply_timeout;
-    const uint32_t longest = (polls ? settings->poll_timeout : settings->reply_timeout) + settings->late;
-    uint8_t kept = 0;
-    for (uint8_t i = 0; i < client->late_count; ++i) {
-        const icd_late_t late = client->late[i];
-        const uint32_t left = late.until - now; /* large if the time is over */
-        if (late.responses != 0u && left != 0u && left <= longest) {
-            client->late[kept] = late;
-            kept++;
-        }
-    }
-    client->late_count = kept;
-}
-
-static inline bool icdgen_client_waits_for(const icd_client_t *client, icd_direction_t direction, uint32_t id)
-{
-    return client->state == ICD_CLIENT_WAIT && client->direction == direction && client->message->id == id;
-}
-
-/* Return whether this is a response to a request that has ended, and count it. */
-static inline bool icdgen_client_is_late(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
-{
-    bool is_late = false;
-    for (uint8_t i = 0; i < client->late_count; ++i) {
-        icd_late_t *const late = &client->late[i];
-        if (late->direction == direction && late->id == id) {
-            late->responses--;
-            is_late = true;
-        }
-    }
-    icdgen_client_forget(client, now);
-    return is_late;
-}
-
-/* End the request, and remember the responses that may still arrive. They count from the last transmission. */
-static inline void icdgen_client_stop(icd_client_t *client)
-{
-    if (client->awaited != 0u && client->late_count < ICDGEN_MOST_AWAITED) {
-        icd_late_t *const late = &client->late[client->late_count];
-        late->direction = client->direction;
-        late->id = client->message->id;
-        late->responses = client->awaited;
-        late->until = client->latest + client->settings.late;
-        client->late_count++;
-    }
-    client->state = ICD_CLIENT_IDLE;
-}
-
-static inline void icdgen_client_end(icd_client_t *client, icd_event_t *event, icd_event_fn *on_event, void *context)
-{
-    event->link = client->link;
-    event->direction = client->direction;
-    event->id = client->message->id;
-    event->attempts = client->attempts;
-    client->awaited -= (event->kind != ICD_EVENT_TIMEOUT && client->awaited != 0u) ? 1u : 0u;
-    icdgen_client_stop(client);
-    on_event(context, event);
-}
-
-static inline void icdgen_client_done(
-    icd_client_t *client, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_DONE, 0);
-    event.data = data;
-    event.length = length;
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-static inline void icdgen_client_timeout(icd_client_t *client, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_TIMEOUT, 0);
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-/* End a telecommand to which nothing responds. */
-static inline void icdgen_client_sent(icd_client_t *client, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_SENT, 0);
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-/* Send the request, for the first time or again. */
-static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    const bool is_telecommand = client->direction == ICD_TELECOMMAND;
-    const bool is_answered = !is_telecommand || (client->message->flags & ICD_ACKNOWLEDGED) != 0u;
-    client->attempts++;
-    client->sent_whole = false;
-    client->state = ICD_CLIENT_WAIT;
-    client->until = now + client->settings.reply_timeout;
-    client->latest = client->until;
-    client->pending++;
-    if (client->bus == ICD_BUS_I2C) { /* a transaction brings telemetry itself; only an acknowledge is polled */
-        client->awaited = (is_telecommand && is_answered) ? 1u : 0u;
-    } else if (is_answered) {
-        client->awaited++;
-    } else {
-        icdgen_client_sent(client, on_event, context);
-    }
-}
-
-/* Send the request, or wait while a late response could be taken for its own. */
-static inline void icdgen_client_send_or_hold(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    bool is_held = false;
-    icdgen_client_forget(client, now);
-    /* So that the responses to all requests can be remembered, no other one is sent. */
-    const bool is_full = client->late_count == ICDGEN_MOST_AWAITED;
-    for (uint8_t i = 0; i < client->late_count; ++i) {
-        const icd_late_t *const late = &client->late[i];
-        const bool is_same = late->direction == client->direction && late->id == client->message->id;
-        if ((is_same || is_full) && (!is_held || icdgen_reached(client->until, late->until))) {
-            is_held = true;
-            client->until = late->until;
-        }
-    }
-    if (is_held) {
-        client->state = ICD_CLIENT_HOLD;
-    } else {
-        icdgen_client_send(client, now, on_event, context);
-    }
-}
-
-/* Return whether there is output that has not been taken. */
-static inline bool icdgen_client_has_output(const icd_client_t *client)
-{
-    return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||
-        client->splitter.next < client->splitter.count;
-}
-
-static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
-{
-    (void)context;
-    (void)event;
-}
-
-ICDGEN_API icd_status_t icd_client_start(
-    icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context)
-{
-    const icd_message_t *message;
-    const bool telecommand = request->direction == ICD_TELECOMMAND;
-    icd_status_t status;
-    if (!client->ready) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    message = icd_find_message(client->link, request->direction, request->id);
-    if (message == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client)) {
-        return ICD_ERROR_BUSY;
-    }
-    if (telecommand && request->length != message->length) {
-        return ICD_ERROR_LENGTH;
-    }
-    status = icd_i2c_write(
-        client->link, message->id, request->data, telecommand ? request->length : 0u,
-        telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
-        &client->whole_length);
-    client->direction = request->direction;
-    if (status == ICD_OK && client->fits != NULL && !client->fits(client)) {
-        status = ICD_ERROR_LENGTH;
-    }
-    if (status != ICD_OK) {
-        return status;
-    }
-    client->message = message;
-    client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
-    client->attempts = 0;
-    client->awaited = 0;
-    icdgen_client_send_or_hold(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
-    return ICD_OK;
-}
-
-ICDGEN_API void icd_client_cancel(icd_client_t *client)
-{
-    /* Nothing responds to what was not sent. */
-    client->awaited -= client->pending < client->awaited ? client->pending : client->awaited;
-    client->pending = 0;
-    client->poll = false;
-    client->encoder.ended = true;
-    client->encoder.pending = 0;
-    client->splitter.next = client->splitter.count;
-    if (client->state != ICD_CLIENT_IDLE) {
-        icdgen_client_stop(client);
-    }
-}
-
-ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
-{
-    icd_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELEMETRY;
-    request.id = id;
-    return icd_client_start(client, now, &request, NULL, NULL);
-}
-
-ICDGEN_API icd_status_t icd_client_send(
-    icd_client_t *client,
-    uint32_t now,
-    uint8_t id,
-    const uint8_t *data,
-    size_t length,
-    bool repeat,
-    icd_event_fn *on_event,
-    void *context)
-{
-    icd_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
-    request.repeat = repeat;
-    return icd_client_start(client, now, &request, on_event, context);
-}
-
-ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id)
-{
-    return event->kind == ICD_EVENT_DONE && event->direction == ICD_TELEMETRY && event->id == id &&
-        event->link != NULL && icd_has_messages_of(event->link, node);
-}
-
-ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
-{
-    *bytes = client->chunk;
-    *count = 0;
-    if (client->bus != ICD_BUS_UART) {
-        return false;
-    }
-    while (*count < sizeof client->chunk) {
-        *count += icd_uart_encode_some(&client->encoder, client->chunk + *count, sizeof client->chunk - *count);
-        if (client->encoder.ended && client->encoder.pending == 0u) {
-            if (client->pending == 0u) {
-                break;
-            }
-            client->pending--;
-            (void)icd_uart_encode_begin(&client->encoder, client->link, client->whole, client->whole_length);
-        }
-    }
-    return *count != 0u;
-}
-
-ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet)
-{
-    if (client->bus != ICD_BUS_CAN) {
-        return false;
-    }
-    if (client->splitter.next >= client->splitter.count && client->pending != 0u) {
-        client->pending--;
-        (void)icdgen_client_split(client, &client->splitter);
-    }
-    return icd_can_next(&client->splitter, packet);
-}
-
-ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
-{
-    icd_transaction_t transaction;
-    *read = 0;
-    if (client->bus != ICD_BUS_I2C || client->taken_count == ICDGEN_MOST_AWAITED) {
-        return false;
-    }
-    if (client->poll) {
-        client->poll = false;
-        *bytes = &client->poll_id;
-        *count = 1;
-        transaction.reads = true;
-    } else if (client->pending != 0u) {
-        client->pending--;
-        *bytes = client->whole;
-        *count = client->whole_length;
-        transaction.reads = client->direction == ICD_TELEMETRY;
-    } else {
-        return false;
-    }
-    transaction.id = **bytes;
-    if (transaction.reads) {
-        (void)icd_i2c_read_length(client->link, transaction.id, client->checks_telemetry, read);
-    }
-    client->taken[client->taken_count] = transaction;
-    client->taken_count++;
-    return true;
-}
-
-/*
- * Process a rejected request. If the node reports a wrong checksum, the request was damaged on the bus and is sent
- * again.
- */
-static inline void icdgen_client_refused(
-    icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_REFUSED, 0);
-    for (size_t i = 0; i < client->link->error_count; ++i) {
-        if (event.reason == ICD_REASON_UNKNOWN && ICDGEN_I64(client->link->errors[i].code) == code) {
-            event.reason = client->link->errors[i].reason;
-        }
-    }
-    if (event.reason == ICD_REASON_CHECKSUM && client->checks_telecommands &&
-        client->attempts <= client->settings.retries) {
-        client->awaited -= client->awaited != 0u ? 1u : 0u;
-        icdgen_client_send(client, now, on_event, context);
-        return;
-    }
-    event.code = code;
-    event.parameter = parameter;
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-/* Process a missing or unusable reply: send again or end the request. */
-static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (!client->repeat || client->attempts > client->settings.retries) {
-        icdgen_client_timeout(client, on_event, context);
-    } else if (client->bus == ICD_BUS_I2C) { /* the bus reports the failure immediately: wait before the next attempt */
-        client->state = ICD_CLIENT_PAUSE;
-        client->until = now + client->settings.poll_interval;
-        client->give_up = now + client->settings.poll_timeout;
-    } else {
-        icdgen_client_send(client, now, on_event, context);
-    }
-}
-
-/* Poll again after the poll interval. */
-static inline void icdgen_client_again(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (icdgen_reached(now, client->give_up)) {
-        icdgen_client_timeout(client, on_event, context);
-    } else {
-        client->state = ICD_CLIENT_PAUSE;
-        client->until = now + client->settings.poll_interval;
-    }
-}
-
-static inline void icdgen_client_poll(icd_client_t *client, uint32_t now)
-{
-    client->state = ICD_CLIENT_POLL;
-    client->until = now + client->settings.reply_timeout;
-    client->poll = true;
-    client->poll_id = ICDGEN_U8(client->link->polled->telemetry);
-}
-
-static inline void icdgen_client_tell(
-    icd_event_kind_t kind, uint8_t id, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(kind, id);
-    event.data = data;
-    event.length = length;
-    on_event(context, &event);
-}
-
-/* A client and its event callback, as context for the callbacks of its decoder or joiner. */
+/* A client and its event callback. */
 typedef struct {
     icd_client_t *client;
-    uint32_t now;
     icd_event_fn *on_event;
     void *context;
-} icdgen_client_call_t;
+} icdgen_call_t;
 
-/* Report the fault of telemetry that was read or received: ICD_ERROR_CHECKSUM, otherwise a wrong length. */
-static inline void icdgen_client_fault(uint8_t id, icd_status_t status, icd_event_fn *on_event, void *context)
-{
-    const icd_event_kind_t kind = status == ICD_ERROR_CHECKSUM ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH;
-    icdgen_client_tell(kind, id, NULL, 0, on_event, context);
-}
+/* How a request is sent, and what responds to it. */
+typedef struct {
+    const icd_exchange_t *exchange; /* NULL: nothing responds, unless there is a reply */
+    uint32_t sent_id;               /* of icd_slot_t */
+    size_t least;                   /* bounds of the number of data bytes */
+    size_t most;
+    bool asks_by_id;
+    bool repeats;
+    bool has_reply; /* this and the following ones are of icd_awaited_t */
+    uint32_t reply;
+    bool is_nameless;
+    bool is_in_order;
+} icdgen_plan_t;
 
-/* Report a response that the request does not wait for. */
-static inline void icdgen_client_unawaited(
-    const icdgen_client_call_t *call, icd_direction_t direction, uint32_t command, const icd_event_t *response)
-{
-    icd_event_t event = *response;
-    if (icdgen_client_is_late(call->client, call->now, direction, command)) {
-        event.kind = ICD_EVENT_LATE;
-    }
-    call->on_event(call->context, &event);
-}
+/* What the client needs to know of a line. Functions that a line does not need are NULL. */
+struct icd_line {
+    bool has_results; /* of its transmissions, which can fail */
+    icd_bus_t bus;    /* except on framed links */
+    icd_status_t (*plan)(const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan);
+    /* Store the data of a request in its slot. Return an error if it cannot be encoded. */
+    icd_status_t (*store)(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length);
+    bool (*output)(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
+    void (*received)(const icdgen_call_t *call, const uint8_t *bytes, size_t count);
+    void (*expire)(const icdgen_call_t *call, uint32_t now); /* incomplete messages */
+};
 
-/* Process telemetry. Its length shows whether it has a checksum. */
-static inline void icdgen_client_replied(const icdgen_client_call_t *call, icd_event_t *reply)
+/* Return the largest number of bytes that a slot stores. */
+static inline size_t icdgen_request_bytes(const icd_link_t *link)
 {
-    icd_client_t *const client = call->client;
-    const icd_checksum_form_t *const form = client->link->checksum;
-    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, reply->id);
-    size_t frame = message != NULL ? message->length : 0u;
-    icd_status_t status = reply->length == frame ? ICD_OK : ICD_ERROR_LENGTH;
-    bool is_checked = false;
-    if (message == NULL) {
-        call->on_event(call->context, reply); /* stray */
-        return;
-    }
-    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && reply->length == frame + form->bytes) {
-        is_checked = true;
-        status = icd_i2c_reply(client->link, reply->id, reply->data, reply->length, true, &frame);
-    }
-    if (status != ICD_OK) {
-        icdgen_client_fault(reply->id, status, call->on_event, call->context);
-    } else if (client->checks_telemetry && !is_checked) {
-        icdgen_client_tell(ICD_EVENT_UNCHECKED, reply->id, NULL, 0, call->on_event, call->context);
-    } else if (icdgen_client_waits_for(client, ICD_TELEMETRY, reply->id)) {
-        icdgen_client_done(client, reply->data, frame, call->on_event, call->context);
-    } else {
-        reply->length = frame;
-        icdgen_client_unawaited(call, ICD_TELEMETRY, reply->id, reply);
-    }
-}
-
-/* Process an acknowledge with this code, or a refusal, of a request. */
-static inline void icdgen_client_answered(
-    const icdgen_client_call_t *call,
-    icd_direction_t direction,
-    uint32_t id,
-    bool is_positive,
-    int64_t code,
-    const icd_event_t *response)
-{
-    icd_client_t *const client = call->client;
-    if (!icdgen_client_waits_for(client, direction, id)) {
-        icdgen_client_unawaited(call, direction, id, response);
-    } else if (is_positive) {
-        icdgen_client_done(client, NULL, 0, call->on_event, call->context);
-    } else {
-        icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
-    }
-}
-
-static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
-{
-    const icd_link_t *const link = call->client->link;
-    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
-    icd_event_t event = icdgen_event(ICD_EVENT_STRAY, message[0]);
-    event.data = message + 1;
-    event.length = length - 1u;
-    if (kind == ICD_UART_REPLY) {
-        icdgen_client_replied(call, &event);
-        return;
-    }
-    if (kind == ICD_UART_ACKNOWLEDGE) {
-        const uint8_t code = message[link->acknowledge->error_at];
-        icdgen_client_answered(
-            call, ICD_TELECOMMAND, message[link->acknowledge->id_at], code == link->no_error, code, &event);
-        return;
-    }
-    if (kind == ICD_UART_LOG) {
-        event.kind = ICD_EVENT_LOG;
-        event.data = message;
-        event.length = length;
-    } else if (kind == ICD_UART_ARRIVED) {
-        event.kind = ICD_EVENT_ARRIVED;
-        event.id = icdgen_unsolicited(link, message, length)->telemetry;
-    } else {
-        /* stray */
-    }
-    call->on_event(call->context, &event);
-}
-
-static inline void icdgen_client_on_uart(void *context, const icd_event_t *event)
-{
-    const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    if (event->kind == ICD_EVENT_MESSAGE) {
-        icdgen_client_uart_message(call, event->data, event->length);
-    } else {
-        call->on_event(call->context, event);
-    }
-}
-
-static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
-{
-    const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    const icd_can_kind_t kind = event->can_kind;
-    icd_event_t response = icdgen_event(ICD_EVENT_STRAY, event->id);
-    response.data = event->data;
-    response.length = event->length;
-    if (event->kind != ICD_EVENT_MESSAGE) {
-        call->on_event(call->context, event);
-    } else if (event->source != call->client->link->can->node_address) {
-        call->on_event(call->context, &response);
-    } else if (kind == ICD_CAN_REPLY) {
-        icdgen_client_replied(call, &response);
-    } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
-        const icd_direction_t direction = kind == ICD_CAN_REQUEST_REFUSAL ? ICD_TELEMETRY : ICD_TELECOMMAND;
-        icdgen_client_answered(call, direction, event->id, kind == ICD_CAN_ACKNOWLEDGE, -1, &response);
-    } else {
-        call->on_event(call->context, &response);
-    }
-}
-
-ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (client->expire != NULL) {
-        client->expire(client, now, on_event, context);
-    }
-    icdgen_client_forget(client, now); /* the time may wrap until the next request */
-    if (client->state == ICD_CLIENT_IDLE || !icdgen_reached(now, client->until)) {
-        return;
-    }
-    switch (client->state) {
-    case ICD_CLIENT_HOLD:
-        icdgen_client_send_or_hold(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_PAUSE:
-        if (icdgen_reached(now, client->give_up)) {
-            icdgen_client_timeout(client, on_event, context);
-        } else if (client->sent_whole) {
-            icdgen_client_poll(client, now);
-        } else {
-            icdgen_client_send(client, now, on_event, context);
+    const icd_stream_form_t *const form = link->stream;
+    size_t most = link->longest_telecommand;
+    if (form != NULL) {
+        most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
+        for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
+            const size_t bytes = form->rows[ICD_TELECOMMAND][i].most;
+            most = bytes > most ? bytes : most;
         }
-        break;
-    case ICD_CLIENT_POLL:
-        icdgen_client_again(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_WAIT:
-        icdgen_client_no_reply(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_IDLE:
-    default:
-        break;
-    }
-}
-
-/* Send the request if the late response has arrived for which it waits. */
-static inline void icdgen_client_no_longer_held(const icdgen_client_call_t *call)
-{
-    if (call->client->state == ICD_CLIENT_HOLD) {
-        icdgen_client_send_or_hold(call->client, call->now, call->on_event, call->context);
-    }
-}
-
-ICDGEN_API void icd_client_received(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    icdgen_client_call_t call;
-    call.client = client;
-    call.now = now;
-    call.on_event = on_event;
-    call.context = context;
-    icd_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_uart_feed(&client->decoder, bytes, count, icdgen_client_on_uart, &call);
-        icdgen_client_no_longer_held(&call);
-    }
-}
-
-ICDGEN_API void icd_client_packet(
-    icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
-{
-    icdgen_client_call_t call;
-    call.client = client;
-    call.now = now;
-    call.on_event = on_event;
-    call.context = context;
-    icd_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_can_feed(&client->joiner, now, packet, icdgen_client_on_can, &call);
-        icdgen_client_no_longer_held(&call);
-    }
-}
-
-/* I2C: process the acknowledge frame. */
-static inline void icdgen_client_polled(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    const icd_link_t *const link = client->link;
-    const icd_report_t *const report = link->polled;
-    size_t length = 0;
-    uint32_t code;
-    const icd_status_t status = icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length);
-    if (status != ICD_OK) {
-        icdgen_client_fault(client->poll_id, status, on_event, context);
-        icdgen_client_again(client, now, on_event, context);
-        return;
-    }
-    if (icdgen_get(link, report, bytes, ICD_ROLE_ID) != client->message->id ||
-        icdgen_get(link, report, bytes, ICD_ROLE_PROCESSED) == 0u) {
-        icdgen_client_again(client, now, on_event, context);
-        return;
-    }
-    code = icdgen_get(link, report, bytes, ICD_ROLE_ERROR);
-    if (code == link->no_error) {
-        icdgen_client_done(client, NULL, 0, on_event, context);
-    } else {
-        icdgen_client_refused(
-            client, now, code, icdgen_get(link, report, bytes, ICD_ROLE_PARAMETER), on_event, context);
-    }
-}
-
-/* I2C: remove the oldest transaction whose result is missing. Return false if there is none. */
-static inline bool icdgen_client_untake(icd_client_t *client, icd_transaction_t *transaction)
-{
-    if (client->taken_count == 0u) {
-        return false;
-    }
-    *transaction = client->taken[0];
-    client->taken_count--;
-    for (uint8_t i = 0; i < client->taken_count; ++i) {
-        client->taken[i] = client->taken[i + 1u];
-    }
-    return true;
-}
-
-/* I2C: report the result of a transaction that nothing awaits any more. */
-static inline void icdgen_client_transferred_late(
-    const icd_client_t *client,
-    const icd_transaction_t *transaction,
-    const uint8_t *bytes,
-    size_t count,
-    icd_event_fn *on_event,
-    void *context)
-{
-    size_t length = 0;
-    icd_status_t status = ICD_OK;
-    if (transaction->reads && bytes != NULL) {
-        status = icd_i2c_reply(client->link, transaction->id, bytes, count, client->checks_telemetry, &length);
-    }
-    if (status == ICD_OK) {
-        icdgen_client_tell(ICD_EVENT_LATE, transaction->id, bytes, length, on_event, context);
-    } else {
-        icdgen_client_fault(transaction->id, status, on_event, context);
-    }
-}
-
-/* I2C: return whether the last transaction is taken and belongs to the current request. */
-static inline bool icdgen_client_awaits_transfer(const icd_client_t *client)
-{
-    return (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) && !icdgen_client_has_output(client);
-}
-
-ICDGEN_API void icd_client_transferred(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    size_t length = 0;
-    icd_transaction_t transaction;
-    const bool awaited = client->taken_count == 1u && icdgen_client_awaits_transfer(client);
-    const bool was_taken = icdgen_client_untake(client, &transaction);
-    icd_client_tick(client, now, on_event, context); /* may end this request and start the next one */
-    if (!was_taken) {
-        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
-    } else if (!awaited || !icdgen_client_awaits_transfer(client)) {
-        icdgen_client_transferred_late(client, &transaction, bytes, count, on_event, context);
-    } else if (client->state == ICD_CLIENT_POLL) {
-        if (bytes == NULL) {
-            icdgen_client_again(client, now, on_event, context);
-        } else {
-            icdgen_client_polled(client, now, bytes, count, on_event, context);
-        }
-    } else if (bytes == NULL) {
-        client->awaited = 0;
-        icdgen_client_no_reply(client, now, on_event, context);
-    } else if (client->direction == ICD_TELEMETRY) {
-        const uint8_t id = client->message->id;
-        const icd_status_t status = icd_i2c_reply(client->link, id, bytes, count, client->checks_telemetry, &length);
-        if (status == ICD_OK) {
-            icdgen_client_done(client, bytes, length, on_event, context);
-        } else {
-            icdgen_client_fault(id, status, on_event, context);
-            icdgen_client_no_reply(client, now, on_event, context);
-        }
-    } else if ((client->message->flags & ICD_ACKNOWLEDGED) == 0u || client->link->polled == NULL) {
-        icdgen_client_sent(client, on_event, context);
-    } else {
-        client->sent_whole = true;
-        client->give_up = now + client->settings.poll_timeout;
-        client->latest = client->give_up;
-        icdgen_client_again(client, now, on_event, context);
-    }
-}
-
-/* Return the largest number of data bytes of a request. */
-static inline size_t icdgen_request_bytes(const icd_stream_form_t *form)
-{
-    size_t most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
-    for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
-        const size_t bytes = form->rows[ICD_TELECOMMAND][i].most;
-        most = bytes > most ? bytes : most;
     }
     return most;
 }
 
-ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t requests)
+/* Return the buffer size of the decoder, or of the CAN joiner. */
+static inline size_t icdgen_receive_bytes(const icd_link_t *link)
 {
-    const icd_stream_form_t *const form = link->stream;
-    return form != NULL ? ICDGEN_SIZE(link->longest) + (requests * icdgen_request_bytes(form)) : 0u;
+    const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
+    return slot > link->longest ? slot : ICDGEN_SIZE(link->longest);
 }
 
-ICDGEN_API icd_status_t icd_stream_client_init(
-    icd_stream_client_t *client,
-    const icd_link_t *link,
-    icd_stream_slot_t *slots,
-    size_t slot_count,
-    uint8_t *buffer,
-    size_t size,
-    uint32_t *sequences,
-    size_t sequence_count)
+ICDGEN_API size_t icd_client_bytes(const icd_link_t *link, size_t requests)
 {
-    const size_t half = sequence_count / 2u;
-    icd_status_t status;
+    return icdgen_receive_bytes(link) + (requests * icdgen_request_bytes(link));
+}
+
+/* Initialize what is the same on all lines. The first bytes of the buffer are for what is received. */
+static inline icd_status_t icdgen_client_init(
+    icd_client_t *client, const icd_link_t *link, icd_slot_t *slots, size_t slot_count, uint8_t *buffer, size_t size)
+{
+    const size_t first = icdgen_receive_bytes(link);
+    const size_t each = icdgen_request_bytes(link);
     (void)memset(client, 0, sizeof *client);
+    client->link = link;
     client->settings = link->client;
-    status = icd_stream_sender_init(&client->sender, link, ICD_TELECOMMAND, sequences, half);
-    if (status == ICD_OK && size < icd_stream_client_bytes(link, slot_count)) {
-        status = ICD_ERROR_LENGTH;
+    if (size < first + (slot_count * each)) {
+        return ICD_ERROR_LENGTH;
     }
-    if (status == ICD_OK) {
-        status = icd_stream_decoder_init(
-            &client->decoder, link, ICD_TELEMETRY, buffer, ICDGEN_SIZE(link->longest),
-            (sequence_count > 0u) ? (sequences + half) : NULL, sequence_count - half);
+    client->slots = slots;
+    client->slot_count = slot_count;
+    for (size_t i = 0; i < slot_count; ++i) {
+        (void)memset(&slots[i], 0, sizeof slots[i]);
+        slots[i].data = buffer + first + (i * each);
     }
-    if (status == ICD_OK) {
-        const size_t bytes = icdgen_request_bytes(link->stream);
-        client->slots = slots;
-        client->slot_count = slot_count;
-        client->ready = true;
-        for (size_t i = 0; i < slot_count; ++i) {
-            (void)memset(&slots[i], 0, sizeof slots[i]);
-            slots[i].data = buffer + ICDGEN_SIZE(link->longest) + (i * bytes);
-        }
-    }
-    return status;
+    return ICD_OK;
 }
 
 static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
@@ -3317,9 +2577,18 @@ static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_n
     return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
 }
 
-/* The reply that the caller specified, or the requested telemetry. Its id is in icd_stream_awaited_t. */
+/* The reply that the caller specified, or the requested telemetry. Its id is in icd_awaited_t. */
 static const icd_response_t icdgen_specified_reply = {
-    0u, ICD_VERDICT_REPLY, 0u, false, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
+    0u,
+    ICD_VERDICT_REPLY,
+    0u,
+    false,
+    0u,
+    NULL,
+    NULL,
+    {0u, 0u, 0u, 0u, false},
+    {0u, 0u, 0u, 0u, false},
+    {0u, 0u, 0u, 0u, false}};
 
 /* Return what a response can mean, as a mask of verdicts. */
 static inline uint32_t icdgen_verdicts(const icd_response_t *response)
@@ -3341,10 +2610,10 @@ static inline bool icdgen_can_be_reply(const icd_response_t *response)
  * The reply that the caller specified takes the place of those in the ICD, and is the last; requested telemetry is the
  * first.
  */
-static inline const icd_response_t *icdgen_next_response(const icd_stream_awaited_t *awaited, size_t *position)
+static inline const icd_response_t *icdgen_next_response(const icd_awaited_t *awaited, size_t *position)
 {
     const icd_exchange_t *const exchange = awaited->exchange;
-    const bool has_reply = awaited->reply != NULL;
+    const bool has_reply = awaited->has_reply;
     const size_t own = exchange->is_request ? ICDGEN_SIZE(0) : exchange->response_count;
     while (*position <= exchange->response_count) {
         const size_t i = *position;
@@ -3363,13 +2632,13 @@ static inline const icd_response_t *icdgen_next_response(const icd_stream_awaite
     return NULL;
 }
 
-static inline uint32_t icdgen_response_source(const icd_stream_awaited_t *awaited, const icd_response_t *response)
+static inline uint32_t icdgen_response_source(const icd_awaited_t *awaited, const icd_response_t *response)
 {
-    return response == &icdgen_specified_reply ? awaited->reply->id : response->source;
+    return response == &icdgen_specified_reply ? awaited->reply : response->source;
 }
 
 /* Return the verdicts without which a request is not done, as a mask. */
-static inline uint32_t icdgen_needed(const icd_stream_awaited_t *awaited)
+static inline uint32_t icdgen_needed(const icd_awaited_t *awaited)
 {
     uint32_t verdicts = 0;
     size_t position = 0;
@@ -3382,8 +2651,7 @@ static inline uint32_t icdgen_needed(const icd_stream_awaited_t *awaited)
 }
 
 /* Return the response to a request that telemetry or a packet is; NULL if it is none of them. */
-static inline const icd_response_t *icdgen_matching(
-    const icd_stream_awaited_t *awaited, const icd_stream_event_t *event)
+static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited, const icd_event_t *event)
 {
     const uint32_t source = event->is_packet ? event->packet : event->id;
     size_t position = 0;
@@ -3404,17 +2672,14 @@ static inline const icd_response_t *icdgen_matching(
 }
 
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
-static inline size_t icdgen_message_sources(const icd_stream_awaited_t *awaited)
+static inline size_t icdgen_message_sources(const icd_awaited_t *awaited)
 {
     return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
 }
 
 /* Return whether the responses to two requests have different numbers at the same place. */
 static inline bool icdgen_differs_in_echo(
-    const icd_stream_awaited_t *a,
-    const icd_response_t *response_a,
-    const icd_stream_awaited_t *b,
-    const icd_response_t *response_b)
+    const icd_awaited_t *a, const icd_response_t *response_a, const icd_awaited_t *b, const icd_response_t *response_b)
 {
     for (size_t i = 0; i < response_a->echo_count; ++i) {
         const icd_echo_t *const echo = &response_a->echoes[i];
@@ -3429,17 +2694,13 @@ static inline bool icdgen_differs_in_echo(
     return false;
 }
 
-/* Return the expected telemetry, if it comes in a packet without its id; otherwise NULL. */
-static inline const icd_stream_row_t *icdgen_nameless(const icd_stream_awaited_t *awaited)
-{
-    const icd_stream_row_t *const row = awaited->reply;
-    return row != NULL && (row->flags & ICD_STREAM_NAMELESS) != 0u ? row : NULL;
-}
-
 /* Return whether a response to one request could be taken for a response to the other. */
-static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_stream_awaited_t *b)
+static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b)
 {
-    if (icdgen_nameless(a) != NULL && icdgen_nameless(b) != NULL) {
+    if (a->is_in_order || b->is_in_order) {
+        return false;
+    }
+    if (a->is_nameless && b->is_nameless) {
         return true;
     }
     size_t position_a = 0;
@@ -3460,7 +2721,7 @@ static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_strea
     return false;
 }
 
-static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_stream_event_t *event)
+static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
 {
     if (response->status.bits != 0u) {
         const uint32_t status = icdgen_stream_number(&response->status, event->id, event->data, event->length);
@@ -3473,29 +2734,30 @@ static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const
     return response->verdict;
 }
 
-static inline bool icdgen_is_owed(const icd_stream_awaited_t *awaited)
+static inline bool icdgen_is_owed(const icd_awaited_t *awaited)
 {
     return awaited->owed[ICD_VERDICT_ACK] != 0u || awaited->owed[ICD_VERDICT_REPLY] != 0u;
 }
 
 /* Count a response. A refusal takes the place of all others to the same transmission. */
-static inline void icdgen_settle(icd_stream_awaited_t *awaited, icd_verdict_t verdict)
+static inline void icdgen_settle(icd_awaited_t *awaited, icd_verdict_t verdict)
 {
     for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
-        const bool settles = ICDGEN_SIZE(verdict) == i || verdict == ICD_VERDICT_NAK || verdict == ICD_VERDICT_BUSY;
+        const bool settles = ICDGEN_SIZE(verdict) == i || verdict == ICD_VERDICT_NAK || verdict == ICD_VERDICT_BUSY ||
+            verdict == ICD_VERDICT_AGAIN;
         if (settles && awaited->owed[i] != 0u) {
             awaited->owed[i]--;
         }
     }
 }
 
-static inline uint32_t icdgen_stream_timeout(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
+static inline uint32_t icdgen_timeout(const icd_client_t *client, const icd_awaited_t *awaited)
 {
     return awaited->exchange->timeout != 0u ? awaited->exchange->timeout : client->settings.reply_timeout;
 }
 
 /* Return the time at which a late response to a request can no longer arrive. */
-static inline uint32_t icdgen_late_end(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
+static inline uint32_t icdgen_late_end(const icd_client_t *client, const icd_awaited_t *awaited)
 {
     return awaited->latest + client->settings.late;
 }
@@ -3504,14 +2766,18 @@ static inline uint32_t icdgen_late_end(const icd_stream_client_t *client, const 
  * Return whether a late response to a request can still arrive. An idle client may not be called for so long that the
  * clock wraps around, so a time in the future is only one that is not further away than it can be.
  */
-static inline bool icdgen_can_be_late(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
+static inline bool icdgen_can_be_late(const icd_client_t *client, const icd_awaited_t *awaited)
 {
     const uint32_t left = icdgen_late_end(client, awaited) - client->now;
-    return left != 0u && left <= icdgen_stream_timeout(client, awaited) + client->settings.late;
+    uint32_t longest = icdgen_timeout(client, awaited);
+    if (awaited->exchange->poll != NULL && client->settings.poll_timeout > longest) {
+        longest = client->settings.poll_timeout;
+    }
+    return left != 0u && left <= longest + client->settings.late;
 }
 
 /* Remove an entry of the late responses. */
-static inline void icdgen_stream_forget(icd_stream_client_t *client, size_t index)
+static inline void icdgen_forget(icd_client_t *client, size_t index)
 {
     client->late_count--;
     for (size_t i = index; i < client->late_count; ++i) {
@@ -3520,7 +2786,7 @@ static inline void icdgen_stream_forget(icd_stream_client_t *client, size_t inde
 }
 
 /* Store the time, and drop what has passed. */
-static inline void icdgen_stream_set_time(icd_stream_client_t *client, uint32_t now)
+static inline void icdgen_set_time(icd_client_t *client, uint32_t now)
 {
     size_t i = 0;
     client->now = now;
@@ -3529,27 +2795,15 @@ static inline void icdgen_stream_set_time(icd_stream_client_t *client, uint32_t 
         if (icdgen_can_be_late(client, &client->late[i])) {
             i++;
         } else {
-            icdgen_stream_forget(client, i);
+            icdgen_forget(client, i);
         }
     }
 }
 
-/* Return whether the packet of requests is sent for a request, and `row` is the requested telemetry. */
-static inline bool icdgen_is_by_packet(const icd_stream_slot_t *slot)
-{
-    return (slot->row->flags & ICD_STREAM_REQUESTED) != 0u;
-}
-
-/* Return the id with which a request was started. */
-static inline uint32_t icdgen_request_id(const icd_stream_slot_t *slot)
-{
-    return slot->direction == ICD_TELEMETRY && !icdgen_is_by_packet(slot) ? slot->row->requested : slot->row->id;
-}
-
 /* End a request, and remember the responses that may still arrive. */
-static inline void icdgen_request_end(icd_stream_client_t *client, size_t index)
+static inline void icdgen_request_end(icd_client_t *client, size_t index)
 {
-    const icd_stream_awaited_t *const awaited = &client->slots[index].awaited;
+    const icd_awaited_t *const awaited = &client->slots[index].awaited;
     uint8_t *const data = client->slots[index].data;
     if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
         client->late[client->late_count] = *awaited;
@@ -3563,14 +2817,48 @@ static inline void icdgen_request_end(icd_stream_client_t *client, size_t index)
 }
 
 /* Return the oldest request that is to be sent; NULL if there is none. */
-static inline icd_stream_slot_t *icdgen_stream_queued(const icd_stream_client_t *client)
+static inline icd_slot_t *icdgen_queued(const icd_client_t *client)
 {
     for (size_t i = 0; i < client->started; ++i) {
-        if (client->slots[i].state == ICD_STREAM_SLOT_QUEUED) {
+        if (client->slots[i].state == ICD_SLOT_QUEUED) {
             return &client->slots[i];
         }
     }
     return NULL;
+}
+
+/* Return whether the state of a request ends at a time: it was sent, and its output is taken. */
+static inline bool icdgen_has_end(const icd_client_t *client, const icd_slot_t *slot)
+{
+    return slot->state != ICD_SLOT_QUEUED && slot->data != client->partial;
+}
+
+/* Return whether a response may arrive for a request, and it does not poll. */
+static inline bool icdgen_has_responses(const icd_slot_t *slot)
+{
+    size_t position = 0;
+    return !slot->is_polled && icdgen_next_response(&slot->awaited, &position) != NULL;
+}
+
+/* Return how many other requests in progress wait for responses, also those that are to be sent again. */
+static inline size_t icdgen_unfinished(const icd_client_t *client, const icd_slot_t *slot)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < client->started; ++i) {
+        count += (&client->slots[i] != slot && client->slots[i].missing != 0u) ? 1u : 0u;
+    }
+    return count;
+}
+
+/*
+ * Return whether a late response must arrive, or be forgotten, before a request is sent: it could be taken for its own,
+ * or no more of them can be remembered.
+ */
+static inline bool icdgen_is_blocked(const icd_client_t *client, const icd_slot_t *slot, const icd_awaited_t *late)
+{
+    return icdgen_has_responses(slot) &&
+        (icdgen_unfinished(client, slot) + client->late_count >= ICDGEN_MOST_AWAITED ||
+         icdgen_is_like(&slot->awaited, late));
 }
 
 /* The earliest of some times. */
@@ -3587,26 +2875,453 @@ static inline void icdgen_earliest_add(icdgen_earliest_t *earliest, uint32_t tim
     }
 }
 
-ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline)
+ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
 {
     icdgen_earliest_t earliest = {0u, false};
+    const icd_slot_t *const queued = icdgen_queued(client);
     for (size_t i = 0; i < client->started; ++i) {
-        if (client->slots[i].state != ICD_STREAM_SLOT_QUEUED) {
+        if (icdgen_has_end(client, &client->slots[i])) {
             icdgen_earliest_add(&earliest, client->slots[i].until);
         }
     }
-    if (icdgen_stream_queued(client) != NULL) {
+    if (queued != NULL) {
         /* It may be possible to send the request then. */
         if (client->in_gap) {
             icdgen_earliest_add(&earliest, client->sent_at + client->settings.gap);
         }
         for (size_t i = 0; i < client->late_count; ++i) {
-            icdgen_earliest_add(&earliest, icdgen_late_end(client, &client->late[i]));
+            if (icdgen_is_blocked(client, queued, &client->late[i])) {
+                icdgen_earliest_add(&earliest, icdgen_late_end(client, &client->late[i]));
+            }
         }
     }
     *deadline = earliest.time;
     return earliest.exists;
 }
+
+/* Return whether telemetry is a possible reply in the ICD. */
+static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
+{
+    for (size_t i = 0; i < exchange->response_count; ++i) {
+        const icd_response_t *const response = &exchange->responses[i];
+        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Return whether there is memory for another request. */
+static inline bool icdgen_has_room(const icd_client_t *client)
+{
+    return client->started < client->slot_count && client->slots[client->started].data != client->partial;
+}
+
+ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, const icd_request_t *request)
+{
+    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u, NULL};
+    const bool asks = request->direction == ICD_TELEMETRY;
+    icdgen_plan_t plan;
+    icd_status_t status = client->line != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+    (void)memset(&plan, 0, sizeof plan);
+    if (status == ICD_OK) {
+        status = client->line->plan(client, request, &plan);
+    }
+    if (status != ICD_OK) {
+        return status;
+    }
+    if (!icdgen_has_room(client)) {
+        return ICD_ERROR_BUSY;
+    }
+    icd_slot_t *const slot = &client->slots[client->started];
+    if (!asks && (request->length < plan.least || request->length > plan.most)) {
+        return ICD_ERROR_LENGTH;
+    }
+    uint8_t *const data = slot->data;
+    (void)memset(slot, 0, sizeof *slot);
+    slot->data = data;
+    slot->id = request->id;
+    slot->direction = request->direction;
+    slot->sent_id = plan.sent_id;
+    slot->asks_by_id = plan.asks_by_id;
+    status = client->line->store(client, slot, asks ? NULL : request->data, asks ? plan.least : request->length);
+    if (status != ICD_OK) {
+        return status;
+    }
+    slot->repeat = request->repeat || asks || plan.repeats;
+    slot->state = ICD_SLOT_QUEUED;
+    icd_awaited_t *const awaited = &slot->awaited;
+    awaited->exchange = plan.exchange != NULL ? plan.exchange : &no_exchange;
+    awaited->has_reply = plan.has_reply && (asks || !icdgen_has_reply(awaited->exchange, plan.reply));
+    awaited->reply = plan.reply;
+    awaited->is_nameless = awaited->has_reply && plan.is_nameless;
+    awaited->is_in_order = plan.is_in_order;
+    for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
+        awaited->sources[i] = icdgen_stream_number(&awaited->exchange->sources[i], slot->sent_id, data, slot->length);
+    }
+    client->started++;
+    icdgen_set_time(client, now);
+    return ICD_OK;
+}
+
+ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint32_t id)
+{
+    icd_request_t request;
+    (void)memset(&request, 0, sizeof request);
+    request.direction = ICD_TELEMETRY;
+    request.id = id;
+    return icd_client_start(client, now, &request);
+}
+
+static icd_request_t icdgen_telecommand_of(uint32_t id, const uint8_t *data, size_t length)
+{
+    icd_request_t request;
+    (void)memset(&request, 0, sizeof request);
+    request.direction = ICD_TELECOMMAND;
+    request.id = id;
+    request.data = data;
+    request.length = length;
+    return request;
+}
+
+ICDGEN_API icd_status_t
+icd_client_send(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat)
+{
+    icd_request_t request = icdgen_telecommand_of(id, data, length);
+    request.repeat = repeat;
+    return icd_client_start(client, now, &request);
+}
+
+ICDGEN_API icd_status_t
+icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
+{
+    icd_request_t request = icdgen_telecommand_of(id, data, length);
+    request.has_reply = true;
+    request.reply = reply;
+    return icd_client_start(client, now, &request);
+}
+
+/*
+ * Return whether the device handles the request now, and no response to another request could be taken for a response
+ * to it.
+ */
+static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot_t *slot)
+{
+    size_t in_flight = 0;
+    if (client->in_gap) {
+        return false;
+    }
+    if (!icdgen_has_responses(slot)) {
+        return true;
+    }
+    for (size_t i = 0; i < client->started; ++i) {
+        const icd_slot_t *const other = &client->slots[i];
+        if (other == slot) {
+            continue;
+        }
+        if (other->state == ICD_SLOT_WAIT || other->state == ICD_SLOT_PAUSE) {
+            in_flight++;
+        }
+        /* Also a request that is to be sent again: otherwise each could wait until the other has ended. */
+        if (other->missing != 0u && icdgen_is_like(&slot->awaited, &other->awaited)) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < client->late_count; ++i) {
+        if (icdgen_is_blocked(client, slot, &client->late[i])) {
+            return false;
+        }
+    }
+    return in_flight < client->settings.in_flight && icdgen_unfinished(client, slot) < ICDGEN_MOST_AWAITED;
+}
+
+/* Return the next request to send; NULL if none may be sent. */
+static inline icd_slot_t *icdgen_next_to_send(const icd_client_t *client)
+{
+    icd_slot_t *const slot = icdgen_queued(client);
+    return slot != NULL && icdgen_may_be_sent(client, slot) ? slot : NULL;
+}
+
+/* The output of a request is taken: its times count from now. */
+static inline void icdgen_count_times(icd_client_t *client, icd_slot_t *slot)
+{
+    client->sent_at = client->now;
+    client->in_gap = client->settings.gap != 0u;
+    slot->sent_at = client->now;
+    slot->until = client->now + (slot->state == ICD_SLOT_WAIT ? icdgen_timeout(client, &slot->awaited) : 0u);
+    if (!slot->is_polled) {
+        slot->awaited.latest = slot->until;
+    }
+}
+
+/* Begin an attempt of a request. */
+static inline void icdgen_begin_attempt(icd_client_t *client, icd_slot_t *slot)
+{
+    slot->attempts++;
+    slot->missing = ICDGEN_U8(icdgen_needed(&slot->awaited));
+    slot->state = slot->missing != 0u || client->line->has_results ? ICD_SLOT_WAIT : ICD_SLOT_SENT;
+    icdgen_count_times(client, slot);
+}
+
+/* Expect the responses to a transmission of a request. */
+static inline void icdgen_owe(icd_slot_t *slot)
+{
+    icd_awaited_t *const awaited = &slot->awaited;
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS && !awaited->is_in_order; ++i) {
+        awaited->owed[i] = ICDGEN_U16(awaited->owed[i] + ((ICDGEN_U32(slot->missing) >> i) & 1u));
+    }
+}
+
+/* Count a transmission of a request. */
+static inline void icdgen_count_sent(icd_client_t *client, icd_slot_t *slot)
+{
+    icdgen_begin_attempt(client, slot);
+    icdgen_owe(slot);
+}
+
+/* The last part of the output of a request is taken. The request may have ended before. */
+static inline void icdgen_output_ends(icd_client_t *client)
+{
+    for (size_t i = 0; i < client->started; ++i) {
+        icd_slot_t *const slot = &client->slots[i];
+        if (slot->data == client->partial && slot->state != ICD_SLOT_QUEUED) {
+            icdgen_count_times(client, slot);
+        }
+    }
+    client->partial = NULL;
+}
+
+ICDGEN_API bool icd_client_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    *written = 0;
+    return client->line != NULL && client->line->output != NULL &&
+        client->line->output(client, buffer, capacity, written);
+}
+
+/* Report an event of a request. An outcome ends the request. */
+static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kind, size_t index, icd_event_t *event)
+{
+    const icd_slot_t *const slot = &call->client->slots[index];
+    event->kind = kind;
+    event->has_id = true;
+    event->id = slot->id;
+    event->link = call->client->link;
+    event->direction = slot->direction;
+    event->attempts = slot->attempts;
+    if (kind != ICD_EVENT_PROGRESS && kind != ICD_EVENT_REPLY) {
+        icdgen_request_end(call->client, index);
+    }
+    call->on_event(call->context, event);
+}
+
+/* End a request without a response. */
+static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, size_t index)
+{
+    icd_event_t event = icdgen_event(kind);
+    icdgen_report(call, kind, index, &event);
+}
+
+/*
+ * Process a missing or unusable response: poll or send again, or end the request. Return whether the request has ended.
+ */
+static inline bool icdgen_unanswered(const icdgen_call_t *call, size_t index)
+{
+    const icd_client_t *const client = call->client;
+    icd_slot_t *const slot = &client->slots[index];
+    const bool is_left = slot->is_polled ? !icdgen_reached(client->now, slot->poll_end)
+                                         : slot->repeat && slot->attempts <= client->settings.retries;
+    slot->transaction = 0;
+    if (!is_left) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
+    } else if (!client->line->has_results) {
+        slot->state = ICD_SLOT_QUEUED;
+    } else { /* a failure can be immediate: wait before the next attempt */
+        slot->state = ICD_SLOT_PAUSE;
+        slot->until = client->now + client->settings.poll_interval;
+        if (!slot->is_polled) {
+            slot->poll_end = client->now + client->settings.poll_timeout;
+        }
+    }
+    return !is_left;
+}
+
+/* Process the end of the time of a state. Return whether the request has ended. */
+static inline bool icdgen_state_ends(const icdgen_call_t *call, size_t index)
+{
+    const icd_client_t *const client = call->client;
+    icd_slot_t *const slot = &client->slots[index];
+    if (slot->state == ICD_SLOT_SENT) {
+        icdgen_end_request(call, ICD_EVENT_SENT, index);
+        return true;
+    }
+    if (slot->state == ICD_SLOT_WAIT) {
+        return icdgen_unanswered(call, index);
+    }
+    if (client->line->has_results && icdgen_reached(client->now, slot->poll_end)) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
+        return true;
+    }
+    slot->state = ICD_SLOT_QUEUED;
+    return false;
+}
+
+ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    const icdgen_call_t call = {client, on_event, context};
+    size_t i = 0;
+    if (client->line != NULL && client->line->expire != NULL) {
+        client->line->expire(&call, now);
+    }
+    icdgen_set_time(client, now);
+    while (i < client->started) {
+        const icd_slot_t *const slot = &client->slots[i];
+        const bool is_over = icdgen_has_end(client, slot) && icdgen_reached(now, slot->until);
+        if (!is_over || !icdgen_state_ends(&call, i)) {
+            i++;
+        }
+    }
+}
+
+/* Get the reason of a refusal, or why the device is busy. */
+static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_t *response, icd_event_t *event)
+{
+    if (response->reason.bits != 0u) {
+        event->has_code = true;
+        event->code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
+        for (size_t i = link->error_count; i > 0u; --i) {
+            if (link->errors[i - 1u].code == event->code) {
+                event->reason = link->errors[i - 1u].reason;
+            }
+        }
+    }
+    if (response->detail.bits != 0u) {
+        event->has_detail = true;
+        event->detail = icdgen_stream_number(&response->detail, event->id, event->data, event->length);
+    }
+}
+
+/* Process a response to a request. */
+static inline void icdgen_responded(
+    const icdgen_call_t *call, size_t index, const icd_response_t *response, icd_event_t *event)
+{
+    icd_client_t *const client = call->client;
+    icd_slot_t *const slot = &client->slots[index];
+    const icd_verdict_t verdict = icdgen_verdict(response, event);
+    const bool is_left = slot->attempts <= client->settings.retries;
+    icd_event_kind_t kind = ICD_EVENT_PROGRESS;
+    event->has_reply = !event->is_packet;
+    event->reply = event->id;
+    icdgen_settle(&slot->awaited, verdict);
+    if (verdict == ICD_VERDICT_PROGRESS) {
+        const uint32_t limit = slot->sent_at + client->settings.progress_for;
+        const uint32_t extended = client->now + icdgen_timeout(client, &slot->awaited);
+        const uint32_t latest = icdgen_reached(extended, limit) ? limit : extended;
+        if (icdgen_reached(latest, slot->awaited.latest)) {
+            slot->awaited.latest = latest;
+        }
+        if (slot->state == ICD_SLOT_WAIT) {
+            slot->until = slot->awaited.latest;
+        }
+    } else if (verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY) {
+        slot->missing = ICDGEN_U8(slot->missing & ~icdgen_verdict_bit(verdict));
+        if (slot->missing == 0u) {
+            kind = ICD_EVENT_DONE;
+        } else if (verdict == ICD_VERDICT_REPLY) {
+            kind = ICD_EVENT_REPLY;
+        } else {
+            /* the reply is still to come */
+        }
+    } else if (verdict == ICD_VERDICT_BUSY && is_left) {
+        slot->state = ICD_SLOT_PAUSE;
+        slot->until = client->now + client->settings.busy_pause;
+    } else if (verdict == ICD_VERDICT_AGAIN && is_left && client->checks_telecommands) {
+        slot->state = ICD_SLOT_QUEUED;
+        slot->is_polled = false;
+        return;
+    } else {
+        kind = verdict == ICD_VERDICT_BUSY ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
+        icdgen_set_reason(client->link, response, event);
+    }
+    icdgen_report(call, kind, index, event);
+}
+
+/* Return whether telemetry is a response to a request that has ended. */
+static inline bool icdgen_is_late(icd_client_t *client, const icd_event_t *event)
+{
+    for (size_t i = 0; i < client->late_count; ++i) {
+        const icd_response_t *const response = icdgen_matching(&client->late[i], event);
+        if (response != NULL) {
+            icdgen_settle(&client->late[i], icdgen_verdict(response, event));
+            if (!icdgen_is_owed(&client->late[i])) {
+                icdgen_forget(client, i);
+            }
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Process telemetry or a packet without a message. `unawaited` is its event if it is no response to any request. */
+static inline void icdgen_client_arrived(const icdgen_call_t *call, icd_event_t *event, icd_event_kind_t unawaited)
+{
+    icd_client_t *const client = call->client;
+    event->link = client->link;
+    event->direction = ICD_TELEMETRY;
+    for (size_t i = 0; i < client->started; ++i) {
+        const icd_slot_t *const slot = &client->slots[i];
+        const bool is_awaited = slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
+        const icd_response_t *const response = is_awaited ? icdgen_matching(&slot->awaited, event) : NULL;
+        if (response != NULL) {
+            icdgen_responded(call, i, response, event);
+            return;
+        }
+    }
+    event->kind = icdgen_is_late(client, event) ? ICD_EVENT_LATE : unawaited;
+    call->on_event(call->context, event);
+}
+
+ICDGEN_API void icd_client_received(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+{
+    const icdgen_call_t call = {client, on_event, context};
+    icd_client_tick(client, now, on_event, context);
+    if (client->line != NULL && client->line->received != NULL) {
+        client->line->received(&call, bytes, count);
+    }
+}
+
+ICDGEN_API void icd_client_cancel(icd_client_t *client)
+{
+    client->partial = NULL;
+    while (client->started != 0u) {
+        icdgen_request_end(client, 0);
+    }
+}
+
+ICDGEN_API void icd_client_cancel_request(icd_client_t *client, icd_direction_t direction, uint32_t id)
+{
+    size_t i = 0;
+    while (i < client->started) {
+        const icd_slot_t *const slot = &client->slots[i];
+        if (slot->direction == direction && slot->id == id) {
+            client->partial = slot->data == client->partial ? NULL : client->partial;
+            icdgen_request_end(client, i);
+        } else {
+            i++;
+        }
+    }
+}
+
+ICDGEN_API bool icd_is_telemetry(const icd_event_t *event, const char *node, uint32_t id)
+{
+    const bool arrived = event->kind == ICD_EVENT_ARRIVED || event->kind == ICD_EVENT_LATE ||
+        event->kind == ICD_EVENT_STRAY || event->kind == ICD_EVENT_MESSAGE;
+    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY && !event->is_packet);
+    return brings && (event->has_reply ? event->reply : event->id) == id && event->link != NULL &&
+        icd_has_messages_of(event->link, node);
+}
+
+/* ---- client of a framed link ------------------------------------------------------------------------------------- */
 
 /*
  * Return what is sent to request telemetry: the first telecommand that requests it, or the telemetry itself for the
@@ -3624,301 +3339,79 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
     return telemetry != NULL && (telemetry->flags & ICD_STREAM_REQUESTED) != 0u ? telemetry : NULL;
 }
 
-/* Return whether telemetry is a possible reply in the ICD. */
-static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
+static inline icd_status_t icdgen_stream_plan(
+    const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan)
 {
-    for (size_t i = 0; i < exchange->response_count; ++i) {
-        const icd_response_t *const response = &exchange->responses[i];
-        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Return the packet that is sent for a request. */
-static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
-{
-    return icdgen_outgoing_row(client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length);
-}
-
-ICDGEN_API icd_status_t
-icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request)
-{
-    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u};
+    const icd_stream_form_t *const form = client->link->stream;
     const bool asks = request->direction == ICD_TELEMETRY;
-    if (!client->ready) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    const icd_stream_form_t *const form = client->sender.link->stream;
     const icd_stream_row_t *const row =
         asks ? icdgen_stream_asking(form, request->id) : icdgen_stream_row(form, ICD_TELECOMMAND, request->id);
     if (row == NULL) {
         const bool is_known = asks && icdgen_stream_row(form, ICD_TELEMETRY, request->id) != NULL;
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
-    const bool has_reply = request->has_reply && !asks;
-    const icd_stream_row_t *const reply = has_reply ? icdgen_stream_row(form, ICD_TELEMETRY, request->reply) : NULL;
-    if (has_reply && reply == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
+    plan->asks_by_id = (row->flags & ICD_STREAM_REQUESTED) != 0u;
+    plan->has_reply = plan->asks_by_id || (request->has_reply && !asks);
+    plan->reply = plan->asks_by_id ? row->id : request->reply;
+    if (plan->has_reply) {
+        const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, plan->reply);
+        if (reply == NULL) {
+            return ICD_ERROR_UNKNOWN_ID;
+        }
+        plan->is_nameless = (reply->flags & ICD_STREAM_NAMELESS) != 0u;
     }
-    if (client->started == client->slot_count) {
-        return ICD_ERROR_BUSY;
-    }
-    icd_stream_slot_t *const slot = &client->slots[client->started];
-    uint8_t *const data = slot->data;
-    (void)memset(slot, 0, sizeof *slot);
-    slot->row = row;
-    slot->data = data;
-    slot->direction = request->direction;
-    const bool by_packet = icdgen_is_by_packet(slot);
-    slot->length = request->length;
-    if (by_packet) {
-        slot->length = form->packets[form->request->packet].reserved;
-    } else if (asks) {
-        slot->length = row->least;
-    } else if (request->length < row->least || request->length > row->most) {
-        return ICD_ERROR_LENGTH;
+    plan->sent_id = row->id;
+    plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
+    if (plan->asks_by_id) {
+        plan->exchange = form->request->exchange;
+        plan->least = form->packets[form->request->packet].reserved;
+        plan->most = plan->least;
     } else {
-        /* the length fits */
+        plan->exchange = row->exchange;
+        plan->least = row->least;
+        plan->most = row->most;
     }
-    for (size_t i = 0; i < slot->length; ++i) {
-        data[i] = asks ? 0u : request->data[i];
-    }
-    /* Without a buffer, this only checks whether header and trailer values fit into their fields. */
-    size_t written = 0;
-    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
-    if (icdgen_outgoing_encode(&outgoing, &client->sender.values, NULL, 0, &written) == ICD_ERROR_RANGE) {
-        return ICD_ERROR_RANGE;
-    }
-    slot->repeat = request->repeat || asks || (row->flags & ICD_STREAM_REPEATS) != 0u;
-    slot->state = ICD_STREAM_SLOT_QUEUED;
-    const icd_exchange_t *exchange = by_packet ? form->request->exchange : row->exchange;
-    if (exchange == NULL) {
-        exchange = &no_exchange;
-    }
-    slot->awaited.exchange = exchange;
-    if (by_packet) {
-        slot->awaited.reply = row;
-    } else if (reply != NULL && !icdgen_has_reply(exchange, reply->id)) {
-        slot->awaited.reply = reply;
-    } else {
-        /* as in the ICD */
-    }
-    for (size_t i = 0; i < icdgen_message_sources(&slot->awaited); ++i) {
-        slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
-    }
-    client->started++;
-    icdgen_stream_set_time(client, now);
     return ICD_OK;
 }
 
-ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id)
+/* Return the packet that is sent for a request. */
+static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_client_t *client, const icd_slot_t *slot)
 {
-    icd_stream_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELEMETRY;
-    request.id = id;
-    return icd_stream_client_start(client, now, &request);
+    const icd_stream_form_t *const form = client->link->stream;
+    const icd_stream_row_t *const row =
+        icdgen_stream_row(form, slot->asks_by_id ? ICD_TELEMETRY : ICD_TELECOMMAND, slot->sent_id);
+    return icdgen_outgoing_row(form, ICD_TELECOMMAND, row, slot->data, slot->length);
 }
 
-static icd_stream_request_t icdgen_stream_telecommand(uint32_t id, const uint8_t *data, size_t length)
+static inline icd_status_t icdgen_stream_store(
+    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
 {
-    icd_stream_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
-    return request;
-}
-
-ICDGEN_API icd_status_t icd_stream_client_send(
-    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat)
-{
-    icd_stream_request_t request = icdgen_stream_telecommand(id, data, length);
-    request.repeat = repeat;
-    return icd_stream_client_start(client, now, &request);
-}
-
-ICDGEN_API icd_status_t icd_stream_client_ask(
-    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
-{
-    icd_stream_request_t request = icdgen_stream_telecommand(id, data, length);
-    request.has_reply = true;
-    request.reply = reply;
-    return icd_stream_client_start(client, now, &request);
-}
-
-/*
- * Return whether the device handles the request now, and no response to another request could be taken for a response
- * to it.
- */
-static inline bool icdgen_stream_may_be_sent(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
-{
-    size_t in_flight = 0;
-    size_t awaited = client->late_count;
-    if (client->in_gap) {
-        return false;
+    size_t written = 0;
+    slot->length = length;
+    for (size_t i = 0; i < length; ++i) {
+        slot->data[i] = data != NULL ? data[i] : 0u;
     }
-    size_t position = 0;
-    if (icdgen_next_response(&slot->awaited, &position) == NULL) {
-        return true;
-    }
-    for (size_t i = 0; i < client->started; ++i) {
-        const icd_stream_slot_t *const other = &client->slots[i];
-        if (other == slot) {
-            continue;
-        }
-        if (other->state == ICD_STREAM_SLOT_WAIT || other->state == ICD_STREAM_SLOT_PAUSE) {
-            in_flight++;
-        }
-        /* Also a request that is to be sent again: otherwise each could wait until the other has ended. */
-        if (other->missing != 0u) {
-            awaited++;
-            if (icdgen_is_like(&slot->awaited, &other->awaited)) {
-                return false;
-            }
-        }
-    }
-    for (size_t i = 0; i < client->late_count; ++i) {
-        if (icdgen_is_like(&slot->awaited, &client->late[i])) {
-            return false;
-        }
-    }
-    return in_flight < client->settings.in_flight && awaited < ICDGEN_MOST_AWAITED;
+    /* Without a buffer, this only checks whether header and trailer values fit into their fields. */
+    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    const icd_status_t status = icdgen_outgoing_encode(&outgoing, &client->stream->sender.values, NULL, 0, &written);
+    return status == ICD_ERROR_RANGE ? status : ICD_OK;
 }
 
-ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
+static inline bool icdgen_stream_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
 {
-    icd_stream_slot_t *const slot = icdgen_stream_queued(client);
-    if (slot == NULL || !icdgen_stream_may_be_sent(client, slot)) {
+    icd_stream_sender_t *const sender = &client->stream->sender;
+    icd_slot_t *const slot = icdgen_next_to_send(client);
+    if (slot == NULL) {
         return false;
     }
     icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
     outgoing.exchange = slot->awaited.exchange;
     outgoing.sources = slot->awaited.sources;
-    if (icdgen_outgoing_send(&outgoing, &client->sender, &client->sender.values, buffer, capacity, written) != ICD_OK) {
+    if (icdgen_outgoing_send(&outgoing, sender, &sender->values, buffer, capacity, written) != ICD_OK) {
         return false;
     }
-    icd_stream_awaited_t *const awaited = &slot->awaited;
-    client->sent_at = client->now;
-    client->in_gap = client->settings.gap != 0u;
-    slot->sent_at = client->now;
-    slot->attempts++;
-    slot->missing = ICDGEN_U8(icdgen_needed(awaited));
-    slot->state = slot->missing != 0u ? ICD_STREAM_SLOT_WAIT : ICD_STREAM_SLOT_SENT;
-    slot->until = client->now + (slot->missing != 0u ? icdgen_stream_timeout(client, awaited) : 0u);
-    awaited->latest = slot->until;
-    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
-        awaited->owed[i] = ICDGEN_U16(awaited->owed[i] + ((ICDGEN_U32(slot->missing) >> i) & 1u));
-    }
+    icdgen_count_sent(client, slot);
     return true;
-}
-
-/* A client and its event callback. */
-typedef struct {
-    icd_stream_client_t *client;
-    icd_stream_event_fn *on_event;
-    void *context;
-} icdgen_stream_call_t;
-
-/* Report an event of a request. An outcome ends the request. */
-static inline void icdgen_stream_report(
-    const icdgen_stream_call_t *call, icd_stream_kind_t kind, size_t index, icd_stream_event_t *event)
-{
-    const icd_stream_slot_t *const slot = &call->client->slots[index];
-    event->kind = kind;
-    event->has_id = true;
-    event->id = icdgen_request_id(slot);
-    event->link = call->client->sender.link;
-    event->direction = slot->direction;
-    event->attempts = slot->attempts;
-    if (kind != ICD_STREAM_PROGRESS && kind != ICD_STREAM_REPLY) {
-        icdgen_request_end(call->client, index);
-    }
-    call->on_event(call->context, event);
-}
-
-ICDGEN_API void icd_stream_client_tick(
-    icd_stream_client_t *client, uint32_t now, icd_stream_event_fn *on_event, void *context)
-{
-    const icdgen_stream_call_t call = {client, on_event, context};
-    size_t i = 0;
-    icdgen_stream_set_time(client, now);
-    while (i < client->started) {
-        icd_stream_slot_t *const slot = &client->slots[i];
-        const bool is_left = slot->repeat && slot->attempts <= client->settings.retries;
-        if (slot->state == ICD_STREAM_SLOT_QUEUED || !icdgen_reached(now, slot->until)) {
-            i++;
-        } else if (slot->state == ICD_STREAM_SLOT_PAUSE || (slot->state == ICD_STREAM_SLOT_WAIT && is_left)) {
-            slot->state = ICD_STREAM_SLOT_QUEUED;
-            i++;
-        } else {
-            icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_TIMEOUT);
-            icdgen_stream_report(
-                &call, slot->state == ICD_STREAM_SLOT_SENT ? ICD_STREAM_SENT : ICD_STREAM_TIMEOUT, i, &event);
-        }
-    }
-}
-
-/* Process a response to a request. */
-static inline void icdgen_stream_responded(
-    const icdgen_stream_call_t *call, size_t index, const icd_response_t *response, icd_stream_event_t *event)
-{
-    icd_stream_client_t *const client = call->client;
-    icd_stream_slot_t *const slot = &client->slots[index];
-    const icd_verdict_t verdict = icdgen_verdict(response, event);
-    icd_stream_kind_t kind = ICD_STREAM_PROGRESS;
-    event->has_reply = !event->is_packet;
-    event->reply = event->id;
-    icdgen_settle(&slot->awaited, verdict);
-    if (verdict == ICD_VERDICT_PROGRESS) {
-        const uint32_t limit = slot->sent_at + client->settings.progress_for;
-        const uint32_t extended = client->now + icdgen_stream_timeout(client, &slot->awaited);
-        const uint32_t latest = icdgen_reached(extended, limit) ? limit : extended;
-        if (icdgen_reached(latest, slot->awaited.latest)) {
-            slot->awaited.latest = latest;
-        }
-        if (slot->state == ICD_STREAM_SLOT_WAIT) {
-            slot->until = slot->awaited.latest;
-        }
-    } else if (verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY) {
-        slot->missing = ICDGEN_U8(slot->missing & ~icdgen_verdict_bit(verdict));
-        if (slot->missing == 0u) {
-            kind = ICD_STREAM_DONE;
-        } else if (verdict == ICD_VERDICT_REPLY) {
-            kind = ICD_STREAM_REPLY;
-        } else {
-            /* the reply is still to come */
-        }
-    } else if (verdict == ICD_VERDICT_BUSY && slot->attempts <= client->settings.retries) {
-        slot->state = ICD_STREAM_SLOT_PAUSE;
-        slot->until = client->now + client->settings.busy_pause;
-    } else {
-        kind = verdict == ICD_VERDICT_BUSY ? ICD_STREAM_BUSY : ICD_STREAM_REFUSED;
-        if (response->reason.bits != 0u) {
-            event->has_code = true;
-            event->code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
-        }
-    }
-    icdgen_stream_report(call, kind, index, event);
-}
-
-/* Return whether telemetry is a response to a request that has ended. */
-static inline bool icdgen_stream_is_late(icd_stream_client_t *client, const icd_stream_event_t *event)
-{
-    for (size_t i = 0; i < client->late_count; ++i) {
-        const icd_response_t *const response = icdgen_matching(&client->late[i], event);
-        if (response != NULL) {
-            icdgen_settle(&client->late[i], icdgen_verdict(response, event));
-            if (!icdgen_is_owed(&client->late[i])) {
-                icdgen_stream_forget(client, i);
-            }
-            return true;
-        }
-    }
-    return false;
 }
 
 /* Return whether telemetry only responds to telecommands. */
@@ -3934,9 +3427,13 @@ static inline bool icdgen_stream_confirms(const icd_stream_form_t *form, uint32_
 
 /* Return whether data can be requested telemetry that comes without its id. Otherwise, keep it in `other`. */
 static inline bool icdgen_names(
-    const icd_stream_awaited_t *awaited, size_t length, const icd_stream_row_t **row, const icd_stream_row_t **other)
+    const icd_stream_form_t *form,
+    const icd_awaited_t *awaited,
+    size_t length,
+    const icd_stream_row_t **row,
+    const icd_stream_row_t **other)
 {
-    *row = icdgen_nameless(awaited);
+    *row = awaited->is_nameless ? icdgen_stream_row(form, ICD_TELEMETRY, awaited->reply) : NULL;
     const bool fits = *row != NULL && length >= (*row)->least && length <= (*row)->most;
     *other = *other == NULL ? *row : *other;
     return fits;
@@ -3944,116 +3441,598 @@ static inline bool icdgen_names(
 
 /*
  * A packet contains telemetry without its id: let the event be this telemetry, if it can be the response to a request.
- * If it has the length of none, it is ICD_STREAM_LENGTH; if no response is awaited, it stays the packet.
+ * If it has the length of none, it is ICD_EVENT_LENGTH; if no response is awaited, it stays the packet.
  */
-static inline void icdgen_stream_identify(const icd_stream_client_t *client, icd_stream_event_t *event)
+static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_t *event)
 {
-    const icd_packet_form_t *const packet = &client->sender.link->stream->packets[event->packet];
+    const icd_stream_form_t *const form = client->link->stream;
+    const icd_packet_form_t *const packet = &form->packets[event->packet];
     const size_t length = event->length - icdgen_packet_around(packet);
     const icd_stream_row_t *row = NULL;
     const icd_stream_row_t *other = NULL;
     bool fits = false;
     for (size_t i = 0; !fits && i < client->started; ++i) {
-        const icd_stream_slot_t *const slot = &client->slots[i];
-        if (slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited)) {
-            fits = icdgen_names(&slot->awaited, length, &row, &other);
+        const icd_slot_t *const slot = &client->slots[i];
+        if (slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited)) {
+            fits = icdgen_names(form, &slot->awaited, length, &row, &other);
         }
     }
     for (size_t i = 0; !fits && i < client->late_count; ++i) {
-        fits = icdgen_names(&client->late[i], length, &row, &other);
+        fits = icdgen_names(form, &client->late[i], length, &row, &other);
     }
     if (fits) {
-        event->kind = ICD_STREAM_MESSAGE;
+        event->kind = ICD_EVENT_MESSAGE;
         event->is_packet = false;
         event->id = row->id;
         event->data += packet->header_bytes;
         event->length = length;
     } else if (other != NULL) {
-        *event = icdgen_stream_event(ICD_STREAM_LENGTH);
-        event->has_id = true;
-        event->id = other->id;
+        *event = icdgen_event_of(ICD_EVENT_LENGTH, other->id);
     } else {
         /* the packet itself */
     }
 }
 
-static inline void icdgen_stream_on_event(void *context, const icd_stream_event_t *found)
+static inline void icdgen_on_stream(void *context, const icd_event_t *found)
 {
-    const icdgen_stream_call_t *const call = ICDGEN_CAST(const icdgen_stream_call_t *, context);
-    icd_stream_client_t *const client = call->client;
-    icd_stream_event_t reported = *found;
-    const icd_stream_event_t *const event = &reported;
-    if (found->is_packet && client->sender.link->stream->packets[found->packet].content == ICD_PACKET_REQUESTED) {
-        icdgen_stream_identify(client, &reported);
+    const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
+    const icd_stream_form_t *const form = call->client->link->stream;
+    icd_event_t event = *found;
+    if (event.is_packet && form->packets[event.packet].content == ICD_PACKET_REQUESTED) {
+        icdgen_stream_identify(call->client, &event);
     }
-    reported.link = client->sender.link;
-    reported.direction = ICD_TELEMETRY;
-    if (event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_PACKET) {
-        for (size_t i = 0; i < client->started; ++i) {
-            const icd_stream_slot_t *const slot = &client->slots[i];
-            const bool is_awaited = slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
-            const icd_response_t *const response = is_awaited ? icdgen_matching(&slot->awaited, event) : NULL;
-            if (response != NULL) {
-                icdgen_stream_responded(call, i, response, &reported);
-                return;
-            }
+    if (event.kind == ICD_EVENT_MESSAGE || event.kind == ICD_EVENT_PACKET) {
+        const bool is_stray = event.is_packet || icdgen_stream_confirms(form, event.id);
+        icdgen_client_arrived(call, &event, is_stray ? ICD_EVENT_STRAY : ICD_EVENT_ARRIVED);
+    } else {
+        event.link = call->client->link;
+        event.direction = ICD_TELEMETRY;
+        call->on_event(call->context, &event);
+    }
+}
+
+static inline void icdgen_stream_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
+{
+    icdgen_call_t copy = *call;
+    icd_stream_feed(&call->client->stream->decoder, bytes, count, icdgen_on_stream, &copy);
+}
+
+ICDGEN_API icd_status_t icd_client_stream(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_stream_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size,
+    uint32_t *sequences,
+    size_t sequence_count)
+{
+    static const icd_line_t functions = {
+        false, ICD_BUS_UART, icdgen_stream_plan, icdgen_stream_store, icdgen_stream_output, icdgen_stream_received,
+        NULL,
+    };
+    const size_t half = sequence_count / 2u;
+    icd_status_t status = icdgen_client_init(client, link, slots, slot_count, buffer, size);
+    (void)memset(line, 0, sizeof *line);
+    if (link->stream == NULL) {
+        status = ICD_ERROR_UNSUPPORTED;
+    }
+    if (status == ICD_OK) {
+        status = icd_stream_sender_init(&line->sender, link, ICD_TELECOMMAND, sequences, half);
+    }
+    if (status == ICD_OK) {
+        status = icd_stream_decoder_init(
+            &line->decoder, link, ICD_TELEMETRY, buffer, ICDGEN_SIZE(link->longest),
+            (sequence_count > 0u) ? (sequences + half) : NULL, sequence_count - half);
+    }
+    if (status == ICD_OK) {
+        client->stream = line;
+        client->line = &functions;
+    }
+    return status;
+}
+
+/* ---- clients on UART, I2C and CAN -------------------------------------------------------------------------------- */
+
+#define ICDGEN_ACKNOWLEDGE 0u /* indices of packets without a message */
+#define ICDGEN_REFUSAL 1u
+#define ICDGEN_REQUEST_REFUSAL 2u
+
+static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
+{
+    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
+}
+
+/* Initialize a client on a bus. */
+static inline icd_status_t icdgen_bus_init(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_bus_t bus,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    const icd_status_t status = icdgen_client_init(client, link, slots, slot_count, buffer, size);
+    if (link->checksum != NULL) {
+        client->checks_telecommands = icdgen_on_bus(link->checksum->telecommand_always, bus);
+        client->checks_telemetry = icdgen_on_bus(link->checksum->telemetry_always, bus);
+    }
+    return link->exchanges[bus] != NULL ? status : ICD_ERROR_UNSUPPORTED;
+}
+
+ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
+{
+    const icd_checksum_form_t *const form = client->link->checksum;
+    if (form != NULL && client->line != NULL) {
+        client->checks_telecommands = icdgen_on_bus(form->telecommand_buses, client->line->bus);
+        client->checks_telemetry = icdgen_on_bus(form->telemetry_buses, client->line->bus);
+    }
+}
+
+static inline icd_status_t icdgen_bus_plan(
+    const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan)
+{
+    const icd_bus_exchanges_t *const exchanges = client->link->exchanges[client->line->bus];
+    const icd_message_t *const message = icd_find_message(client->link, request->direction, request->id);
+    if (message == NULL) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    if (request->direction == ICD_TELEMETRY) {
+        plan->exchange = exchanges->request;
+        plan->asks_by_id = true;
+        plan->has_reply = true;
+        plan->reply = request->id;
+        plan->is_in_order = client->line->has_results;
+    } else if (request->has_reply) {
+        return ICD_ERROR_UNSUPPORTED;
+    } else {
+        plan->exchange = (message->flags & ICD_ACKNOWLEDGED) != 0u ? exchanges->command : NULL;
+        plan->least = message->length;
+        plan->most = message->length;
+        plan->repeats = (message->flags & ICD_SETTING) != 0u;
+    }
+    plan->sent_id = request->id;
+    return ICD_OK;
+}
+
+/* Store id, data and checksum. */
+static inline icd_status_t icdgen_bus_store(
+    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+{
+    return icd_i2c_write(
+        client->link, ICDGEN_U8(slot->sent_id), data, length, !slot->asks_by_id && client->checks_telecommands,
+        slot->data, ICDGEN_SIZE(client->link->longest_telecommand), &slot->length);
+}
+
+/* Report the fault of telemetry that was read or received: ICD_ERROR_CHECKSUM, otherwise a wrong length. */
+static inline void icdgen_bus_fault(const icdgen_call_t *call, uint32_t id, icd_status_t status)
+{
+    const icd_event_t event = icdgen_event_of(status == ICD_ERROR_CHECKSUM ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH, id);
+    call->on_event(call->context, &event);
+}
+
+/* Process data that nothing in the ICD describes. */
+static inline void icdgen_bus_stray(const icdgen_call_t *call, uint32_t id, const uint8_t *data, size_t length)
+{
+    icd_event_t event = icdgen_event_of(ICD_EVENT_STRAY, id);
+    event.data = data;
+    event.length = length;
+    call->on_event(call->context, &event);
+}
+
+/* Process a packet without a message. The data of its event start with the id. */
+static inline void icdgen_bus_packet(const icdgen_call_t *call, uint32_t packet, const uint8_t *bytes, size_t length)
+{
+    icd_event_t event = icdgen_event_of(ICD_EVENT_PACKET, bytes[0]);
+    event.is_packet = true;
+    event.packet = ICDGEN_U8(packet);
+    event.data = bytes;
+    event.length = length;
+    icdgen_client_arrived(call, &event, ICD_EVENT_STRAY);
+}
+
+/* Process telemetry on UART or CAN. Its length shows whether it has a checksum. */
+static inline void icdgen_bus_telemetry(const icdgen_call_t *call, uint32_t id, const uint8_t *data, size_t length)
+{
+    const icd_client_t *const client = call->client;
+    const icd_checksum_form_t *const form = client->link->checksum;
+    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, id);
+    if (message == NULL) {
+        icdgen_bus_stray(call, id, data, length);
+        return;
+    }
+    icd_event_t event = icdgen_event_of(ICD_EVENT_MESSAGE, id);
+    icd_status_t status = length == message->length ? ICD_OK : ICD_ERROR_LENGTH;
+    bool is_checked = false;
+    event.data = data;
+    event.length = message->length;
+    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->line->bus) &&
+        length == ICDGEN_SIZE(message->length) + form->bytes) {
+        is_checked = true;
+        status = icd_i2c_reply(client->link, message->id, data, length, true, &event.length);
+    }
+    if (status != ICD_OK) {
+        icdgen_bus_fault(call, id, status);
+    } else if (client->checks_telemetry && !is_checked) {
+        event = icdgen_event_of(ICD_EVENT_UNCHECKED, id);
+        call->on_event(call->context, &event);
+    } else {
+        icdgen_client_arrived(call, &event, ICD_EVENT_STRAY);
+    }
+}
+
+static inline bool icdgen_uart_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    icd_uart_encoder_t *const encoder = &client->uart->encoder;
+    if (client->partial == NULL) {
+        icd_slot_t *const slot = capacity != 0u ? icdgen_next_to_send(client) : NULL;
+        if (slot == NULL) {
+            return false;
         }
-        if (icdgen_stream_is_late(client, event)) {
-            reported.kind = ICD_STREAM_LATE;
-        } else if (event->is_packet || icdgen_stream_confirms(client->sender.link->stream, event->id)) {
-            reported.kind = ICD_STREAM_STRAY;
-        } else {
-            /* unsolicited */
+        (void)icd_uart_encode_begin(encoder, client->link, slot->data, slot->length);
+        client->partial = slot->data;
+        icdgen_count_sent(client, slot);
+    }
+    *written = icd_uart_encode_some(encoder, buffer, capacity);
+    if (encoder->ended && encoder->pending == 0u) {
+        icdgen_output_ends(client);
+    }
+    return *written != 0u;
+}
+
+/* Process a message: id and data. */
+static inline void icdgen_uart_message(const icdgen_call_t *call, const uint8_t *message, size_t length)
+{
+    const icd_link_t *const link = call->client->link;
+    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
+    if (kind == ICD_UART_REPLY) {
+        icdgen_bus_telemetry(call, message[0], message + 1, length - 1u);
+    } else if (kind == ICD_UART_ACKNOWLEDGE) {
+        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, message, length);
+    } else if (kind == ICD_UART_OTHER) {
+        icdgen_bus_stray(call, message[0], message + 1, length - 1u);
+    } else {
+        icd_event_t event = icdgen_event_of(ICD_EVENT_LOG, message[0]);
+        event.data = message;
+        event.length = length;
+        if (kind == ICD_UART_ARRIVED) {
+            event.kind = ICD_EVENT_ARRIVED;
+            event.id = icdgen_unsolicited(link, message, length)->telemetry;
+            event.data = message + 1;
+            event.length = length - 1u;
+            event.link = link;
+            event.direction = ICD_TELEMETRY;
+        }
+        call->on_event(call->context, &event);
+    }
+}
+
+static inline void icdgen_on_uart(void *context, const icd_event_t *event)
+{
+    const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
+    if (event->kind == ICD_EVENT_MESSAGE) {
+        icdgen_uart_message(call, event->data, event->length);
+    } else {
+        call->on_event(call->context, event);
+    }
+}
+
+static inline void icdgen_uart_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
+{
+    icdgen_call_t copy = *call;
+    icd_uart_feed(&call->client->uart->decoder, bytes, count, icdgen_on_uart, &copy);
+}
+
+ICDGEN_API icd_status_t icd_client_uart(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_uart_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    static const icd_line_t functions = {
+        false, ICD_BUS_UART, icdgen_bus_plan, icdgen_bus_store, icdgen_uart_output, icdgen_uart_received, NULL,
+    };
+    icd_status_t status = icdgen_bus_init(client, link, ICD_BUS_UART, slots, slot_count, buffer, size);
+    (void)memset(line, 0, sizeof *line);
+    if (status == ICD_OK) {
+        status = icd_uart_decoder_init(&line->decoder, link, buffer, ICDGEN_SIZE(link->longest));
+    }
+    if (status == ICD_OK) {
+        client->uart = line;
+        client->line = &functions;
+    }
+    return status;
+}
+
+static inline icd_status_t icdgen_can_split(
+    const icd_client_t *client, const icd_slot_t *slot, icd_can_splitter_t *splitter)
+{
+    const icd_can_kind_t kind = slot->asks_by_id ? ICD_CAN_REQUEST : ICD_CAN_TELECOMMAND;
+    return icd_can_split(
+        splitter, client->link, kind, slot->data[0], client->can->address, client->link->can->node_address,
+        slot->data + 1, slot->length - 1u);
+}
+
+static inline icd_status_t icdgen_can_store(
+    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+{
+    icd_can_splitter_t splitter;
+    const icd_status_t status = icdgen_bus_store(client, slot, data, length);
+    if (status != ICD_OK) {
+        return status;
+    }
+    return icdgen_can_split(client, slot, &splitter) == ICD_OK ? ICD_OK : ICD_ERROR_LENGTH;
+}
+
+ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet)
+{
+    if (client->can == NULL) {
+        return false;
+    }
+    icd_can_splitter_t *const splitter = &client->can->splitter;
+    if (client->partial == NULL) {
+        icd_slot_t *const slot = icdgen_next_to_send(client);
+        if (slot == NULL || icdgen_can_split(client, slot, splitter) != ICD_OK) {
+            return false;
+        }
+        client->partial = slot->data;
+        icdgen_count_sent(client, slot);
+    }
+    const bool has_packet = icd_can_next(splitter, packet);
+    if (splitter->next >= splitter->count) {
+        icdgen_output_ends(client);
+    }
+    return has_packet;
+}
+
+static inline void icdgen_on_can(void *context, const icd_event_t *event)
+{
+    const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
+    const icd_can_kind_t kind = event->can_kind;
+    if (event->kind != ICD_EVENT_MESSAGE) {
+        call->on_event(call->context, event);
+    } else if (event->source != call->client->link->can->node_address) {
+        icdgen_bus_stray(call, event->id, event->data, event->length);
+    } else if (kind == ICD_CAN_REPLY) {
+        icdgen_bus_telemetry(call, event->id, event->data, event->length);
+    } else if (kind == ICD_CAN_ACKNOWLEDGE) {
+        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, event->data - 1, event->length + 1u);
+    } else if (kind == ICD_CAN_REFUSAL) {
+        icdgen_bus_packet(call, ICDGEN_REFUSAL, event->data - 1, event->length + 1u);
+    } else if (kind == ICD_CAN_REQUEST_REFUSAL) {
+        icdgen_bus_packet(call, ICDGEN_REQUEST_REFUSAL, event->data - 1, event->length + 1u);
+    } else {
+        icdgen_bus_stray(call, event->id, event->data, event->length);
+    }
+}
+
+static inline void icdgen_can_overdue(const icdgen_call_t *call, uint32_t now)
+{
+    icd_can_expire(&call->client->can->joiner, now, call->on_event, call->context);
+}
+
+ICDGEN_API void icd_client_packet(
+    icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
+{
+    icdgen_call_t call = {client, on_event, context};
+    icd_client_tick(client, now, on_event, context);
+    if (client->can != NULL) {
+        icd_can_feed(&client->can->joiner, now, packet, icdgen_on_can, &call);
+    }
+}
+
+ICDGEN_API icd_status_t icd_client_can(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_can_line_t *line,
+    uint8_t address,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    static const icd_line_t functions = {
+        false, ICD_BUS_CAN, icdgen_bus_plan, icdgen_can_store, NULL, NULL, icdgen_can_overdue,
+    };
+    icd_status_t status = icdgen_bus_init(client, link, ICD_BUS_CAN, slots, slot_count, buffer, size);
+    (void)memset(line, 0, sizeof *line);
+    line->address = address;
+    if (status == ICD_OK) {
+        status = icd_can_joiner_init(&line->joiner, link, address, &line->slot, 1, buffer, icdgen_receive_bytes(link));
+    }
+    if (status == ICD_OK) {
+        client->can = line;
+        client->line = &functions;
+    }
+    return status;
+}
+
+/* Return the request whose attempt has begun and whose transaction is not taken yet; NULL if there is none. */
+static inline icd_slot_t *icdgen_i2c_untaken(const icd_client_t *client)
+{
+    for (size_t i = 0; i < client->started; ++i) {
+        if (client->slots[i].state == ICD_SLOT_WAIT && client->slots[i].transaction == 0u) {
+            return &client->slots[i];
         }
     }
-    call->on_event(call->context, &reported);
+    return NULL;
 }
 
-ICDGEN_API void icd_stream_client_received(
-    icd_stream_client_t *client,
-    uint32_t now,
-    const uint8_t *bytes,
-    size_t count,
-    icd_stream_event_fn *on_event,
-    void *context)
+/* Begin the next request or poll, whose times count from now. Return NULL if there is none. */
+static inline icd_slot_t *icdgen_i2c_begun(icd_client_t *client)
 {
-    icdgen_stream_call_t call;
-    call.client = client;
-    call.on_event = on_event;
-    call.context = context;
-    icd_stream_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_stream_feed(&client->decoder, bytes, count, icdgen_stream_on_event, &call);
+    icd_slot_t *const slot = icdgen_next_to_send(client);
+    if (slot != NULL && slot->is_polled) {
+        slot->state = ICD_SLOT_WAIT;
+        icdgen_count_times(client, slot);
+    } else if (slot != NULL) {
+        icdgen_begin_attempt(client, slot);
+    } else {
+        /* nothing is to be sent */
     }
+    return slot;
 }
 
-ICDGEN_API void icd_stream_client_cancel(icd_stream_client_t *client)
+ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
 {
-    while (client->started != 0u) {
-        icdgen_request_end(client, 0);
+    icd_i2c_line_t *const line = client->i2c;
+    *read = 0;
+    if (line == NULL) {
+        return false;
     }
+    icd_slot_t *slot = icdgen_i2c_untaken(client);
+    if (slot == NULL) {
+        slot = icdgen_i2c_begun(client);
+    }
+    if (slot == NULL || line->taken_count == ICDGEN_MOST_AWAITED) {
+        return false;
+    }
+    icd_transaction_t *const transaction = &line->taken[line->taken_count];
+    if (slot->is_polled) {
+        line->poll_id = ICDGEN_U8(slot->awaited.exchange->poll->telemetry);
+        *bytes = &line->poll_id;
+        *count = 1;
+    } else {
+        *bytes = slot->data;
+        *count = slot->length;
+        icdgen_owe(slot);
+    }
+    line->taken_count++;
+    line->last = line->last == 0xFFFFu ? ICDGEN_U16(1) : ICDGEN_U16(line->last + 1u);
+    slot->transaction = line->last;
+    transaction->number = line->last;
+    transaction->id = **bytes;
+    transaction->reads = slot->is_polled || slot->asks_by_id;
+    if (transaction->reads) {
+        (void)icd_i2c_read_length(client->link, transaction->id, client->checks_telemetry, read);
+    }
+    return true;
 }
 
-ICDGEN_API void icd_stream_client_cancel_request(icd_stream_client_t *client, icd_direction_t direction, uint32_t id)
+/* Remove the oldest transaction whose result is missing. Its number is 0 if there is none. */
+static inline icd_transaction_t icdgen_i2c_untake(icd_i2c_line_t *line)
+{
+    icd_transaction_t transaction = {0u, 0u, false};
+    if (line->taken_count != 0u) {
+        transaction = line->taken[0];
+        line->taken_count--;
+        for (size_t i = 0; i < line->taken_count; ++i) {
+            line->taken[i] = line->taken[i + 1u];
+        }
+    }
+    return transaction;
+}
+
+/* Return the index of the request that awaits the result of a transaction; the number of requests if there is none. */
+static inline size_t icdgen_i2c_awaiting(const icd_client_t *client, uint16_t number)
 {
     size_t i = 0;
-    while (i < client->started) {
-        const icd_stream_slot_t *const slot = &client->slots[i];
-        if (slot->direction == direction && icdgen_request_id(slot) == id) {
-            icdgen_request_end(client, i);
-        } else {
-            i++;
-        }
+    while (i < client->started && (client->slots[i].transaction != number || number == 0u)) {
+        ++i;
+    }
+    return i;
+}
+
+/* Process telemetry that was read for a request. */
+static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, const icd_event_t *telemetry)
+{
+    icd_slot_t *const slot = &call->client->slots[index];
+    const icd_outcome_poll_t *const poll = slot->awaited.exchange->poll;
+    icd_event_t event = *telemetry;
+    const icd_response_t *const response = icdgen_matching(&slot->awaited, &event);
+    event.link = call->client->link;
+    event.direction = ICD_TELEMETRY;
+    if (response == NULL ||
+        (poll != NULL && icdgen_stream_number(&poll->until, event.id, event.data, event.length) == 0u)) {
+        (void)icdgen_unanswered(call, index);
+    } else {
+        slot->transaction = 0;
+        icdgen_responded(call, index, response, &event);
     }
 }
 
-ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *node, uint32_t id)
+/* A telecommand is written: poll its response, if it has one. */
+static inline void icdgen_i2c_written(const icdgen_call_t *call, size_t index)
 {
-    const bool arrived =
-        event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_LATE || event->kind == ICD_STREAM_STRAY;
-    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY && !event->is_packet);
-    return brings && (event->has_reply ? event->reply : event->id) == id && event->link != NULL &&
-        icd_has_messages_of(event->link, node);
+    icd_slot_t *const slot = &call->client->slots[index];
+    if (slot->missing == 0u) {
+        icdgen_end_request(call, ICD_EVENT_SENT, index);
+    } else {
+        slot->is_polled = true;
+        slot->poll_end = call->client->now + call->client->settings.poll_timeout;
+        slot->awaited.latest = slot->poll_end;
+        (void)icdgen_unanswered(call, index);
+    }
+}
+
+ICDGEN_API void icd_client_transferred(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+{
+    const icdgen_call_t call = {client, on_event, context};
+    icd_event_t event = icdgen_event(ICD_EVENT_STRAY);
+    icd_status_t status = ICD_OK;
+    if (client->i2c == NULL) {
+        return;
+    }
+    const icd_transaction_t transaction = icdgen_i2c_untake(client->i2c);
+    icd_client_tick(client, now, on_event, context); /* may end the request */
+    size_t index = icdgen_i2c_awaiting(client, transaction.number);
+    if (transaction.number == 0u) {
+        event.data = bytes;
+        event.length = bytes != NULL ? count : 0u;
+        on_event(context, &event);
+        return;
+    }
+    event = icdgen_event_of(ICD_EVENT_LATE, transaction.id);
+    if (transaction.reads && bytes != NULL) {
+        event.data = bytes;
+        event.link = client->link;
+        event.direction = ICD_TELEMETRY;
+        status = icd_i2c_reply(client->link, transaction.id, bytes, count, client->checks_telemetry, &event.length);
+    }
+    if (status != ICD_OK) {
+        icdgen_bus_fault(&call, transaction.id, status);
+        index = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
+        if (index < client->started) {
+            (void)icdgen_unanswered(&call, index);
+        }
+    } else if (index == client->started) {
+        on_event(context, &event);
+    } else if (bytes == NULL) {
+        icd_slot_t *const slot = &client->slots[index];
+        if (!slot->is_polled) { /* the node has not received the telecommand */
+            (void)memset(slot->awaited.owed, 0, sizeof slot->awaited.owed);
+        }
+        (void)icdgen_unanswered(&call, index);
+    } else if (transaction.reads) {
+        icdgen_i2c_result(&call, index, &event);
+    } else {
+        icdgen_i2c_written(&call, index);
+    }
+}
+
+ICDGEN_API icd_status_t icd_client_i2c(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_i2c_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    static const icd_line_t functions = {true, ICD_BUS_I2C, icdgen_bus_plan, icdgen_bus_store, NULL, NULL, NULL};
+    const icd_status_t status = icdgen_bus_init(client, link, ICD_BUS_I2C, slots, slot_count, buffer, size);
+    (void)memset(line, 0, sizeof *line);
+    if (status == ICD_OK) {
+        client->i2c = line;
+        client->line = &functions;
+    }
+    return status;
 }
 
 static inline void icdgen_end(icd_procedure_t *procedure, icd_result_t result)
@@ -4696,49 +4675,30 @@ static inline void icdgen_arrived(icd_procedure_t *procedure, uint32_t id, const
 
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
 {
-    procedure->now = now;
-    if (procedure->result != ICD_RUNNING) {
-        return;
-    }
-    if (event->kind == ICD_EVENT_ARRIVED) {
-        icdgen_arrived(procedure, event->id, event->data, event->length);
-    } else if (!procedure->is_requested) {
-        /* of a request of the application */
-    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT) {
-        icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
-    } else if (event->kind == ICD_EVENT_TIMEOUT) {
-        icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
-    } else if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
-        icdgen_damaged(procedure);
-    } else if (event->kind == ICD_EVENT_REFUSED) {
-        icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
-    } else {
-        /* not related to this procedure */
-    }
-}
-
-ICDGEN_API void icd_procedure_stream_event(icd_procedure_t *procedure, uint32_t now, const icd_stream_event_t *event)
-{
     const bool is_mine = procedure->is_requested && event->direction == procedure->request.direction &&
         event->id == procedure->request.id;
     procedure->now = now;
     if (procedure->result != ICD_RUNNING) {
         return;
     }
-    if (event->kind == ICD_STREAM_MESSAGE) {
+    if (event->kind == ICD_EVENT_ARRIVED) {
         icdgen_arrived(procedure, event->id, event->data, event->length);
     } else if (!is_mine) {
         /* of a request of the application */
-    } else if (event->kind == ICD_STREAM_REPLY) {
+    } else if (event->kind == ICD_EVENT_REPLY) {
         icdgen_keep_frame(procedure, event->data, event->length);
         procedure->has_reply = true;
-    } else if (event->kind == ICD_STREAM_DONE || event->kind == ICD_STREAM_SENT) {
+    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT) {
         icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
-    } else if (event->kind == ICD_STREAM_TIMEOUT) {
+    } else if (event->kind == ICD_EVENT_TIMEOUT) {
         icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
-    } else if (event->kind == ICD_STREAM_REFUSED) {
+    } else if (
+        event->kind == ICD_EVENT_REFUSED && procedure->link->stream == NULL && event->has_code &&
+        event->reason == ICD_REASON_UNKNOWN) {
+        icdgen_damaged(procedure); /* the messages of framed links have a checksum */
+    } else if (event->kind == ICD_EVENT_REFUSED) {
         icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
-    } else if (event->kind == ICD_STREAM_BUSY) {
+    } else if (event->kind == ICD_EVENT_BUSY) {
         icdgen_outcome(procedure, ICD_BUSY, NULL, 0);
     } else {
         /* not related to this procedure */
@@ -4757,31 +4717,13 @@ ICDGEN_API uint32_t icd_procedure_progress(const icd_procedure_t *procedure, uin
     return procedure->registers[ICD_BLOCK_OFFSET];
 }
 
-ICDGEN_API icd_status_t icd_procedure_step(
-    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+ICDGEN_API icd_status_t icd_procedure_step(icd_procedure_t *procedure, icd_client_t *client, uint32_t now)
 {
     icd_request_t request;
-    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client) ||
-        !icd_procedure_next(procedure, now, &request)) {
+    if (!icdgen_has_room(client) || !icd_procedure_next(procedure, now, &request)) {
         return ICD_OK;
     }
-    return icd_client_start(client, now, &request, on_event, context);
-}
-
-ICDGEN_API icd_status_t icd_procedure_stream_step(icd_procedure_t *procedure, icd_stream_client_t *client, uint32_t now)
-{
-    icd_stream_request_t request;
-    icd_request_t next;
-    if (client->started == client->slot_count || !icd_procedure_next(procedure, now, &next)) {
-        return ICD_OK;
-    }
-    (void)memset(&request, 0, sizeof request);
-    request.direction = next.direction;
-    request.id = next.id;
-    request.repeat = next.repeat;
-    request.data = next.data;
-    request.length = next.length;
-    return icd_stream_client_start(client, now, &request);
+    return icd_client_start(client, now, &request);
 }
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */

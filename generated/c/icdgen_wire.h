@@ -19,7 +19,7 @@
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
  *                   Largest number of requests whose responses a client awaits or that may still arrive late, 8 unless
- *                   it is defined. Each takes 16 bytes of a client, and 32 bytes of a client of a framed link.
+ *                   it is defined. Each takes 36 bytes of a client.
  * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
  *                   defined and those that the wire layer itself needs.
  */
@@ -37,6 +37,8 @@
 /* ---- description of the protocol of a node ----------------------------------------------------------------------- */
 
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
+
+#define ICD_BUSES 3u
 
 typedef enum { ICD_TELECOMMAND = 0, ICD_TELEMETRY = 1 } icd_direction_t;
 
@@ -284,14 +286,7 @@ typedef struct {
 } icd_index_form_t;
 
 /** Role of a field in a message that the wire layer requests. */
-typedef enum {
-    ICD_ROLE_NODE_TYPE,
-    ICD_ROLE_INTERFACE_VERSION,
-    ICD_ROLE_ID,
-    ICD_ROLE_PROCESSED,
-    ICD_ROLE_ERROR,
-    ICD_ROLE_PARAMETER
-} icd_role_t;
+typedef enum { ICD_ROLE_NODE_TYPE, ICD_ROLE_INTERFACE_VERSION } icd_role_t;
 
 /** Position of the field with a role, in bits. */
 typedef struct {
@@ -349,6 +344,14 @@ typedef enum {
 } icd_envelope_role_t;
 
 #define ICD_ENVELOPE_VALUES 8 /**< Number of roles whose values the sender chooses. */
+
+/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
+typedef struct {
+    uint32_t of[ICD_ENVELOPE_VALUES];
+} icd_envelope_values_t;
+
+/** A value that stands for the default of the packet format, in fields of less than 32 bits. */
+#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
 
 /**
  * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
@@ -409,11 +412,12 @@ typedef struct {
 
 /** What a response means for its telecommand. */
 typedef enum {
-    ICD_VERDICT_ACK = 0,     /**< The telecommand was accepted. */
-    ICD_VERDICT_REPLY = 1,   /**< This is the telemetry that the telecommand requested. */
-    ICD_VERDICT_NAK = 2,     /**< The telecommand was refused. */
-    ICD_VERDICT_BUSY = 3,    /**< The device is busy. */
-    ICD_VERDICT_PROGRESS = 4 /**< The telecommand is still being executed. */
+    ICD_VERDICT_ACK = 0,      /**< The telecommand was accepted. */
+    ICD_VERDICT_REPLY = 1,    /**< This is the telemetry that the telecommand requested. */
+    ICD_VERDICT_NAK = 2,      /**< The telecommand was refused. */
+    ICD_VERDICT_BUSY = 3,     /**< The device is busy. */
+    ICD_VERDICT_PROGRESS = 4, /**< The telecommand is still being executed. */
+    ICD_VERDICT_AGAIN = 5     /**< The telecommand was damaged on the line, and is sent again. */
 } icd_verdict_t;
 
 /**
@@ -452,7 +456,14 @@ typedef struct {
     const icd_meaning_t *meanings;
     icd_number_place_t status;
     icd_number_place_t reason; /**< Reason of a refusal. */
+    icd_number_place_t detail; /**< A number that says more about a refusal. */
 } icd_response_t;
+
+/** Telemetry that a client requests until it has the right echo and the number `until` is not 0. */
+typedef struct {
+    uint32_t telemetry;
+    icd_number_place_t until;
+} icd_outcome_poll_t;
 
 #define ICD_MOST_SOURCES 4u /**< Largest number of numbers of a telecommand that its responses repeat. */
 
@@ -467,9 +478,16 @@ typedef struct {
     uint8_t source_count;
     uint8_t header_count;
     uint8_t response_count;
-    bool is_request;  /**< Of a request of telemetry: the requested telemetry precedes `responses`. */
-    uint32_t timeout; /**< In milliseconds; 0: the time-out of the client. */
+    bool is_request;                /**< Of a request of telemetry: the requested telemetry precedes `responses`. */
+    uint32_t timeout;               /**< In milliseconds; 0: the time-out of the client. */
+    const icd_outcome_poll_t *poll; /**< I2C: what is requested until it is the response; otherwise NULL. */
 } icd_exchange_t;
+
+/** The exchanges on UART, I2C or CAN. */
+typedef struct {
+    const icd_exchange_t *command; /**< Of telecommands with ICD_ACKNOWLEDGED; NULL if the bus has no acknowledge. */
+    const icd_exchange_t *request; /**< Of requests of telemetry. */
+} icd_bus_exchanges_t;
 
 #define ICD_STREAM_CUTS_ZEROS 1u /**< Trailing zeros of the data are not sent, except for the first byte. */
 #define ICD_STREAM_REPEATS 2u    /**< Of a telecommand: it may be sent again after a time-out. */
@@ -728,10 +746,9 @@ typedef struct {
     const icd_acknowledge_t *acknowledge;
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
     uint8_t unsolicited_count;
-    int16_t i2c_address;        /**< 7-bit address, -1 if the ICD has none. */
-    bool i2c_repeated_start;    /**< Whether a read may follow its write without a stop. */
-    int32_t boot_ms;            /**< Waiting time of the boot program in ms, -1 if unknown. */
-    const icd_report_t *polled; /**< Frame that reports the result of a telecommand. */
+    int16_t i2c_address;     /**< 7-bit address, -1 if the ICD has none. */
+    bool i2c_repeated_start; /**< Whether a read may follow its write without a stop. */
+    int32_t boot_ms;         /**< Waiting time of the boot program in ms, -1 if unknown. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
     const icd_crc_form_t *crc16;
@@ -741,6 +758,7 @@ typedef struct {
     const icd_time_form_t *time;
     const icd_index_form_t *index;
     const icd_report_t *identification;
+    const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 
@@ -764,54 +782,67 @@ icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_id
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
 typedef enum {
-    ICD_EVENT_MESSAGE,          /**< A complete message. */
+    ICD_EVENT_MESSAGE,          /**< Decoder: a complete message. */
+    ICD_EVENT_GAP,              /**< `missing` messages were lost before this one; 0: this message is a repetition. */
+    ICD_EVENT_CHECKSUM,         /**< Dropped: wrong checksum. */
+    ICD_EVENT_LENGTH,           /**< Dropped: wrong length of the message. */
+    ICD_EVENT_UNKNOWN_ID,       /**< Dropped: the node has no message with this id. */
+    ICD_EVENT_OVERRUN,          /**< Dropped: the message is longer than the buffer. */
+    ICD_EVENT_FRAMING,          /**< Dropped: wrong constant or delimiter. */
     ICD_EVENT_UNEXPECTED_START, /**< UART: a message started before the previous one ended, which is dropped. */
     ICD_EVENT_PROTOCOL_ERROR,   /**< UART: invalid byte after the escape byte. */
-    ICD_EVENT_OVERRUN,          /**< UART: a message is longer than the buffer. */
     ICD_EVENT_EMPTY,            /**< UART: an empty message, without an id. */
     ICD_EVENT_DUPLICATE,        /**< CAN: a packet was received twice. */
-    ICD_EVENT_INCOMPLETE,       /**< CAN: a message is discarded because packets are missing. */
+    ICD_EVENT_INCOMPLETE,       /**< CAN: a message is discarded because `missing` packets are missing. */
     ICD_EVENT_MALFORMED,        /**< CAN: an invalid packet of this message. */
-    ICD_EVENT_BUSY,             /**< CAN: no free slot for another sender; the packet is dropped. */
+    ICD_EVENT_NO_SLOT,          /**< CAN: no free slot for another sender; the packet is dropped. */
     ICD_EVENT_UNKNOWN_TYPE,     /**< CAN: the ICD has no such message type. */
-    ICD_EVENT_DONE,             /**< Client: the request succeeded; for telemetry, `data` is the frame. */
+    ICD_EVENT_UNCHECKED,        /**< Dropped: telemetry without the required checksum. */
+    ICD_EVENT_REQUEST,          /**< Decoder of telecommands: a packet that requests telemetry. */
+    ICD_EVENT_PACKET,           /**< Decoder: a packet without a message. `data` are all its bytes. */
+    ICD_EVENT_DONE,             /**< Client: the request succeeded. */
     ICD_EVENT_SENT,             /**< Client: a telecommand to which nothing responds was sent. */
-    ICD_EVENT_REFUSED,          /**< Client: the node rejected the request (negative acknowledge). */
-    ICD_EVENT_TIMEOUT,          /**< Client: no reply, or the node did not process the telecommand in time. */
-    ICD_EVENT_ARRIVED,          /**< Client: unsolicited telemetry. */
-    ICD_EVENT_LOG,              /**< Client: an unsolicited log message; `data` starts with its id. */
+    ICD_EVENT_REFUSED,          /**< Client: the device refused the request. */
+    ICD_EVENT_BUSY,             /**< Client: the device was busy each time, so the request was not executed. */
+    ICD_EVENT_TIMEOUT,  /**< Client: no response, or not in time; it is not known whether the request was executed. */
+    ICD_EVENT_PROGRESS, /**< Client: the request is still in progress. */
+    ICD_EVENT_REPLY,    /**< Client: the requested telemetry; the acknowledge is still to come. */
+    ICD_EVENT_ARRIVED,  /**< Client: unsolicited telemetry. */
+    ICD_EVENT_LOG,      /**< Client: an unsolicited log message; `data` starts with its id. */
     ICD_EVENT_LATE,     /**< Client: a response to a request that has ended; on I2C the result of a transaction. */
-    ICD_EVENT_STRAY,    /**< Client: a response without a request. I2C: a result without a transaction. */
-    ICD_EVENT_LENGTH,   /**< Client: telemetry of the wrong length; the request continues. */
-    ICD_EVENT_CHECKSUM, /**< Client: a frame with a wrong checksum; the request continues. */
-    ICD_EVENT_UNCHECKED /**< Client: a frame without the required checksum; the request continues. */
+    ICD_EVENT_STRAY     /**< Client: a response without a request. I2C: a result without a transaction. */
 } icd_event_kind_t;
 
-/** Kinds of messages from the node on the UART. */
-typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_ARRIVED, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
-
 /**
- * An event. The event and its data are valid only during the call of the callback.
+ * An event of a decoder or a client. The event and its data are valid only during the call of the callback.
  *
- * Every request ends with one of DONE, SENT, REFUSED and TIMEOUT, which have the id of the request. LATE and STRAY have
- * the id and the data of the response. I2C: LATE has the id of the transaction, and no data if nothing was read; STRAY
- * has no id.
+ * Every request ends with one of DONE, SENT, REFUSED, BUSY and TIMEOUT. These events, PROGRESS and REPLY have the
+ * direction and the id of the request. LATE and STRAY have the id and the data of the response; on I2C, LATE has the id
+ * of the transaction, and no data if nothing was read.
  */
 typedef struct {
     icd_event_kind_t kind;
-    uint8_t id;
-    const uint8_t *data;
+    bool has_id; /**< Whether the id is known. */
+    uint32_t id;
+    const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
-    const icd_link_t *link;    /**< Outcomes: link of the node; otherwise NULL. */
-    icd_direction_t direction; /**< Outcomes: direction of the request. */
-    uint32_t attempts;         /**< Outcomes: number of times the request was sent. */
-    icd_reason_t reason;       /**< REFUSED: meaning of the error code. */
-    int64_t code;              /**< REFUSED: error code, -1 if the bus does not report it. */
-    int64_t parameter;         /**< REFUSED: index of the invalid parameter, -1 if the bus does not report it. */
-    uint32_t missing;          /**< INCOMPLETE: number of missing packets. */
-    uint8_t source;            /**< CAN: address of the sender. */
-    uint8_t destination;       /**< MESSAGE on CAN. */
-    icd_can_kind_t can_kind;   /**< MESSAGE on CAN. */
+    const icd_link_t *link; /**< Client: link of the node, if the event belongs to a message of it; otherwise NULL. */
+    icd_direction_t direction;
+    uint32_t attempts;       /**< Outcomes: number of times the request was sent. */
+    uint32_t missing;        /**< GAP, INCOMPLETE. */
+    bool has_reply;          /**< Events of a request: whether telemetry led to the event. */
+    uint32_t reply;          /**< Its id. */
+    bool is_packet;          /**< Whether the packet or the response contains no message. `data` are all its bytes. */
+    uint8_t packet;          /**< Framed links: index of the packet format. */
+    bool has_code;           /**< REFUSED, BUSY: whether the response has a reason. */
+    uint32_t code;           /**< The reason. */
+    icd_reason_t reason;     /**< REFUSED: meaning of the code on UART and I2C. */
+    bool has_detail;         /**< REFUSED on I2C: whether the response has the index of a parameter. */
+    uint32_t detail;         /**< Index of the invalid parameter. */
+    uint8_t source;          /**< CAN: address of the sender. */
+    uint8_t destination;     /**< MESSAGE on CAN. */
+    icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
+    icd_envelope_values_t values; /**< Framed links: header and trailer values of a message. */
 } icd_event_t;
 
 /** Callback for events. `context` is the pointer that was passed together with the callback. */
@@ -842,6 +873,9 @@ ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, s
 ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
+
+/** Kinds of messages from the node on the UART. */
+typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_ARRIVED, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
 
 /** Encoder that frames a message piece by piece, so that no buffer for the whole message is needed. */
 typedef struct {
@@ -899,14 +933,6 @@ ICDGEN_API void icd_uart_feed(
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length);
 
 /* ---- messages with header and trailer, in a stream of bytes or in packets ---------------------------------------- */
-
-/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
-typedef struct {
-    uint32_t of[ICD_ENVELOPE_VALUES];
-} icd_envelope_values_t;
-
-/** A value that stands for the default of the packet format, in fields of less than 32 bits. */
-#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
 
 /**
  * Return the values of the ICD for this direction. Fields without a value in the ICD are 0. If packet formats have
@@ -1013,54 +1039,6 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     size_t capacity,
     size_t *written);
 
-typedef enum {
-    ICD_STREAM_MESSAGE = 0,
-    ICD_STREAM_GAP = 1,        /**< `missing` messages were lost before this one; 0: this message is a repetition. */
-    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: wrong checksum. */
-    ICD_STREAM_LENGTH = 3,     /**< Dropped: wrong length of the message. */
-    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no message with this id. */
-    ICD_STREAM_OVERRUN = 5,    /**< Dropped: the message is longer than the buffer. */
-    ICD_STREAM_FRAMING = 6,    /**< Dropped: wrong constant or delimiter. */
-    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded. */
-    ICD_STREAM_TIMEOUT = 8,    /**< Client: no response; it is not known whether the request was executed. */
-    ICD_STREAM_SENT = 9,       /**< Client: a telecommand to which nothing responds was sent. */
-    ICD_STREAM_REFUSED = 10,   /**< Client: the device refused the request. */
-    ICD_STREAM_BUSY = 11,      /**< Client: the device was busy each time, so the request was not executed. */
-    ICD_STREAM_PROGRESS = 12,  /**< Client: the request is still in progress. */
-    ICD_STREAM_REPLY = 13,     /**< Client: the requested telemetry; the acknowledge is still to come. */
-    ICD_STREAM_LATE = 14,      /**< Client: a response to a request that has ended. */
-    ICD_STREAM_STRAY = 15,     /**< Client: a response without a request. */
-    ICD_STREAM_REQUEST = 16,   /**< Decoder of telecommands: a packet that requests telemetry. */
-    ICD_STREAM_PACKET = 17     /**< Decoder: a packet without a message. `data` are all its bytes. */
-} icd_stream_kind_t;
-
-/**
- * An event of a decoder or a client. The event and its data are valid only during the call of the callback.
- *
- * Every request ends with one of DONE, SENT, REFUSED, BUSY and TIMEOUT. These events, PROGRESS and REPLY have the
- * direction and the id of the request.
- */
-typedef struct {
-    icd_stream_kind_t kind;
-    bool has_id; /**< Whether the id could be read. */
-    uint32_t id;
-    const uint8_t *data; /**< Data of the message or the response. */
-    size_t length;
-    icd_envelope_values_t values;
-    uint32_t missing;
-    const icd_link_t *link; /**< Client: link of the node; otherwise NULL. */
-    icd_direction_t direction;
-    uint32_t attempts; /**< Outcomes: number of times the request was sent. */
-    bool has_reply;    /**< Events of a request: whether a response led to the event. */
-    uint32_t reply;    /**< Id of this response. */
-    bool is_packet;    /**< Whether the packet or the response contains no message. `data` are all its bytes. */
-    uint8_t packet;    /**< MESSAGE, REQUEST, PACKET: index of the packet format. */
-    bool has_code;     /**< REFUSED, BUSY: whether the response has a reason. */
-    uint32_t code;     /**< The reason. */
-} icd_stream_event_t;
-
-typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
-
 /** Decoder that finds the messages of one direction in a stream. */
 typedef struct {
     const icd_link_t *link;
@@ -1079,7 +1057,7 @@ typedef struct {
     bool zero;    /* COBS: whether a zero follows the block */
     uint8_t left; /* COBS: remaining bytes of the block */
     bool faulty;
-    icd_stream_kind_t fault;
+    icd_event_kind_t fault;
 } icd_stream_decoder_t;
 
 /**
@@ -1102,7 +1080,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
  * stream is divided into pieces.
  */
 ICDGEN_API void icd_stream_feed(
-    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context);
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
@@ -1223,7 +1201,7 @@ ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event
 
 /**
  * Pass one received packet to the joiner. `now` is in milliseconds.
- * Events: ICD_EVENT_MESSAGE (`data` without the id), INCOMPLETE, MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
+ * Events: ICD_EVENT_MESSAGE (`data` without the id), INCOMPLETE, MALFORMED, DUPLICATE, NO_SLOT and UNKNOWN_TYPE.
  */
 ICDGEN_API void icd_can_feed(
     icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
@@ -1394,107 +1372,190 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
 
 /* ---- client ------------------------------------------------------------------------------------------------------ */
 
-typedef enum {
-    ICD_CLIENT_IDLE,
-    ICD_CLIENT_HOLD,  /* waits while a late response could be taken for its own */
-    ICD_CLIENT_WAIT,  /* waits for the response */
-    ICD_CLIENT_PAUSE, /* I2C: waits before the next poll or the next attempt */
-    ICD_CLIENT_POLL   /* I2C: waits for the acknowledge frame */
-} icd_client_state_t;
-
 /**
- * A request. `repeat`: whether the client may send it again if the node may already have received it. Telemetry and
- * settings are always repeated.
+ * A request. `repeat`: whether the client may send it again after a time-out, although the node may have received it.
+ * Telemetry requests are always repeated, and so are settings and the telecommands that the ICD marks.
  */
 typedef struct {
     icd_direction_t direction;
     uint32_t id;
     bool repeat;
+    bool has_reply; /**< Framed links: whether `reply` is the id of the reply. If not, the ICD decides. */
+    uint32_t reply;
     const uint8_t *data;
     size_t length;
 } icd_request_t;
 
-/* Responses that may still arrive although their request has ended. */
+typedef enum {
+    ICD_SLOT_QUEUED, /* is to be sent, or its outcome is to be polled */
+    ICD_SLOT_SENT,   /* was sent, and nothing responds to it */
+    ICD_SLOT_WAIT,   /* waits for a response, or on I2C for the result of a transaction */
+    ICD_SLOT_PAUSE   /* the device was busy; on I2C until the next attempt or poll */
+} icd_slot_state_t;
+
+#define ICDGEN_NEEDED_VERDICTS 2u /* ICD_VERDICT_ACK and ICD_VERDICT_REPLY: without these a request is not done */
+
+/* The responses that may arrive for a request that was sent. */
 typedef struct {
+    const icd_exchange_t *exchange;
+    uint32_t reply;                        /* id of the telemetry that the caller specified, or that is requested */
+    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
+    uint32_t latest;                       /* time until which a response is not late */
+    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
+    bool has_reply;                        /* whether `reply` is given; otherwise as in the ICD */
+    bool is_nameless;                      /* the reply comes in a packet without its id */
+    bool is_in_order;                      /* I2C: the reply comes with its request, and never late */
+} icd_awaited_t;
+
+/** Memory for a request. */
+typedef struct {
+    icd_awaited_t awaited;
+    uint32_t id;      /* with which the request was started */
+    uint32_t sent_id; /* of the telecommand that is sent, or of the telemetry that is requested by its id */
+    uint8_t *data;    /* on UART, I2C and CAN with id and checksum */
+    size_t length;
+    uint32_t sent_at;  /* time of the last transmission */
+    uint32_t until;    /* time at which the state ends */
+    uint32_t poll_end; /* I2C: time at which polling ends */
+    uint16_t attempts;
+    uint16_t transaction; /* I2C: number of the transaction whose result is awaited; 0: none */
+    uint8_t missing;      /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
+    bool repeat;
+    bool asks_by_id; /* telemetry is requested by its id, not by a telecommand */
+    bool is_polled;  /* I2C: the telecommand is written, and its outcome is polled */
     icd_direction_t direction;
-    uint8_t id;
-    uint32_t responses;
-    uint32_t until;
-} icd_late_t;
+    icd_slot_state_t state;
+} icd_slot_t;
+
+/** Line of a framed link. `sender.values` are the header and trailer values. */
+typedef struct {
+    icd_stream_sender_t sender;
+    icd_stream_decoder_t decoder;
+} icd_stream_line_t;
+
+/** Line of a UART with escape characters. */
+typedef struct {
+    icd_uart_encoder_t encoder;
+    icd_uart_decoder_t decoder;
+} icd_uart_line_t;
+
+/** Line of a CAN bus. */
+typedef struct {
+    icd_can_splitter_t splitter;
+    icd_can_joiner_t joiner;
+    icd_can_slot_t slot;
+    uint8_t address;
+} icd_can_line_t;
 
 /* I2C: a transaction whose result is not yet reported. */
 typedef struct {
+    uint16_t number;
     uint8_t id;
     bool reads; /* telemetry of this id */
 } icd_transaction_t;
 
-typedef struct icd_client icd_client_t;
-
-/** A client: sends one request at a time and reports its outcome. Members without a description are internal. */
-struct icd_client {
-    const icd_link_t *link;
-    icd_client_settings_t settings; /**< Timeouts and retries. May be changed while no request is in progress. */
-    icd_bus_t bus;
-    bool ready;                               /* initialized without an error */
-    bool (*fits)(const icd_client_t *client); /* CAN: whether the request fits into packets */
-    void (*expire)(
-        icd_client_t *client,
-        uint32_t now,
-        icd_event_fn *on_event,
-        void *context); /* CAN: discards incomplete messages */
-    icd_client_state_t state;
-    bool checks_telecommands;
-    bool checks_telemetry;
-    bool sent_whole; /* I2C: the telecommand is sent; its acknowledge is polled */
-    bool repeat;
-    icd_direction_t direction;
-    const icd_message_t *message; /* message of the request */
-    uint8_t *whole;               /* request with id and checksum */
-    size_t whole_length;
-    uint32_t attempts;
-    uint32_t until;   /* time at which the state ends */
-    uint32_t give_up; /* time at which polling ends */
-    uint32_t latest;  /* time until which a response is not late */
-    uint32_t awaited; /* number of responses that may still arrive */
-    uint8_t late_count;
-    icd_late_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
-    uint8_t address;
+/** Line of an I2C bus. */
+typedef struct {
+    uint16_t last; /* number of the last transaction */
     uint8_t poll_id;
-    bool poll;        /* to be sent: the request for the acknowledge frame */
-    uint32_t pending; /* to be sent: the request, this many times */
     uint8_t taken_count;
-    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* I2C: transactions, the oldest first */
-    icd_uart_encoder_t encoder;
-    icd_can_splitter_t splitter;
-    uint8_t chunk[32];
-    icd_uart_decoder_t decoder;
-    icd_can_joiner_t joiner;
-    icd_can_slot_t slot;
-};
+    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* transactions without a result, the oldest first */
+} icd_i2c_line_t;
 
-/** Return the buffer size of a client in bytes. NODE_CLIENT_BYTES is the constant of a node. */
-ICDGEN_API size_t icd_client_bytes(const icd_link_t *link);
+typedef struct icd_line icd_line_t; /* functions of the line */
 
 /**
- * Initialize a client on the UART with the timeouts of the ICD. The buffer must stay valid and the client must not be
- * moved or copied while it is in use. NODE_client_uart(), NODE_client_i2c() and NODE_client_can() initialize a client
- * that accepts only the messages of the node at compile time.
+ * A client on any link: sends requests, reports their outcomes and unsolicited telemetry. Members without a description
+ * are internal.
+ *
+ * Requests are sent in the order in which they were started. A request waits while as many are in progress as the
+ * device handles, or while a response to another request could be taken for a response to it.
+ */
+typedef struct {
+    icd_client_settings_t settings; /**< Times and retries. May be changed while no request is in progress. */
+    const icd_link_t *link;
+    const icd_line_t *line; /* NULL unless initialized without an error */
+    icd_stream_line_t *stream;
+    icd_uart_line_t *uart;
+    icd_can_line_t *can;
+    icd_i2c_line_t *i2c;
+    icd_slot_t *slots; /* the requests, in the order in which they were started, then free memory */
+    size_t slot_count;
+    size_t started;         /* number of requests */
+    const uint8_t *partial; /* data of the request whose output is only partly taken; otherwise NULL */
+    uint32_t now;           /* time of the last call */
+    uint32_t sent_at;       /* time of the last transmission */
+    bool in_gap;            /* less than the gap has passed since */
+    bool checks_telecommands;
+    bool checks_telemetry;
+    uint8_t late_count;
+    icd_awaited_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
+} icd_client_t;
+
+/**
+ * Return the buffer size in bytes of a client for this number of requests. NODE_CLIENT_BYTES is the size for one
+ * request; each further request takes NODE_REQUEST_BYTES.
+ */
+ICDGEN_API size_t icd_client_bytes(const icd_link_t *link, size_t requests);
+
+/**
+ * Initialize a client on a UART with the settings of the ICD. `line` is its state. `slot_count` is the number of
+ * requests that can be in progress or waiting at the same time. `line`, `slots` and `buffer` must stay valid while the
+ * client is in use. NODE_client_uart(), NODE_client_i2c() and NODE_client_can() initialize a client that accepts only
+ * the messages of the node at compile time.
  * Return ICD_ERROR_UNSUPPORTED if the node is not on this bus, ICD_ERROR_LENGTH if `size` is less than
  * icd_client_bytes(). After an error the client rejects all requests.
  */
-ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
+ICDGEN_API icd_status_t icd_client_uart(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_uart_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size);
 
 /** Initialize a client on I2C. See icd_client_uart(). */
-ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
+ICDGEN_API icd_status_t icd_client_i2c(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_i2c_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size);
 
 /**
  * Initialize a client on CAN. `address` is the CAN address of the client, to which the node replies. See
  * icd_client_uart().
  */
-ICDGEN_API icd_status_t
-icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size);
+ICDGEN_API icd_status_t icd_client_can(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_can_line_t *line,
+    uint8_t address,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size);
 
-/** Enable optional checksums. Checksums that the ICD requires on the bus are always used. */
+/**
+ * Initialize a client on a framed link with the settings and values of the ICD. `sequences` has twice NODE_SEQUENCES
+ * elements; with fewer elements, some messages are not counted. For the other parameters and errors see
+ * icd_client_uart().
+ */
+ICDGEN_API icd_status_t icd_client_stream(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_stream_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size,
+    uint32_t *sequences,
+    size_t sequence_count);
+
+/** UART, I2C and CAN: enable optional checksums. Checksums that the ICD requires on the bus are always used. */
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 
 /**
@@ -1504,250 +1565,90 @@ ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline);
 
 /**
- * Start a request. The data are copied. `now` is in milliseconds. A telecommand without acknowledge is reported at once
- * as ICD_EVENT_SENT; `on_event` may be NULL to ignore this.
- * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request is in progress or its
- * output has not been taken completely, ICD_ERROR_LENGTH if the data have the wrong length, or ICD_ERROR_UNSUPPORTED if
- * the client is not initialized. After an error the client is unchanged.
+ * Start a request, which the next output contains. The data are copied. `now` is in milliseconds.
+ * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if no slot is free or the output of the
+ * request that was in the slot is only partly taken, ICD_ERROR_LENGTH if the data have the wrong length,
+ * ICD_ERROR_RANGE if a header or trailer value does not fit into its field, or ICD_ERROR_UNSUPPORTED if nothing
+ * requests this telemetry without parameters, a reply is given on UART, I2C or CAN, or the client is not initialized.
+ * After an error the client is unchanged.
  */
-ICDGEN_API icd_status_t icd_client_start(
-    icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
+ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, const icd_request_t *request);
 
 /**
- * Cancel the request without an event, and drop its remaining output. Another request may then be started; it waits if
- * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_LATE.
+ * Request telemetry; on a framed link by the telecommand that it replies to, or by a packet with its id.
+ * NODE_request_MESSAGE() is the typed version. Errors: see icd_client_start().
  */
-ICDGEN_API void icd_client_cancel(icd_client_t *client);
+ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint32_t id);
 
 /**
- * Request telemetry by id. `now` is in milliseconds. NODE_request_MESSAGE() is the typed version. Errors: see
+ * Send a telecommand. The ICD decides which responses it has. NODE_send_MESSAGE() is the typed version. Errors: see
  * icd_client_start().
  */
-ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id);
+ICDGEN_API icd_status_t
+icd_client_send(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat);
 
 /**
- * Send a telecommand by id. NODE_send_MESSAGE() is the typed version. For parameters, events and errors see
- * icd_client_start() and icd_request_t.
+ * Framed links: send a telecommand and wait for telemetry `reply`, whichever reply the ICD specifies. Errors: see
+ * icd_client_start().
  */
-ICDGEN_API icd_status_t icd_client_send(
-    icd_client_t *client,
-    uint32_t now,
-    uint8_t id,
-    const uint8_t *data,
-    size_t length,
-    bool repeat,
-    icd_event_fn *on_event,
-    void *context);
+ICDGEN_API icd_status_t
+icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply);
 
 /**
- * Return whether the event is the reply to a request for telemetry `id` of `node`, or of a node that includes `node`.
+ * UART and framed links: write the next bytes to send into the buffer. Its time-outs count from the `now` of the
+ * previous call of another function. Return false if there are none; on framed links also if the buffer is too small,
+ * where NODE_LINE_BYTES are always enough. Call it until it returns false, after each call of another function.
  */
-ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id);
+ICDGEN_API bool icd_client_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
 
-/**
- * UART: get the next bytes to send. `*bytes` is valid until the next call. Return false if there is nothing to send.
- */
-ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count);
-
-/** CAN: get the next packet to send. Return false if there is nothing to send. */
+/** CAN: get the next packet to send. Return false if there is none. See icd_client_output(). */
 ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet);
 
 /**
- * I2C: get the next transaction: write `*count` bytes from `*bytes`, then read `*read` bytes (0: write only). Return
- * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order. There is
- * none while the results of eight transactions are missing.
+ * I2C: get the next transaction: write `*count` bytes from `*bytes`, then read `*read` bytes (0: write only). The bytes
+ * are valid until the next call of another function. Return false if there is none. Call icd_client_transferred()
+ * exactly once for each transaction, in the same order. There is none while the results of eight transactions are
+ * missing.
  */
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read);
 
 /**
- * Process timeouts: send again or end the request whose time is up. Call at the time of the deadline function at the
- * latest; calling more often is harmless. `now` is the current time in milliseconds.
- */
-ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
-
-/**
- * UART: pass received bytes to the client, in pieces of any size. Reports the resulting events to `on_event` before it
- * returns.
+ * UART and framed links: pass received bytes to the client: a piece of the stream of any size, or one packet. `now` is
+ * in milliseconds. Reports the resulting events to `on_event` before it returns. The callback may start and cancel
+ * requests.
  */
 ICDGEN_API void icd_client_received(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
-/** CAN: pass a received packet to the client. Reports the resulting events to `on_event` before it returns. */
+/** CAN: pass a received packet to the client. See icd_client_received(). */
 ICDGEN_API void icd_client_packet(
     icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
 
 /**
  * I2C: pass the result of the oldest unfinished transaction to the client: the `count` bytes that were read, or NULL if
  * the transaction failed. After a successful write without read, pass any pointer except NULL. If the time-out of the
- * transaction has passed or its request has ended, the result is reported as ICD_EVENT_LATE.
+ * transaction has passed or its request has ended, the result is reported as ICD_EVENT_LATE. See icd_client_received().
  */
 ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
-
-/* ---- client for messages with header and trailer ----------------------------------------------------------------- */
-
-/**
- * A request. `repeat`: whether the client may send it again after a time-out, although the node may have received it.
- * Telemetry requests are always repeated, and so are telecommands that the ICD marks.
- */
-typedef struct {
-    icd_direction_t direction;
-    uint32_t id;
-    bool repeat;
-    bool has_reply; /**< Whether `reply` is the id of the reply to a telecommand. If not, the ICD decides. */
-    uint32_t reply;
-    const uint8_t *data;
-    size_t length;
-} icd_stream_request_t;
-
-typedef enum {
-    ICD_STREAM_SLOT_QUEUED, /* is to be sent */
-    ICD_STREAM_SLOT_SENT,   /* was sent, and nothing responds to it */
-    ICD_STREAM_SLOT_WAIT,   /* waits for a response */
-    ICD_STREAM_SLOT_PAUSE   /* the device was busy */
-} icd_stream_slot_state_t;
-
-#define ICDGEN_NEEDED_VERDICTS 2u /* ICD_VERDICT_ACK and ICD_VERDICT_REPLY: without these a request is not done */
-
-/* The responses that may arrive for a request that was sent. */
-typedef struct {
-    const icd_exchange_t *exchange;
-    const icd_stream_row_t *reply;         /* specified by the caller, or requested; NULL: as in the ICD */
-    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
-    uint32_t latest;                       /* time until which a response is not late */
-    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
-} icd_stream_awaited_t;
-
-/** Memory for a request. */
-typedef struct {
-    icd_stream_awaited_t awaited;
-    const icd_stream_row_t *row; /* the telecommand, or telemetry that a packet requests */
-    uint8_t *data;
-    size_t length;
-    uint32_t sent_at; /* time of the last transmission */
-    uint32_t until;   /* time at which the state ends */
-    uint16_t attempts;
-    uint8_t missing; /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
-    bool repeat;
-    icd_direction_t direction;
-    icd_stream_slot_state_t state;
-} icd_stream_slot_t;
-
-/**
- * A client for messages with framing. Also reports unsolicited telemetry. Members without a description are internal.
- *
- * Requests are sent in the order in which they were started. A request waits while as many are in progress as the
- * device handles, or while a response to another request could be taken for a response to it.
- */
-typedef struct {
-    icd_client_settings_t
-        settings; /**< Times and retries. They and `sender.values` may be changed while no request is in progress. */
-    icd_stream_sender_t sender;
-    icd_stream_decoder_t decoder;
-    icd_stream_slot_t *slots; /* the requests, in the order in which they were started, then free memory */
-    size_t slot_count;
-    size_t started;   /* number of requests */
-    uint32_t now;     /* time of the last call */
-    uint32_t sent_at; /* time of the last transmission */
-    bool in_gap;      /* less than the gap has passed since */
-    bool ready;       /* initialized without an error */
-    uint8_t late_count;
-    icd_stream_awaited_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
-} icd_stream_client_t;
-
-/**
- * Return the buffer size in bytes for this number of requests: NODE_LONGEST, plus NODE_REQUEST_BYTES for each request.
- */
-ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t requests);
-
-/**
- * Initialize a client with the settings and values of the ICD. `slot_count` is the number of requests that can be
- * in progress or waiting at the same time. `sequences` has twice NODE_SEQUENCES elements; with fewer elements, some
- * messages are not counted. All three arrays must stay valid while the client is in use.
- * Return ICD_ERROR_UNSUPPORTED if the ICD describes no framing, ICD_ERROR_LENGTH if `size` is less than
- * icd_stream_client_bytes(). After an error the client rejects all requests.
- */
-ICDGEN_API icd_status_t icd_stream_client_init(
-    icd_stream_client_t *client,
-    const icd_link_t *link,
-    icd_stream_slot_t *slots,
-    size_t slot_count,
-    uint8_t *buffer,
-    size_t size,
-    uint32_t *sequences,
-    size_t sequence_count);
-
-/**
- * Get the time in milliseconds at which icd_stream_client_tick() must be called at the latest. Return false if no
- * request is in progress.
- */
-ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline);
-
-/**
- * Start a request, which icd_stream_client_output() sends. The data are copied. `now` is in milliseconds.
- * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if no slot is free, ICD_ERROR_LENGTH if
- * the data have the wrong length, ICD_ERROR_RANGE if a header or trailer value does not fit into its field, or
- * ICD_ERROR_UNSUPPORTED if nothing requests this telemetry without parameters or the client is not initialized.
- * After an error the client is unchanged.
- */
-ICDGEN_API icd_status_t
-icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request);
-
-/**
- * Request telemetry by the telecommand that it replies to, or by a packet with its id. Errors: see
- * icd_stream_client_start().
- */
-ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id);
-
-/** Send a telecommand. The ICD decides which responses it has. Errors: see icd_stream_client_start(). */
-ICDGEN_API icd_status_t icd_stream_client_send(
-    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat);
-
-/**
- * Send a telecommand and wait for telemetry `reply`, whichever reply the ICD specifies. Errors: see
- * icd_stream_client_start().
- */
-ICDGEN_API icd_status_t icd_stream_client_ask(
-    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply);
-
-/**
- * Write the next message to send into the buffer. Its time-outs count from the `now` of the previous call of another
- * function. Return false if there is none or the buffer is too small; NODE_LINE_BYTES are always enough. Call it until
- * it returns false, after each call of another function.
- */
-ICDGEN_API bool icd_stream_client_output(
-    icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
-
-/**
- * Pass received bytes to the client: a piece of the stream of any size, or one packet. Unsolicited telemetry is
- * reported as ICD_STREAM_MESSAGE. `now` is in milliseconds. The callback may start and cancel requests.
- */
-ICDGEN_API void icd_stream_client_received(
-    icd_stream_client_t *client,
-    uint32_t now,
-    const uint8_t *bytes,
-    size_t count,
-    icd_stream_event_fn *on_event,
-    void *context);
 
 /**
  * Process time-outs: send again or end the requests whose time is up. Call at the time of the deadline function at the
  * latest; calling more often is harmless. `now` is the current time in milliseconds.
  */
-ICDGEN_API void icd_stream_client_tick(
-    icd_stream_client_t *client, uint32_t now, icd_stream_event_fn *on_event, void *context);
+ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
-/** Cancel all requests without events, and drop their remaining output. A response is reported as ICD_STREAM_LATE. */
-ICDGEN_API void icd_stream_client_cancel(icd_stream_client_t *client);
+/** Cancel all requests without events, and drop their remaining output. A response is reported as ICD_EVENT_LATE. */
+ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
 /** Cancel only the requests of this message. */
-ICDGEN_API void icd_stream_client_cancel_request(icd_stream_client_t *client, icd_direction_t direction, uint32_t id);
+ICDGEN_API void icd_client_cancel_request(icd_client_t *client, icd_direction_t direction, uint32_t id);
 
 /**
  * Return whether the event contains telemetry `id` of `node`, or of a node that includes `node`, unsolicited or as a
  * response.
  */
-ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *node, uint32_t id);
+ICDGEN_API bool icd_is_telemetry(const icd_event_t *event, const char *node, uint32_t id);
 
 /** Size in bytes of the longest message in a procedure of any node. */
 #define ICD_STEP_BYTES 22u
@@ -1856,9 +1757,6 @@ ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd
 /** Pass an event of the client to the procedure. Unrelated events are ignored. */
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event);
 
-/** Pass an event of the client of a framed link to the procedure. Unrelated events are ignored. */
-ICDGEN_API void icd_procedure_stream_event(icd_procedure_t *procedure, uint32_t now, const icd_stream_event_t *event);
-
 /**
  * Get the time in milliseconds at which icd_procedure_next() must be called again. Return false if the procedure is not
  * waiting for a time: before the first call and after an outcome (call icd_procedure_next() at once), while a request
@@ -1870,18 +1768,10 @@ ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_
 ICDGEN_API uint32_t icd_procedure_progress(const icd_procedure_t *procedure, uint32_t *total);
 
 /**
- * Start the next request of the procedure if there is one and the client is idle. `on_event` is the callback that is
- * also passed to the client; it must pass each event to icd_procedure_event().
- */
-ICDGEN_API icd_status_t icd_procedure_step(
-    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
-
-/**
  * Start the next request of the procedure if there is one and the client has a free slot. The callback of the client
- * must pass each event to icd_procedure_stream_event().
+ * must pass each event to icd_procedure_event().
  */
-ICDGEN_API icd_status_t
-icd_procedure_stream_step(icd_procedure_t *procedure, icd_stream_client_t *client, uint32_t now);
+ICDGEN_API icd_status_t icd_procedure_step(icd_procedure_t *procedure, icd_client_t *client, uint32_t now);
 
 #ifndef ICDGEN_SHARED
 #include "icdgen_wire.c"

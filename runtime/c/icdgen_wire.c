@@ -40,9 +40,15 @@
 
 #include "wire/client.c"
 
-#include "wire/client_input.c"
+#include "wire/stream_line.c"
 
-#include "wire/stream_client.c"
+#include "wire/bus_line.c"
+
+#include "wire/uart_line.c"
+
+#include "wire/can_line.c"
+
+#include "wire/i2c_line.c"
 
 #include "wire/procedure.c"
 

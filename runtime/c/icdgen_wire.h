@@ -18,7 +18,7 @@
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
  *                   Largest number of requests whose responses a client awaits or that may still arrive late, 8 unless
- *                   it is defined. Each takes 16 bytes of a client, and 32 bytes of a client of a framed link.
+ *                   it is defined. Each takes 36 bytes of a client.
  * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
  *                   defined and those that the wire layer itself needs.
  */
@@ -56,10 +56,6 @@
 #include "wire/files.h"
 
 #include "wire/client.h"
-
-#include "wire/client_input.h"
-
-#include "wire/stream_client.h"
 
 #include "wire/sizes.h"
 

@@ -8,6 +8,8 @@ typedef struct {
     int port;
     icd_link_t link; /* that of the node, with short waits: the simulator is never slow */
     icd_client_t client;
+    icd_uart_line_t line;
+    icd_slot_t slot;
     icd_procedure_t *procedure; /* that is running, or NULL */
     icd_event_t outcome;        /* of the last request */
     bool ended;
@@ -48,12 +50,12 @@ static inline void session_becomes(session_t *session, const icd_link_t *link)
     session->port = port;
     session->link = *link;
     session->link.client = settings;
-    session->buffer = (uint8_t *)malloc(icd_client_bytes(link));
+    session->buffer = (uint8_t *)malloc(icd_client_bytes(link, 1));
     session->frame = (uint8_t *)malloc(link->longest);
     if (session->buffer == NULL || session->frame == NULL) {
         port_failed("no memory");
     }
-    icd_client_uart(&session->client, &session->link, session->buffer, icd_client_bytes(link));
+    icd_client_uart(&session->client, &session->link, &session->line, &session->slot, 1, session->buffer, icd_client_bytes(link, 1));
 }
 
 static inline void session_open(session_t *session, const icd_link_t *link, const char *host, const char *number)
@@ -87,7 +89,7 @@ static inline const icd_event_t *session_ask(session_t *session, const icd_reque
 {
     session->ended = false;
     session->outcome.kind = ICD_EVENT_TIMEOUT;
-    if (icd_client_start(&session->client, port_now(), request, session_on_event, session) == ICD_OK) {
+    if (icd_client_start(&session->client, port_now(), request) == ICD_OK) {
         port_send(session->port, &session->client);
         while (!session->ended) {
             session_wait(session);
@@ -109,7 +111,7 @@ static inline const icd_event_t *session_get(session_t *session, uint8_t id)
 static inline const icd_event_t *session_send(session_t *session, uint8_t id, const uint8_t *data, size_t length)
 {
     const icd_event_t *outcome;
-    icd_request_t request = {ICD_TELECOMMAND, id, true, data, length};
+    icd_request_t request = {ICD_TELECOMMAND, id, true, false, 0, data, length};
     uint32_t left = session->link.client.retries;
     do {
         outcome = session_ask(session, &request);
@@ -147,12 +149,11 @@ static inline icd_result_t session_run(session_t *session, icd_procedure_t *proc
     session->procedure = procedure;
     while (procedure->result == ICD_RUNNING) {
         uint32_t later;
-        if (icd_procedure_step(procedure, &session->client, port_now(), session_on_event, session) != ICD_OK) {
+        if (icd_procedure_step(procedure, &session->client, port_now()) != ICD_OK) {
             break;
         }
         port_send(session->port, &session->client);
-        /* A request that nothing acknowledges is done already: the next one may follow at once. */
-        if (session->client.state != ICD_CLIENT_IDLE || icd_procedure_deadline(procedure, &later)) {
+        if (session->client.started != 0 || icd_procedure_deadline(procedure, &later)) {
             session_wait(session);
         }
     }

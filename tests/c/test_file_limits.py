@@ -48,6 +48,8 @@ static uint32_t done(uint8_t *data, size_t length)
     icd_request_t request;
     icd_event_t event = {ICD_EVENT_DONE};
     assert(icd_procedure_next(&procedure, 0, &request));
+    event.direction = request.direction;
+    event.id = request.id;
     event.data = data;
     event.length = length;
     icd_procedure_event(&procedure, 0, &event);

@@ -54,7 +54,7 @@ static void uart_write(const uint8_t *bytes, size_t count)
     on_wire += count;
 }
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     receiver_navigation_clock_t clock;
     (void)context;
@@ -75,7 +75,7 @@ int main(void)
         receiver_link(), ICD_TELEMETRY, RECEIVER_NAVIGATION_CLOCK_ID, data, sizeof data, NULL, input, sizeof input, &n) == ICD_OK);
     %s
     assert(on_wire == sizeof asked + RECEIVER_SET_MESSAGE_RATE_LENGTH + 8u && memcmp(wire, asked, sizeof asked) == 0);
-    assert(clocks == 1u && !icd_stream_client_deadline(&receiver.client, &clocks));
+    assert(clocks == 1u && !icd_client_deadline(&receiver.client, &clocks));
     return 0;
 }
 """
@@ -119,8 +119,8 @@ static void responds(uint32_t now, uint32_t id, const char *data, size_t length)
 
 int main(void)
 {
-    static uint8_t buffer[WHEEL_LONGEST + 2u * WHEEL_REQUEST_BYTES];
-    static icd_stream_slot_t slots[2];
+    static uint8_t buffer[WHEEL_CLIENT_BYTES + WHEEL_REQUEST_BYTES];
+    static icd_slot_t slots[2];
     wheel_set_speed_t speed;
     uint32_t deadline = 0;
     assert(wheel_client_init(&wheel, slots, 2, buffer, sizeof buffer) == ICD_OK);
@@ -133,7 +133,7 @@ int main(void)
     assert(wheel_send_save(&wheel, 30) == ICD_OK && wheel_send_set_speed(&wheel, 30, &speed) == ICD_OK);
     step(&wheel, 30, NULL, 0);
     responds(40, WHEEL_BUSY_ID, "\x05", 1);
-    while (icd_stream_client_deadline(&wheel.client, &deadline)) {
+    while (icd_client_deadline(&wheel.client, &deadline)) {
         step(&wheel, deadline, NULL, 0);
         if (deadline == 140) {
             responds(150, WHEEL_ACK_ID, "\x05", 1);
@@ -159,18 +159,18 @@ ARM = r"""
 #include <assert.h>
 
 static arm_client_t arm;
-static icd_stream_slot_t slots[3];
-static uint8_t buffer[ARM_LONGEST + 3u * ARM_REQUEST_BYTES];
+static icd_slot_t slots[3];
+static uint8_t buffer[ARM_CLIENT_BYTES + 2u * ARM_REQUEST_BYTES];
 static char seen[200];
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     arm_position_t position;
     arm_command_result_t result;
     (void)context;
-    strcat(seen, event->kind == ICD_STREAM_REPLY ? "reply" : event->kind == ICD_STREAM_DONE ? "done"
-        : event->kind == ICD_STREAM_REFUSED ? "refused" : event->kind == ICD_STREAM_TIMEOUT ? "timeout"
-        : event->kind == ICD_STREAM_LATE ? "late" : event->kind == ICD_STREAM_STRAY ? "stray" : "?");
+    strcat(seen, event->kind == ICD_EVENT_REPLY ? "reply" : event->kind == ICD_EVENT_DONE ? "done"
+        : event->kind == ICD_EVENT_REFUSED ? "refused" : event->kind == ICD_EVENT_TIMEOUT ? "timeout"
+        : event->kind == ICD_EVENT_LATE ? "late" : event->kind == ICD_EVENT_STRAY ? "stray" : "?");
     if (arm_receive_position(&position, event) == ICD_OK) {
         strcat(seen, position.angle == 0x0302 ? " position" : "?");
     }
@@ -178,14 +178,14 @@ static void on_event(void *context, const icd_stream_event_t *event)
         strcat(seen, result.number == event->data[3] ? " result" : "?");
     }
     if (event->has_code) {
-        assert(event->kind == ICD_STREAM_REFUSED && event->code == ARM_DETAIL_BLOCKED);
+        assert(event->kind == ICD_EVENT_REFUSED && event->code == ARM_DETAIL_BLOCKED);
         strcat(seen, " blocked");
     }
     strcat(seen, "; ");
-    if (event->kind == ICD_STREAM_REFUSED) { /* a callback may cancel and start requests */
+    if (event->kind == ICD_EVENT_REFUSED) { /* a callback may cancel and start requests */
         arm_move_joint_t move;
         arm_move_joint_init(&move);
-        icd_stream_client_cancel(&arm.client);
+        icd_client_cancel(&arm.client);
         assert(arm_send_move_joint(&arm, 70, &move) == ICD_OK);
     }
 }
@@ -194,7 +194,7 @@ static bool is_sent(uint32_t id)
 {
     uint8_t line[ARM_LINE_BYTES];
     size_t count = 0;
-    const bool is_output = icd_stream_client_output(&arm.client, line, sizeof line, &count);
+    const bool is_output = icd_client_output(&arm.client, line, sizeof line, &count);
     return is_output && (((uint32_t)line[1] << 8) | line[2]) == id;
 }
 
@@ -208,7 +208,7 @@ static void responds(uint32_t now, uint32_t id, uint8_t first, uint8_t second, u
     size_t count = 0;
     values.of[ICD_ENVELOPE_SEQUENCE] = sequence++;
     assert(icd_stream_encode(arm_link(), ICD_TELEMETRY, id, data, length, &values, line, sizeof line, &count) == ICD_OK);
-    icd_stream_client_received(&arm.client, now, line, count, on_event, NULL);
+    icd_client_received(&arm.client, now, line, count, on_event, NULL);
 }
 
 int main(void)
@@ -234,13 +234,13 @@ int main(void)
     assert(arm_send_move_joint(&arm, 45, &move) == ICD_OK && is_sent(ARM_MOVE_JOINT_ID));
     responds(60, ARM_COMMAND_RESULT_ID, 0xC3, 0x2B, 2, 5); /* failed, 700 */
     assert(strcmp(seen, "refused result blocked; ") == 0);
-    assert(icd_stream_client_deadline(&arm.client, &deadline) && !is_sent(ARM_MOVE_JOINT_ID)); /* it may be late */
+    assert(icd_client_deadline(&arm.client, &deadline) && !is_sent(ARM_MOVE_JOINT_ID)); /* it may be late */
     responds(80, ARM_COMMAND_RESULT_ID, 0, 0, 2, 1);
     assert(strcmp(seen, "refused result blocked; late result; ") == 0 && is_sent(ARM_MOVE_JOINT_ID));
 
     seen[0] = '\0';
-    while (icd_stream_client_deadline(&arm.client, &deadline)) {
-        icd_stream_client_tick(&arm.client, deadline, on_event, NULL);
+    while (icd_client_deadline(&arm.client, &deadline)) {
+        icd_client_tick(&arm.client, deadline, on_event, NULL);
     }
     assert(strcmp(seen, "timeout; ") == 0);
     assert(arm_send_move_joint(&arm, long_after, &move) == ICD_OK && is_sent(ARM_MOVE_JOINT_ID));
@@ -289,16 +289,16 @@ SHARED = r"""
 typedef struct {
     icd_status_t shorter, first, another;
     uint32_t level;
-    icd_stream_kind_t kind;
+    icd_event_kind_t kind;
 } seen_t;
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     seen_t *const seen = (seen_t *)context;
     datagram_short_level_t shorter = {0};
     datagram_level_of_the_first_t first = {0};
     datagram_level_of_another_t another = {0};
-    icd_stream_event_t elsewhere = *event;
+    icd_event_t elsewhere = *event;
     elsewhere.link = NULL;
     seen->kind = event->kind;
     seen->shorter = datagram_receive_short_level(&shorter, event);
@@ -312,19 +312,19 @@ static seen_t comes(datagram_client_t *client, const uint8_t *data, size_t lengt
 {
     uint8_t line[DATAGRAM_LINE_BYTES];
     size_t count = 0;
-    seen_t seen = {ICD_OK, ICD_OK, ICD_OK, 0u, ICD_STREAM_GAP};
+    seen_t seen = {ICD_OK, ICD_OK, ICD_OK, 0u, ICD_EVENT_GAP};
     assert(icd_stream_encode(
         datagram_link(), ICD_TELEMETRY, DATAGRAM_SHORT_LEVEL_ID, data, length, NULL, line, sizeof line, &count) == ICD_OK);
-    icd_stream_client_received(&client->client, 1, line, count, on_event, &seen);
+    icd_client_received(&client->client, 1, line, count, on_event, &seen);
     return seen;
 }
 
 int main(void)
 {
     static datagram_client_t client;
-    static uint8_t buffer[DATAGRAM_LONGEST + 2u * DATAGRAM_REQUEST_BYTES], line[DATAGRAM_LINE_BYTES];
+    static uint8_t buffer[DATAGRAM_CLIENT_BYTES + DATAGRAM_REQUEST_BYTES], line[DATAGRAM_LINE_BYTES];
     static const uint8_t first[] = {1, 2, 3}, another[] = {2, 2, 3};
-    icd_stream_slot_t slots[2];
+    icd_slot_t slots[2];
     datagram_order_t order;
     datagram_points_t points;
     size_t count = 0;
@@ -340,15 +340,15 @@ int main(void)
     assert(datagram_ask_points(&client, 0, &points, DATAGRAM_ORDER_ID) == ICD_ERROR_UNKNOWN_ID);
     assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEAST_ID) == ICD_OK);
     assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEAST_ID) == ICD_ERROR_BUSY);
-    assert(icd_stream_client_output(&client.client, line, sizeof line, &count));
-    assert(icd_stream_client_output(&client.client, line, sizeof line, &count));
+    assert(icd_client_output(&client.client, line, sizeof line, &count));
+    assert(icd_client_output(&client.client, line, sizeof line, &count));
     assert(count == 10u + 5u + 6u); /* two points are five bytes, around them header and trailer */
 
     seen_t seen = comes(&client, first, sizeof first);
-    assert(seen.kind == ICD_STREAM_DONE && seen.first == ICD_OK && seen.level == 0x203u);
+    assert(seen.kind == ICD_EVENT_DONE && seen.first == ICD_OK && seen.level == 0x203u);
     assert(seen.shorter == ICD_ERROR_UNKNOWN_ID && seen.another == ICD_ERROR_UNKNOWN_ID);
     seen = comes(&client, another, sizeof another);
-    assert(seen.kind == ICD_STREAM_MESSAGE && seen.another == ICD_OK);
+    assert(seen.kind == ICD_EVENT_ARRIVED && seen.another == ICD_OK);
     assert(seen.shorter == ICD_ERROR_UNKNOWN_ID && seen.first == ICD_ERROR_UNKNOWN_ID);
     seen = comes(&client, first, 1);
     assert(seen.shorter == ICD_OK && seen.another == ICD_ERROR_UNKNOWN_ID && seen.first == ICD_ERROR_UNKNOWN_ID);
@@ -410,14 +410,13 @@ BATTERY = r"""
 
 static jbd_client_t battery;
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
-    static const char *const names[] = {"message", "gap", "checksum", "length", "unknown id", "overrun", "framing",
-        "done", "timeout", "sent", "refused", "busy", "progress", "reply", "late", "stray"};
     jbd_basic_information_t information;
     jbd_status_t status = 0;
     (void)context;
-    printf("%s %x", names[event->kind], (unsigned)event->id);
+    printf("%s %x", event->kind == ICD_EVENT_DONE ? "done" : event->kind == ICD_EVENT_REFUSED ? "refused"
+        : event->kind == ICD_EVENT_STRAY ? "stray" : "?", (unsigned)event->id);
     if (jbd_receive_basic_information(&information, event) == ICD_OK) {
         printf(": %u mV, %u sensors", 10u * information.total_voltage, (unsigned)information.sensors);
     }
@@ -431,7 +430,7 @@ static void sends(void)
 {
     uint8_t line[JBD_LINE_BYTES];
     size_t count = 0;
-    while (icd_stream_client_output(&battery.client, line, sizeof line, &count)) {
+    while (icd_client_output(&battery.client, line, sizeof line, &count)) {
         printf("> ");
         for (size_t i = 0; i < count; ++i) {
             printf("%02x", (unsigned)line[i]);
@@ -444,15 +443,15 @@ static void responds(uint32_t now, const char *bytes, size_t count)
 {
     for (size_t i = 0; i < count; ++i) {
         const uint8_t byte = (uint8_t)bytes[i];
-        icd_stream_client_received(&battery.client, now, &byte, 1, on_event, NULL);
+        icd_client_received(&battery.client, now, &byte, 1, on_event, NULL);
     }
     sends();
 }
 
 int main(void)
 {
-    static uint8_t buffer[JBD_LONGEST + 2u * JBD_REQUEST_BYTES];
-    static icd_stream_slot_t slots[2];
+    static uint8_t buffer[JBD_CLIENT_BYTES + JBD_REQUEST_BYTES];
+    static icd_slot_t slots[2];
     static const char information[] =
         "\xDD\x03\x00\x1B\x17\x00\x00\x00\x02\xD0\x03\xE8\x00\x00\x20\x78\x00\x00\x00\x00\x00\x00\x10\x48\x03\x0F\x02"
         "\x0B\x76\x0B\x82\xFB\xFF\x77";

@@ -40,14 +40,14 @@ static void answer_checksum(uint32_t id, const uint8_t *bytes, size_t length)
     answer(id, data, sizeof data);
 }
 
-static void on_telecommand(void *context, const icd_stream_event_t *event)
+static void on_telecommand(void *context, const icd_event_t *event)
 {
     const uint8_t response[] = {(uint8_t)event->id, 0}, ready[] = {0};
     loader_write_t message;
     loader_select_block_t selected;
     (void)context;
     count++;
-    if (event->kind != ICD_STREAM_MESSAGE || count % 5u == 0u) {
+    if (event->kind != ICD_EVENT_MESSAGE || count % 5u == 0u) {
         return;
     }
     if (loader_write_decode(&message, event->data, event->length) == ICD_OK) {
@@ -74,16 +74,16 @@ static void on_telecommand(void *context, const icd_stream_event_t *event)
 
 /* ---- the client -------------------------------------------------------------------------------------------------- */
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
-    icd_procedure_stream_event((icd_procedure_t *)context, now, event);
+    icd_procedure_event((icd_procedure_t *)context, now, event);
 }
 
 int main(void)
 {
     static uint8_t image[2500], bitmap[LOADER_UPLOAD_BITMAP_BYTES];
-    static uint8_t buffer[LOADER_LONGEST + LOADER_REQUEST_BYTES], received[LOADER_LONGEST];
-    icd_stream_slot_t slots[1];
+    static uint8_t buffer[LOADER_CLIENT_BYTES], received[LOADER_LONGEST];
+    icd_slot_t slots[1];
     icd_stream_decoder_t device;
     uint32_t until, total = 0;
     for (size_t i = 0; i < sizeof image; ++i) {
@@ -97,17 +97,17 @@ int main(void)
     while (procedure.result == ICD_RUNNING) {
         uint8_t out[LOADER_LINE_BYTES];
         size_t written;
-        assert(icd_procedure_stream_step(&procedure, &client.client, now) == ICD_OK);
-        while (icd_stream_client_output(&client.client, out, sizeof out, &written)) {
+        assert(icd_procedure_step(&procedure, &client.client, now) == ICD_OK);
+        while (icd_client_output(&client.client, out, sizeof out, &written)) {
             icd_stream_feed(&device, out, written, on_telecommand, NULL);
         }
         if (line_length != 0u) {
             const size_t length = line_length;
             line_length = 0;
-            icd_stream_client_received(&client.client, now, line, length, on_event, &procedure);
-        } else if (icd_stream_client_deadline(&client.client, &until) || icd_procedure_deadline(&procedure, &until)) {
+            icd_client_received(&client.client, now, line, length, on_event, &procedure);
+        } else if (icd_client_deadline(&client.client, &until) || icd_procedure_deadline(&procedure, &until)) {
             now = until;
-            icd_stream_client_tick(&client.client, now, on_event, &procedure);
+            icd_client_tick(&client.client, now, on_event, &procedure);
         } else {
             /* the next request is ready */
         }

@@ -39,14 +39,14 @@ OWN = """\
     if (cubeacp_receive_state(&state, event) != ICD_OK || cubeacp_receive_identification(&identity, event) != ICD_OK) {
         return ICD_ERROR_LENGTH;
     }
-    return cubeacp_send_set_adcs_run_mode(acp, 0, &mode, NULL, NULL);"""
+    return cubeacp_send_set_adcs_run_mode(acp, 0, &mode);"""
 OTHERS = {
     "telemetry of another node": "(void)event; return bootloader_request_state(acp, 0);",
     "the frame of another node": "(void)acp; bootloader_state_t state; return cubeacp_receive_state(&state, event);",
-    "a telecommand of another node": "(void)event; return bootloader_send_run_selected_program(acp, 0, NULL, NULL);",
+    "a telecommand of another node": "(void)event; return bootloader_send_run_selected_program(acp, 0);",
     "a telecommand that is another message":
         "(void)event; bootloader_set_boot_index_t one; bootloader_set_boot_index_init(&one);"
-        "return cubeacp_send_set_adcs_run_mode(acp, 0, &one, NULL, NULL);",
+        "return cubeacp_send_set_adcs_run_mode(acp, 0, &one);",
     "telemetry that only the other node has": "(void)event; return cubeacp_request_program_information(acp, 0);",
     "a client without a node": "(void)event; return cubeacp_request_state(&acp->client, 0);",
 }  # fmt: skip
@@ -109,6 +109,7 @@ int main(void)
 {
     static cubeacp_client_t acp;
     static bootloader_client_t boot;
+    static icd_slot_t slots[1], other_slots[1];
     static uint8_t buffer[CUBEACP_CLIENT_BYTES], other_buffer[BOOTLOADER_CLIENT_BYTES];
     static const uint8_t frame[] = {0x1F, 0x7F, 0x84, 1, 0, 0, 0, 0, 0, 0x1F, 0xFF};
     static const uint8_t refused[] = {0x1F, 0x7F, 0x0A, 0x03, 0x1F, 0xFF};
@@ -117,34 +118,34 @@ int main(void)
     cubeacp_current_adcs_state_t state;
     bootloader_state_t other;
     common_identification_t identity;
-    const uint8_t *bytes;
+    uint8_t bytes[64];
     size_t count;
     seen_t seen;
     assert(CUBEACP_CURRENT_ADCS_STATE_ID == BOOTLOADER_STATE_ID && CUBEACP_CURRENT_ADCS_STATE_LENGTH == BOOTLOADER_STATE_LENGTH);
 
-    assert(cubeacp_client_uart(&acp, buffer, sizeof buffer) == ICD_OK);
-    assert(cubeacp_request_current_adcs_state(&acp, 0) == ICD_OK && icd_client_output(&acp.client, &bytes, &count));
+    assert(cubeacp_client_uart(&acp, slots, 1, buffer, sizeof buffer) == ICD_OK);
+    assert(cubeacp_request_current_adcs_state(&acp, 0) == ICD_OK && icd_client_output(&acp.client, bytes, sizeof bytes, &count));
     icd_client_received(&acp.client, 1, frame, sizeof frame, on_event, &seen);
     assert(seen.event.kind == ICD_EVENT_DONE && seen.event.direction == ICD_TELEMETRY);
     assert(cubeacp_receive_current_adcs_state(&state, &seen.event) == ICD_OK && state.attitude_estimation_mode == 1u);
     assert(bootloader_receive_state(&other, &seen.event) == ICD_ERROR_UNKNOWN_ID); /* the same id and length */
     assert(cubeacp_receive_identification(&identity, &seen.event) == ICD_ERROR_UNKNOWN_ID);
 
-    assert(bootloader_client_uart(&boot, other_buffer, sizeof other_buffer) == ICD_OK);
-    assert(bootloader_request_state(&boot, 0) == ICD_OK && icd_client_output(&boot.client, &bytes, &count));
+    assert(bootloader_client_uart(&boot, other_slots, 1, other_buffer, sizeof other_buffer) == ICD_OK);
+    assert(bootloader_request_state(&boot, 0) == ICD_OK && icd_client_output(&boot.client, bytes, sizeof bytes, &count));
     icd_client_received(&boot.client, 1, frame, sizeof frame, on_event, &seen);
     assert(bootloader_receive_state(&other, &seen.event) == ICD_OK);
     assert(cubeacp_receive_current_adcs_state(&state, &seen.event) == ICD_ERROR_UNKNOWN_ID);
 
     cubeacp_set_adcs_run_mode_init(&mode);
     mode.enabled = 1;
-    assert(cubeacp_send_set_adcs_run_mode(&acp, 2, &mode, NULL, NULL) == ICD_OK);
-    assert(icd_client_output(&acp.client, &bytes, &count) && count == 6u && bytes[2] == 10u && bytes[3] == 1u);
+    assert(cubeacp_send_set_adcs_run_mode(&acp, 2, &mode) == ICD_OK);
+    assert(icd_client_output(&acp.client, bytes, sizeof bytes, &count) && count == 6u && bytes[2] == 10u && bytes[3] == 1u);
     icd_client_received(&acp.client, 3, refused, sizeof refused, on_event, &seen);
     assert(seen.event.kind == ICD_EVENT_REFUSED && seen.event.direction == ICD_TELECOMMAND && seen.event.id == 10u);
     memset(&power, 0xFF, sizeof power);
-    assert(cubeacp_send_adcs_power_control(&acp, 4, &power, NULL, NULL) == ICD_ERROR_RANGE);
-    assert(!icd_client_output(&acp.client, &bytes, &count));
+    assert(cubeacp_send_adcs_power_control(&acp, 4, &power) == ICD_ERROR_RANGE);
+    assert(!icd_client_output(&acp.client, bytes, sizeof bytes, &count));
     return 0;
 }
 """
@@ -164,12 +165,13 @@ CAN = r"""
 int main(void)
 {
     static cubeacp_client_t acp;
+    static icd_slot_t slots[1];
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
     icd_can_packet_t packet;
     const icd_can_form_t *const can = cubeacp_link()->can;
-    assert(cubeacp_client_can(&acp, 0x42, buffer, sizeof buffer) == ICD_OK);
+    assert(cubeacp_client_can(&acp, 0x42, slots, 1, buffer, sizeof buffer) == ICD_OK);
     assert(cubeacp_request_identification(&acp, 0) == ICD_OK && icd_client_next_packet(&acp.client, &packet));
-    assert(((packet.id >> can->source.shift) & 0xFFu) == 0x42u && acp.client.joiner.address == 0x42);
+    assert(((packet.id >> can->source.shift) & 0xFFu) == 0x42u && acp.can.joiner.address == 0x42);
     return 0;
 }
 """

@@ -20,12 +20,14 @@ int {name}(void)
 {{
     static {node}_client_t client;
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
-    const uint8_t *bytes;
+    static icd_slot_t slots[1];
+    uint8_t bytes[16];
     size_t count;
-    if ({node}_client_uart(&client, buffer, sizeof buffer) != ICD_OK) {{
+    if ({node}_client_uart(&client, slots, 1, buffer, sizeof buffer) != ICD_OK) {{
         return -1;
     }}
-    if ({node}_request_identification(&client, 0) != ICD_OK || !icd_client_output(&client.client, &bytes, &count)) {{
+    if ({node}_request_identification(&client, 0) != ICD_OK || 
+        !icd_client_output(&client.client, bytes, sizeof bytes, &count)) {{
         return -2;
     }}
     return bytes[2];
@@ -138,8 +140,9 @@ int main(void);
 int main(void)
 {{
     static cubeacp_client_t acp;
+    static icd_slot_t slots[1];
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
-    return cubeacp_client_{bus}(&acp, {address}buffer, sizeof buffer) == ICD_OK &&
+    return cubeacp_client_{bus}(&acp, {address}slots, 1, buffer, sizeof buffer) == ICD_OK &&
             cubeacp_request_identification(&acp, 0) == ICD_OK
         ? 0
         : 1;

@@ -36,9 +36,9 @@ static void on_event(void *context, const icd_event_t *event)
     printf("%s %u\n", event->kind == ICD_EVENT_DONE ? names[0]
                        : event->kind == ICD_EVENT_SENT ? names[1]
                        : event->kind == ICD_EVENT_TIMEOUT ? names[2]
-                       : event->kind == ICD_EVENT_LATE ? names[3] : "?", event->id);
+                       : event->kind == ICD_EVENT_LATE ? names[3] : "?", (unsigned)event->id);
     if (event->kind == ICD_EVENT_TIMEOUT && program->resets) {
-        assert(cubeacp_send_reset(&program->client, program->now, &reset, on_event, program) == ICD_OK);
+        assert(cubeacp_send_reset(&program->client, program->now, &reset) == ICD_OK);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
         assert(cubeacp_request_estimated_angular_rates(&program->client, program->now) == ICD_OK);
     }
@@ -57,12 +57,13 @@ static void transfer(program_t *program, uint32_t takes)
 
 int main(void)
 {
+    static icd_slot_t slots[1];
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
     for (int resets = 0; resets < 2; ++resets) {
         static program_t program;
         program.now = 0;
         program.resets = resets != 0;
-        assert(cubeacp_client_i2c(&program.client, buffer, sizeof buffer) == ICD_OK);
+        assert(cubeacp_client_i2c(&program.client, slots, 1, buffer, sizeof buffer) == ICD_OK);
         program.client.client.settings.retries = 0;
         assert(cubeacp_request_estimated_attitude_angles(&program.client, 0) == ICD_OK);
         transfer(&program, 1001); /* the time-out begins the next request, which is not that of these bytes */
@@ -111,25 +112,26 @@ int main(void)
 {
     static cubeacp_client_t acp;
     icd_client_t *const client = &acp.client;
+    static icd_slot_t slots[1];
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
     static const uint8_t late[] = {0x1F, 0x7F, 0x92, 0, 0, 0, 0, 0, 0, 0x1F, 0xFF};
-    const uint8_t *bytes;
+    uint8_t bytes[64];
     size_t count;
     uint32_t deadline;
     int events = 0;
-    assert(cubeacp_client_uart(&acp, buffer, sizeof buffer) == ICD_OK);
+    assert(cubeacp_client_uart(&acp, slots, 1, buffer, sizeof buffer) == ICD_OK);
     icd_client_cancel(client); /* nothing: no harm */
     assert(cubeacp_request_identification(&acp, 0) == ICD_OK);
     icd_client_cancel(client);
-    assert(!icd_client_output(client, &bytes, &count)); /* what was not taken is not sent */
+    assert(!icd_client_output(client, bytes, sizeof bytes, &count)); /* what was not taken is not sent */
     assert(!icd_client_deadline(client, &deadline));
     assert(cubeacp_request_estimated_attitude_angles(&acp, 0) == ICD_OK);
-    assert(icd_client_output(client, &bytes, &count) && count == 5u && bytes[2] == 146u);
+    assert(icd_client_output(client, bytes, sizeof bytes, &count) && count == 5u && bytes[2] == 146u);
     icd_client_cancel(client);
     assert(cubeacp_request_identification(&acp, 1) == ICD_OK);
-    assert(icd_client_output(client, &bytes, &count) && bytes[2] == 128u);
+    assert(icd_client_output(client, bytes, sizeof bytes, &count) && bytes[2] == 128u);
     icd_client_received(client, 2, late, sizeof late, on_event, &events);
-    assert(events == 1 && client->state == ICD_CLIENT_WAIT);
+    assert(events == 1 && client->slots[0].state == ICD_SLOT_WAIT);
     return 0;
 }
 """

@@ -22,9 +22,14 @@ PARTS = {
     "statistics_reset": [],
     "boot_status": [],
     "program_start": [],
-    "link.buses.uart": ["framing", "acknowledge", "unsolicited"],
-    "link.buses.i2c": ["polled"],
-    "link.buses.can": ["can"],
+    "link.buses.uart": [
+        "framing",
+        "acknowledge",
+        "unsolicited",
+        "exchanges[ICD_BUS_UART]",
+    ],
+    "link.buses.i2c": ["exchanges[ICD_BUS_I2C]"],
+    "link.buses.can": ["can", "exchanges[ICD_BUS_CAN]"],
     "procedures": [],
     "crc16": ["crc16"],
     "index_file": ["index"],
@@ -177,10 +182,14 @@ static void try_on(const icd_link_t *link, icd_bus_t bus, size_t size)
     uint8_t *const buffer = (uint8_t *)malloc(size);
     icd_can_packet_t packet;
     icd_client_t client;
+    icd_slot_t slot;
+    icd_uart_line_t uart;
+    icd_i2c_line_t i2c;
+    icd_can_line_t can;
     memset(&packet, 0, sizeof packet);
-    printf(" %d", (int)(bus == ICD_BUS_UART ? icd_client_uart(&client, link, buffer, size)
-                        : bus == ICD_BUS_I2C ? icd_client_i2c(&client, link, buffer, size)
-                                             : icd_client_can(&client, link, 2, buffer, size)));
+    printf(" %d", (int)(bus == ICD_BUS_UART ? icd_client_uart(&client, link, &uart, &slot, 1, buffer, size)
+                        : bus == ICD_BUS_I2C ? icd_client_i2c(&client, link, &i2c, &slot, 1, buffer, size)
+                                             : icd_client_can(&client, link, &can, 2, &slot, 1, buffer, size)));
     printf("%d", (int)icd_client_request(&client, 0, link->telemetry[0].id));
     if (bus == ICD_BUS_CAN) {{
         icd_client_packet(&client, 1, &packet, on_event, NULL);
@@ -197,7 +206,7 @@ int main(void)
     static const icd_link_t *(*const links[])(void) = {{{links}}};
     for (size_t i = 0; i < sizeof links / sizeof links[0]; ++i) {{
         const icd_link_t *const link = links[i]();
-        const size_t size = icd_client_bytes(link);
+        const size_t size = icd_client_bytes(link, 1);
         try_on(link, ICD_BUS_UART, size);
         try_on(link, ICD_BUS_I2C, size);
         try_on(link, ICD_BUS_CAN, size);
@@ -230,7 +239,13 @@ def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
         for node in nodes
     ]
     assert told == [
-        " ".join(["", *(ok if bus else unsupported for bus in three), length])
+        " ".join(
+            [
+                "",
+                *(ok if bus else unsupported for bus in three),
+                length if three[0] else unsupported,
+            ]
+        )
         for three in buses
     ]
 

@@ -21,20 +21,20 @@ C = """
 #include "receiver.h"
 #include <stdio.h>
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     receiver_navigation_clock_t clock;
     const unsigned long id = event->id;
     (void)context;
-    if (event->kind == ICD_STREAM_TIMEOUT) {
+    if (event->kind == ICD_EVENT_TIMEOUT) {
         (void)printf("timeout %%lu\\n", id);
     }
-    if (event->kind == ICD_STREAM_SENT) {
+    if (event->kind == ICD_EVENT_SENT) {
         (void)printf("sent %%lu\\n", id);
     }
     if (receiver_receive_navigation_clock(&clock, event) == ICD_OK) {
         (void)printf(
-            "%%s %%lu %%ld\\n", event->kind == ICD_STREAM_DONE ? "done" : "late", id, (long)clock.clock_bias);
+            "%%s %%lu %%ld\\n", event->kind == ICD_EVENT_DONE ? "done" : "late", id, (long)clock.clock_bias);
     }
 }
 
@@ -51,11 +51,11 @@ static size_t answer(uint8_t *line, size_t capacity, int32_t bias)
     return count;
 }
 
-static void send(icd_stream_client_t *client)
+static void send(icd_client_t *client)
 {
     uint8_t line[RECEIVER_LINE_BYTES];
     size_t count = 0;
-    while (icd_stream_client_output(client, line, sizeof line, &count)) {
+    while (icd_client_output(client, line, sizeof line, &count)) {
         (void)printf("sent %%02x%%02x %%lu\\n", line[2], line[3], (unsigned long)count);
     }
 }
@@ -64,25 +64,25 @@ int main(void)
 {
 %s
     send(&receiver.client);
-    icd_stream_client_tick(&receiver.client, 10 + receiver.client.settings.reply_timeout, on_event, NULL);
+    icd_client_tick(&receiver.client, 10 + receiver.client.settings.reply_timeout, on_event, NULL);
     send(&receiver.client);
     count = answer(line, sizeof line, 5);
-    icd_stream_client_received(&receiver.client, 2000, line, count, on_event, NULL);
+    icd_client_received(&receiver.client, 2000, line, count, on_event, NULL);
     count = answer(line, sizeof line, 6);
-    icd_stream_client_received(&receiver.client, 2001, line, count, on_event, NULL);
+    icd_client_received(&receiver.client, 2001, line, count, on_event, NULL);
     uint32_t deadline = 0;
-    if (icd_stream_client_deadline(&receiver.client, &deadline)) {
+    if (icd_client_deadline(&receiver.client, &deadline)) {
         return 1;
     }
     if (receiver_request_navigation_clock(&receiver, 9000) != ICD_OK ||
         receiver_request_navigation_clock(&receiver, 9000) != ICD_OK ||
         receiver_request_navigation_clock(&receiver, 9000) != ICD_ERROR_BUSY ||
-        icd_stream_client_request(&receiver.client, 9000, RECEIVER_END_OF_EPOCH_ID) != ICD_ERROR_UNSUPPORTED) {
+        icd_client_request(&receiver.client, 9000, RECEIVER_END_OF_EPOCH_ID) != ICD_ERROR_UNSUPPORTED) {
         return 2;
     }
     send(&receiver.client);
-    while (icd_stream_client_deadline(&receiver.client, &deadline)) {
-        icd_stream_client_tick(&receiver.client, deadline, on_event, NULL);
+    while (icd_client_deadline(&receiver.client, &deadline)) {
+        icd_client_tick(&receiver.client, deadline, on_event, NULL);
         send(&receiver.client);
     }
     return 0;

@@ -41,13 +41,13 @@ static void note(seen_t *seen, const void *data, size_t length)
     }
 }
 
-static void on_event(void *context, const icd_stream_event_t *event)
+static void on_event(void *context, const icd_event_t *event)
 {
     seen_t *seen = (seen_t *)context;
     const uint32_t told[3] = {(uint32_t)event->kind, event->has_id ? event->id : 0u, event->missing};
     note(seen, told, sizeof told);
     note(seen, event->data, event->length);
-    if (event->kind == ICD_STREAM_MESSAGE) {
+    if (event->kind == ICD_EVENT_MESSAGE) {
         const size_t room = 2u * (event->length + 600u);
         uint8_t *line = (uint8_t *)memory(room);
         size_t written = 0;
@@ -58,14 +58,14 @@ static void on_event(void *context, const icd_stream_event_t *event)
         seen->on_line += written;
         free(line);
     }
-    if (event->kind == ICD_STREAM_REQUEST) {
+    if (event->kind == ICD_EVENT_REQUEST) {
         uint8_t line[600];
         size_t written = 0;
         note(seen, &event->values, sizeof event->values);
         require(icd_stream_encode_request(seen->link, event->id, &event->values, line, sizeof line, &written) == ICD_OK);
         seen->on_line += written;
     }
-    if (event->kind == ICD_STREAM_PACKET) { /* all its bytes */
+    if (event->kind == ICD_EVENT_PACKET) { /* all its bytes */
         note(seen, &event->values, sizeof event->values);
         seen->on_line += event->length;
     }

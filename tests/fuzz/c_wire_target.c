@@ -180,14 +180,16 @@ static void logs(const icd_link_t *link, input_t *input)
     free(buffer);
 }
 
-static void drain(icd_client_t *client)
+/* Takes the output, or only a part of it. */
+static void drain(icd_client_t *client, bool whole)
 {
     const uint8_t *bytes;
+    uint8_t line[7];
     size_t count, read;
     icd_can_packet_t packet;
-    while (icd_client_output(client, &bytes, &count)) {
+    while (icd_client_output(client, line, sizeof line, &count) && whole) {
     }
-    while (icd_client_next_packet(client, &packet)) {
+    while (icd_client_next_packet(client, &packet) && whole) {
     }
     while (icd_client_transfer(client, &bytes, &count, &read)) {
     }
@@ -197,14 +199,14 @@ static void receive(icd_client_t *client, input_t *input, uint32_t now, seen_t *
 {
     const size_t given = take(input), count = given < input->left ? given : input->left;
     uint8_t *bytes = allocate(count);
-    if (client->bus == ICD_BUS_CAN) {
+    if (client->can != NULL) {
         const icd_can_packet_t packet = packet_of(client->link, input);
         icd_client_packet(client, now, &packet, on_event, seen);
     } else {
         memcpy(bytes, input->at, count);
         input->at += count;
         input->left -= count;
-        if (client->bus == ICD_BUS_I2C) {
+        if (client->i2c != NULL) {
             icd_client_transferred(client, now, given == 0xFFu ? NULL : bytes, count, on_event, seen);
         } else {
             icd_client_received(client, now, bytes, count, on_event, seen);
@@ -213,34 +215,44 @@ static void receive(icd_client_t *client, input_t *input, uint32_t now, seen_t *
     free(bytes);
 }
 
+typedef struct {
+    icd_client_t client;
+    icd_uart_line_t uart;
+    icd_i2c_line_t i2c;
+    icd_can_line_t can;
+    icd_slot_t slots[3];
+} bus_client_t;
+
 static icd_status_t begin_client(
-    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t address, uint8_t *buffer, size_t size)
+    bus_client_t *on, size_t requests, const icd_link_t *link, icd_bus_t bus, uint8_t address, uint8_t *buffer, size_t size)
 {
     switch (bus) {
     case ICD_BUS_UART:
-        return icd_client_uart(client, link, buffer, size);
+        return icd_client_uart(&on->client, link, &on->uart, on->slots, requests, buffer, size);
     case ICD_BUS_I2C:
-        return icd_client_i2c(client, link, buffer, size);
+        return icd_client_i2c(&on->client, link, &on->i2c, on->slots, requests, buffer, size);
     case ICD_BUS_CAN:
     default:
-        return icd_client_can(client, link, address, buffer, size);
+        return icd_client_can(&on->client, link, &on->can, address, on->slots, requests, buffer, size);
     }
 }
 
 /* Each request ends in exactly one outcome, and time ends all of them. */
 static void client(const icd_link_t *link, icd_bus_t bus, input_t *input)
 {
-    const size_t size = icd_client_bytes(link);
+    const size_t requests = 1u + (take(input) % 3u), size = icd_client_bytes(link, requests);
     uint8_t *buffer = allocate(size), *data = allocate(link->longest);
-    icd_client_t *one = (icd_client_t *)(void *)allocate(sizeof *one);
+    bus_client_t *on = (bus_client_t *)(void *)allocate(sizeof *on);
+    icd_client_t *one = &on->client;
     seen_t seen = {link, 1, 0, 0};
     uint32_t now = 0xFFFFF000u, deadline;
     size_t started = 0, rounds = 0;
     memset(data, 0, link->longest);
-    if (begin_client(one, link, bus, 1, buffer, size) == ICD_OK) {
+    if (begin_client(on, requests, link, bus, 1, buffer, size) == ICD_OK) {
         if ((take(input) & 1u) != 0u) {
             icd_client_use_checksums(one);
         }
+        one->settings.in_flight = (uint8_t)requests;
         while (input->left != 0u) {
             const uint8_t what = take(input);
             icd_request_t request;
@@ -254,23 +266,22 @@ static void client(const icd_link_t *link, icd_bus_t bus, input_t *input)
                 message = icd_find_message(link, request.direction, request.id);
                 request.data = data;
                 request.length = message != NULL ? message->length : 0u;
-                started += icd_client_start(one, now, &request, on_event, &seen) == ICD_OK;
+                started += icd_client_start(one, now, &request) == ICD_OK;
             } else if ((what & 3u) == 1u) {
-                drain(one);
+                drain(one, (what & 8u) == 0u);
             } else if ((what & 3u) == 2u) {
                 icd_client_tick(one, now, on_event, &seen);
             } else {
                 receive(one, input, now, &seen);
             }
         }
-        for (; icd_client_deadline(one, &deadline); rounds++) {
+        for (drain(one, true); icd_client_deadline(one, &deadline); drain(one, true), rounds++) {
             require(rounds < 100000u);
-            drain(one);
             icd_client_tick(one, deadline, on_event, &seen);
         }
         require(seen.outcomes == started);
     }
-    free(one);
+    free(on);
     free(buffer);
     free(data);
 }
@@ -305,7 +316,11 @@ static void run(icd_procedure_t *procedure, input_t *input)
             : (what & 7u) == 4u       ? ICD_EVENT_TIMEOUT
             : (what & 7u) == 5u       ? ICD_EVENT_REFUSED
                                       : ICD_EVENT_ARRIVED;
-        event.id = procedure->form->receive_count != 0u ? (uint8_t)procedure->form->receives[0].id : 0u;
+        event.direction = procedure->request.direction;
+        event.id = procedure->request.id;
+        if (event.kind == ICD_EVENT_ARRIVED && procedure->form->receive_count != 0u) {
+            event.id = procedure->form->receives[0].id;
+        }
         event.data = bytes;
         event.length = count;
         if (icd_procedure_next(procedure, now, &request)) {

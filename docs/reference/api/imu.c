@@ -33,10 +33,10 @@ int main(void)
     imu_telemetry_t any;
     imu_client_t client;
     icd_status_t status;
-    uint8_t buffer[IMU_CLIENT_BYTES], written[IMU_STATE_LENGTH];
+    icd_slot_t slots[1];
+    uint8_t buffer[IMU_CLIENT_BYTES], line[32], written[IMU_STATE_LENGTH];
     const uint8_t received[] = {0x10, 0x02, 0x83, 0x2e, 0xfb, 0x0a, 0x00, 0xd7, 0x00, 0xfb, 0xff,
                                 'I',  'M',  'U',  0x00, 0x11, 0x52, 0x64, 0x00, 0x10, 0x03};
-    const uint8_t *bytes = NULL;
     const char *text, *unit;
     char label[5];
     size_t count, length;
@@ -196,7 +196,7 @@ int main(void)
     CHECK(holds);
 
     /* [client] */
-    status = imu_client_uart(&client, buffer, sizeof buffer);
+    status = imu_client_uart(&client, slots, 1, buffer, sizeof buffer);
     /* [] */
     CHECK(status == ICD_OK);
     /* [request] */
@@ -205,7 +205,7 @@ int main(void)
     CHECK(status == ICD_OK);
     length = 0u;
     /* [output] */
-    while (icd_client_output(&client.client, &bytes, &count)) {
+    while (icd_client_output(&client.client, line, sizeof line, &count)) {
         length += count;
     }
     /* [] */
@@ -215,7 +215,7 @@ int main(void)
     /* [] */
     CHECK(came.roll == -1234);
     /* [send] */
-    status = imu_send_setup(&client, now, &setup, on_event, NULL);
+    status = imu_send_setup(&client, now, &setup);
     /* [] */
     CHECK(status == ICD_OK);
     return 0;

@@ -21,32 +21,59 @@
 
 /**
  * A client that accepts only messages of Bootloader at compile time.
- * Pass `&client->client` to the icd_client_...() functions.
+ * Pass `&client->client` to the icd_client_...() functions. Do not move or copy it after initialization.
  */
 typedef struct {
     icd_client_t client;
+    icd_uart_line_t uart;
+    icd_i2c_line_t i2c;
+    icd_can_line_t can;
 } bootloader_client_t;
 
-/** Initialize a client with a buffer of BOOTLOADER_CLIENT_BYTES bytes. See icd_client_uart(). */
-static inline icd_status_t bootloader_client_uart(bootloader_client_t *client, uint8_t *buffer, size_t size)
-{
-    return icd_client_uart(&client->client, bootloader_link(), buffer, size);
-}
-
-/** Initialize a client with a buffer of BOOTLOADER_CLIENT_BYTES bytes. See icd_client_i2c(). */
-static inline icd_status_t bootloader_client_i2c(bootloader_client_t *client, uint8_t *buffer, size_t size)
-{
-    return icd_client_i2c(&client->client, bootloader_link(), buffer, size);
-}
-
-/** Initialize a client with a buffer of BOOTLOADER_CLIENT_BYTES bytes. See icd_client_can(). */
-static inline icd_status_t bootloader_client_can(
+/**
+ * Initialize a client. `slot_count` is the number of requests that can be in progress or waiting at the same time. The
+ * buffer needs BOOTLOADER_CLIENT_BYTES bytes, plus BOOTLOADER_REQUEST_BYTES for each slot after the first. See
+ * icd_client_uart().
+ */
+static inline icd_status_t bootloader_client_uart(
     bootloader_client_t *client,
-    uint8_t address,
+    icd_slot_t *slots,
+    size_t slot_count,
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_can(&client->client, bootloader_link(), address, buffer, size);
+    return icd_client_uart(&client->client, bootloader_link(), &client->uart, slots, slot_count, buffer, size);
+}
+
+/**
+ * Initialize a client. `slot_count` is the number of requests that can be in progress or waiting at the same time. The
+ * buffer needs BOOTLOADER_CLIENT_BYTES bytes, plus BOOTLOADER_REQUEST_BYTES for each slot after the first. See
+ * icd_client_i2c().
+ */
+static inline icd_status_t bootloader_client_i2c(
+    bootloader_client_t *client,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    return icd_client_i2c(&client->client, bootloader_link(), &client->i2c, slots, slot_count, buffer, size);
+}
+
+/**
+ * Initialize a client. `slot_count` is the number of requests that can be in progress or waiting at the same time. The
+ * buffer needs BOOTLOADER_CLIENT_BYTES bytes, plus BOOTLOADER_REQUEST_BYTES for each slot after the first. See
+ * icd_client_can().
+ */
+static inline icd_status_t bootloader_client_can(
+    bootloader_client_t *client,
+    uint8_t address,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    return icd_client_can(&client->client, bootloader_link(), &client->can, address, slots, slot_count, buffer, size);
 }
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET)
@@ -57,76 +84,38 @@ static inline icd_status_t bootloader_client_can(
 static inline icd_status_t bootloader_send_reset(
     bootloader_client_t *client,
     uint32_t now,
-    const common_reset_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_reset_t *message)
 {
     uint8_t data[COMMON_RESET_LENGTH];
     const icd_status_t status = common_reset_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(&client->client, now, COMMON_RESET_ID, data, COMMON_RESET_LENGTH, false, on_event, context);
+    return icd_client_send(&client->client, now, COMMON_RESET_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_LOG_POINTER)
 /** Send Reset Log Pointer. See icd_client_send(). */
-static inline icd_status_t bootloader_send_reset_log_pointer(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_reset_log_pointer(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_LOG_POINTER_ID,
-        NULL,
-        COMMON_RESET_LOG_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_LOG_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_LOG_POINTER)
 /** Send Advance Log Pointer. See icd_client_send(). */
-static inline icd_status_t bootloader_send_advance_log_pointer(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_advance_log_pointer(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_ADVANCE_LOG_POINTER_ID,
-        NULL,
-        COMMON_ADVANCE_LOG_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_ADVANCE_LOG_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_BOOT_REGISTERS)
 /** Send Reset Boot Registers. See icd_client_send(). */
-static inline icd_status_t bootloader_send_reset_boot_registers(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_reset_boot_registers(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_BOOT_REGISTERS_ID,
-        NULL,
-        COMMON_RESET_BOOT_REGISTERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_BOOT_REGISTERS_ID, NULL, 0u, false);
 }
 #endif
 
@@ -138,24 +127,14 @@ static inline icd_status_t bootloader_send_reset_boot_registers(
 static inline icd_status_t bootloader_send_format_sd_card(
     bootloader_client_t *client,
     uint32_t now,
-    const common_format_sd_card_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_format_sd_card_t *message)
 {
     uint8_t data[COMMON_FORMAT_SD_CARD_LENGTH];
     const icd_status_t status = common_format_sd_card_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_FORMAT_SD_CARD_ID,
-        data,
-        COMMON_FORMAT_SD_CARD_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_FORMAT_SD_CARD_ID, data, sizeof data, false);
 }
 #endif
 
@@ -167,24 +146,14 @@ static inline icd_status_t bootloader_send_format_sd_card(
 static inline icd_status_t bootloader_send_erase_file(
     bootloader_client_t *client,
     uint32_t now,
-    const common_erase_file_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_erase_file_t *message)
 {
     uint8_t data[COMMON_ERASE_FILE_LENGTH];
     const icd_status_t status = common_erase_file_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_ERASE_FILE_ID,
-        data,
-        COMMON_ERASE_FILE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_ERASE_FILE_ID, data, sizeof data, false);
 }
 #endif
 
@@ -193,44 +162,22 @@ static inline icd_status_t bootloader_send_erase_file(
 static inline icd_status_t bootloader_send_load_file_download_block(
     bootloader_client_t *client,
     uint32_t now,
-    const common_load_file_download_block_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_load_file_download_block_t *message)
 {
     uint8_t data[COMMON_LOAD_FILE_DOWNLOAD_BLOCK_LENGTH];
     const icd_status_t status = common_load_file_download_block_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_LOAD_FILE_DOWNLOAD_BLOCK_ID,
-        data,
-        COMMON_LOAD_FILE_DOWNLOAD_BLOCK_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_LOAD_FILE_DOWNLOAD_BLOCK_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_FILE_LIST_READ_POINTER)
 /** Send Advance File List Read Pointer. See icd_client_send(). */
-static inline icd_status_t bootloader_send_advance_file_list_read_pointer(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_advance_file_list_read_pointer(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_ADVANCE_FILE_LIST_READ_POINTER_ID,
-        NULL,
-        COMMON_ADVANCE_FILE_LIST_READ_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_ADVANCE_FILE_LIST_READ_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
@@ -242,24 +189,14 @@ static inline icd_status_t bootloader_send_advance_file_list_read_pointer(
 static inline icd_status_t bootloader_send_initiate_file_upload(
     bootloader_client_t *client,
     uint32_t now,
-    const common_initiate_file_upload_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_initiate_file_upload_t *message)
 {
     uint8_t data[COMMON_INITIATE_FILE_UPLOAD_LENGTH];
     const icd_status_t status = common_initiate_file_upload_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_INITIATE_FILE_UPLOAD_ID,
-        data,
-        COMMON_INITIATE_FILE_UPLOAD_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_INITIATE_FILE_UPLOAD_ID, data, sizeof data, false);
 }
 #endif
 
@@ -268,24 +205,14 @@ static inline icd_status_t bootloader_send_initiate_file_upload(
 static inline icd_status_t bootloader_send_file_upload_packet(
     bootloader_client_t *client,
     uint32_t now,
-    const common_file_upload_packet_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_file_upload_packet_t *message)
 {
     uint8_t data[COMMON_FILE_UPLOAD_PACKET_LENGTH];
     const icd_status_t status = common_file_upload_packet_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_FILE_UPLOAD_PACKET_ID,
-        data,
-        COMMON_FILE_UPLOAD_PACKET_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_FILE_UPLOAD_PACKET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -294,64 +221,30 @@ static inline icd_status_t bootloader_send_file_upload_packet(
 static inline icd_status_t bootloader_send_finalize_upload_block(
     bootloader_client_t *client,
     uint32_t now,
-    const common_finalize_upload_block_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_finalize_upload_block_t *message)
 {
     uint8_t data[COMMON_FINALIZE_UPLOAD_BLOCK_LENGTH];
     const icd_status_t status = common_finalize_upload_block_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_FINALIZE_UPLOAD_BLOCK_ID,
-        data,
-        COMMON_FINALIZE_UPLOAD_BLOCK_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_FINALIZE_UPLOAD_BLOCK_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_UPLOAD_BLOCK)
 /** Send Reset Upload Block. See icd_client_send(). */
-static inline icd_status_t bootloader_send_reset_upload_block(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_reset_upload_block(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_UPLOAD_BLOCK_ID,
-        NULL,
-        COMMON_RESET_UPLOAD_BLOCK_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_UPLOAD_BLOCK_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_FILE_LIST_READ_POINTER)
 /** Send Reset File List Read Pointer. See icd_client_send(). */
-static inline icd_status_t bootloader_send_reset_file_list_read_pointer(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_reset_file_list_read_pointer(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_FILE_LIST_READ_POINTER_ID,
-        NULL,
-        COMMON_RESET_FILE_LIST_READ_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_FILE_LIST_READ_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
@@ -360,24 +253,14 @@ static inline icd_status_t bootloader_send_reset_file_list_read_pointer(
 static inline icd_status_t bootloader_send_initiate_download_burst(
     bootloader_client_t *client,
     uint32_t now,
-    const common_initiate_download_burst_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_initiate_download_burst_t *message)
 {
     uint8_t data[COMMON_INITIATE_DOWNLOAD_BURST_LENGTH];
     const icd_status_t status = common_initiate_download_burst_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_INITIATE_DOWNLOAD_BURST_ID,
-        data,
-        COMMON_INITIATE_DOWNLOAD_BURST_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_INITIATE_DOWNLOAD_BURST_ID, data, sizeof data, false);
 }
 #endif
 
@@ -386,24 +269,14 @@ static inline icd_status_t bootloader_send_initiate_download_burst(
 static inline icd_status_t bootloader_send_cache_enabled_state(
     bootloader_client_t *client,
     uint32_t now,
-    const common_cache_enabled_state_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_cache_enabled_state_t *message)
 {
     uint8_t data[COMMON_CACHE_ENABLED_STATE_LENGTH];
     const icd_status_t status = common_cache_enabled_state_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_CACHE_ENABLED_STATE_SET_ID,
-        data,
-        COMMON_CACHE_ENABLED_STATE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_CACHE_ENABLED_STATE_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -412,24 +285,14 @@ static inline icd_status_t bootloader_send_cache_enabled_state(
 static inline icd_status_t bootloader_send_sram_scrub_parameters(
     bootloader_client_t *client,
     uint32_t now,
-    const common_sram_scrub_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_sram_scrub_parameters_t *message)
 {
     uint8_t data[COMMON_SRAM_SCRUB_PARAMETERS_LENGTH];
     const icd_status_t status = common_sram_scrub_parameters_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_SRAM_SCRUB_PARAMETERS_SET_ID,
-        data,
-        COMMON_SRAM_SCRUB_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -438,24 +301,14 @@ static inline icd_status_t bootloader_send_sram_scrub_parameters(
 static inline icd_status_t bootloader_send_current_unix_time(
     bootloader_client_t *client,
     uint32_t now,
-    const common_current_unix_time_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_current_unix_time_t *message)
 {
     uint8_t data[COMMON_CURRENT_UNIX_TIME_LENGTH];
     const icd_status_t status = common_current_unix_time_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_CURRENT_UNIX_TIME_SET_ID,
-        data,
-        COMMON_CURRENT_UNIX_TIME_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_CURRENT_UNIX_TIME_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -464,24 +317,14 @@ static inline icd_status_t bootloader_send_current_unix_time(
 static inline icd_status_t bootloader_send_unix_time_save_to_flash(
     bootloader_client_t *client,
     uint32_t now,
-    const common_unix_time_save_to_flash_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_unix_time_save_to_flash_t *message)
 {
     uint8_t data[COMMON_UNIX_TIME_SAVE_TO_FLASH_LENGTH];
     const icd_status_t status = common_unix_time_save_to_flash_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_UNIX_TIME_SAVE_TO_FLASH_SET_ID,
-        data,
-        COMMON_UNIX_TIME_SAVE_TO_FLASH_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -490,24 +333,14 @@ static inline icd_status_t bootloader_send_unix_time_save_to_flash(
 static inline icd_status_t bootloader_send_hole_map_1(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_1_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_1_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_1_LENGTH];
     const icd_status_t status = common_hole_map_1_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_1_SET_ID,
-        data,
-        COMMON_HOLE_MAP_1_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_1_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -516,24 +349,14 @@ static inline icd_status_t bootloader_send_hole_map_1(
 static inline icd_status_t bootloader_send_hole_map_2(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_2_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_2_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_2_LENGTH];
     const icd_status_t status = common_hole_map_2_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_2_SET_ID,
-        data,
-        COMMON_HOLE_MAP_2_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_2_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -542,24 +365,14 @@ static inline icd_status_t bootloader_send_hole_map_2(
 static inline icd_status_t bootloader_send_hole_map_3(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_3_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_3_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_3_LENGTH];
     const icd_status_t status = common_hole_map_3_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_3_SET_ID,
-        data,
-        COMMON_HOLE_MAP_3_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_3_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -568,24 +381,14 @@ static inline icd_status_t bootloader_send_hole_map_3(
 static inline icd_status_t bootloader_send_hole_map_4(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_4_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_4_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_4_LENGTH];
     const icd_status_t status = common_hole_map_4_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_4_SET_ID,
-        data,
-        COMMON_HOLE_MAP_4_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_4_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -594,24 +397,14 @@ static inline icd_status_t bootloader_send_hole_map_4(
 static inline icd_status_t bootloader_send_hole_map_5(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_5_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_5_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_5_LENGTH];
     const icd_status_t status = common_hole_map_5_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_5_SET_ID,
-        data,
-        COMMON_HOLE_MAP_5_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_5_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -620,24 +413,14 @@ static inline icd_status_t bootloader_send_hole_map_5(
 static inline icd_status_t bootloader_send_hole_map_6(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_6_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_6_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_6_LENGTH];
     const icd_status_t status = common_hole_map_6_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_6_SET_ID,
-        data,
-        COMMON_HOLE_MAP_6_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_6_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -646,24 +429,14 @@ static inline icd_status_t bootloader_send_hole_map_6(
 static inline icd_status_t bootloader_send_hole_map_7(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_7_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_7_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_7_LENGTH];
     const icd_status_t status = common_hole_map_7_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_7_SET_ID,
-        data,
-        COMMON_HOLE_MAP_7_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_7_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -672,44 +445,22 @@ static inline icd_status_t bootloader_send_hole_map_7(
 static inline icd_status_t bootloader_send_hole_map_8(
     bootloader_client_t *client,
     uint32_t now,
-    const common_hole_map_8_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_8_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_8_LENGTH];
     const icd_status_t status = common_hole_map_8_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_8_SET_ID,
-        data,
-        COMMON_HOLE_MAP_8_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_8_SET_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CLEAR_ERROR_FLAGS)
 /** Send Clear Error Flags. See icd_client_send(). */
-static inline icd_status_t bootloader_send_clear_error_flags(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_clear_error_flags(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        BOOTLOADER_CLEAR_ERROR_FLAGS_ID,
-        NULL,
-        BOOTLOADER_CLEAR_ERROR_FLAGS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, BOOTLOADER_CLEAR_ERROR_FLAGS_ID, NULL, 0u, false);
 }
 #endif
 
@@ -718,44 +469,22 @@ static inline icd_status_t bootloader_send_clear_error_flags(
 static inline icd_status_t bootloader_send_set_boot_index(
     bootloader_client_t *client,
     uint32_t now,
-    const bootloader_set_boot_index_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const bootloader_set_boot_index_t *message)
 {
     uint8_t data[BOOTLOADER_SET_BOOT_INDEX_LENGTH];
     const icd_status_t status = bootloader_set_boot_index_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        BOOTLOADER_SET_BOOT_INDEX_ID,
-        data,
-        BOOTLOADER_SET_BOOT_INDEX_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, BOOTLOADER_SET_BOOT_INDEX_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RUN_SELECTED_PROGRAM)
 /** Send Run Selected Program. See icd_client_send(). */
-static inline icd_status_t bootloader_send_run_selected_program(
-    bootloader_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t bootloader_send_run_selected_program(bootloader_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        BOOTLOADER_RUN_SELECTED_PROGRAM_ID,
-        NULL,
-        BOOTLOADER_RUN_SELECTED_PROGRAM_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, BOOTLOADER_RUN_SELECTED_PROGRAM_ID, NULL, 0u, false);
 }
 #endif
 
@@ -764,24 +493,14 @@ static inline icd_status_t bootloader_send_run_selected_program(
 static inline icd_status_t bootloader_send_read_program_information(
     bootloader_client_t *client,
     uint32_t now,
-    const bootloader_read_program_information_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const bootloader_read_program_information_t *message)
 {
     uint8_t data[BOOTLOADER_READ_PROGRAM_INFORMATION_LENGTH];
     const icd_status_t status = bootloader_read_program_information_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        BOOTLOADER_READ_PROGRAM_INFORMATION_ID,
-        data,
-        BOOTLOADER_READ_PROGRAM_INFORMATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, BOOTLOADER_READ_PROGRAM_INFORMATION_ID, data, sizeof data, false);
 }
 #endif
 
@@ -793,24 +512,14 @@ static inline icd_status_t bootloader_send_read_program_information(
 static inline icd_status_t bootloader_send_copy_to_internal_flash(
     bootloader_client_t *client,
     uint32_t now,
-    const bootloader_copy_to_internal_flash_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const bootloader_copy_to_internal_flash_t *message)
 {
     uint8_t data[BOOTLOADER_COPY_TO_INTERNAL_FLASH_LENGTH];
     const icd_status_t status = bootloader_copy_to_internal_flash_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID,
-        data,
-        BOOTLOADER_COPY_TO_INTERNAL_FLASH_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID, data, sizeof data, false);
 }
 #endif
 
@@ -821,10 +530,13 @@ static inline icd_status_t bootloader_request_identification(bootloader_client_t
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Decode Identification from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Identification from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_IDENTIFICATION_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_IDENTIFICATION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_identification_decode(message, event->data, event->length);
@@ -838,12 +550,15 @@ static inline icd_status_t bootloader_request_boot_and_running_program_status(bo
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Decode Boot And Running Program Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Boot And Running Program Status from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
@@ -857,12 +572,15 @@ static inline icd_status_t bootloader_request_boot_index_and_status(bootloader_c
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Decode Boot Index and Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Boot Index and Status from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_BOOT_INDEX_AND_STATUS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_BOOT_INDEX_AND_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_boot_index_and_status_decode(message, event->data, event->length);
@@ -876,12 +594,15 @@ static inline icd_status_t bootloader_request_last_logged_event(bootloader_clien
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Decode Last Logged Event from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Last Logged Event from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_LAST_LOGGED_EVENT_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_LAST_LOGGED_EVENT_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_last_logged_event_decode(message, event->data, event->length);
@@ -895,12 +616,15 @@ static inline icd_status_t bootloader_request_sram_latchup_counters(bootloader_c
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Decode SRAM Latchup counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SRAM Latchup counters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_SRAM_LATCHUP_COUNTERS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_SRAM_LATCHUP_COUNTERS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_sram_latchup_counters_decode(message, event->data, event->length);
@@ -914,12 +638,15 @@ static inline icd_status_t bootloader_request_edac_error_counters(bootloader_cli
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Decode EDAC Error Counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode EDAC Error Counters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_EDAC_ERROR_COUNTERS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_EDAC_ERROR_COUNTERS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_edac_error_counters_decode(message, event->data, event->length);
@@ -933,12 +660,15 @@ static inline icd_status_t bootloader_request_communication_status(bootloader_cl
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Decode Communication Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Communication Status from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_COMMUNICATION_STATUS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_COMMUNICATION_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_communication_status_decode(message, event->data, event->length);
@@ -952,12 +682,15 @@ static inline icd_status_t bootloader_request_sd_card_format_erase_progress(boot
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Decode SD card format/erase progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SD card format/erase progress from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
@@ -971,12 +704,15 @@ static inline icd_status_t bootloader_request_telecommand_acknowledge(bootloader
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Decode Telecommand Acknowledge from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Telecommand Acknowledge from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_TELECOMMAND_ACKNOWLEDGE_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_TELECOMMAND_ACKNOWLEDGE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
@@ -992,12 +728,15 @@ static inline icd_status_t bootloader_request_file_download_buffer_with_file_con
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/** Decode File Download Buffer with File Contents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode File Download Buffer with File Contents from an event: unsolicited, requested, or another response to a
+ * request. Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
@@ -1011,12 +750,15 @@ static inline icd_status_t bootloader_request_download_block_ready(bootloader_cl
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Decode Download Block Ready from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Download Block Ready from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_DOWNLOAD_BLOCK_READY_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_DOWNLOAD_BLOCK_READY_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_download_block_ready_decode(message, event->data, event->length);
@@ -1030,12 +772,15 @@ static inline icd_status_t bootloader_request_file_information(bootloader_client
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Decode File Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode File Information from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_file_information(
     common_file_information_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_FILE_INFORMATION_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_FILE_INFORMATION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_file_information_decode(message, event->data, event->length);
@@ -1049,12 +794,15 @@ static inline icd_status_t bootloader_request_initialize_upload_complete(bootloa
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Decode Initialize Upload Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Initialize Upload Complete from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_initialize_upload_complete_decode(message, event->data, event->length);
@@ -1068,12 +816,15 @@ static inline icd_status_t bootloader_request_upload_block_complete(bootloader_c
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Decode Upload Block Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Upload Block Complete from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_UPLOAD_BLOCK_COMPLETE_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_UPLOAD_BLOCK_COMPLETE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_upload_block_complete_decode(message, event->data, event->length);
@@ -1087,10 +838,13 @@ static inline icd_status_t bootloader_request_block_checksum(bootloader_client_t
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Decode Block Checksum from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Block Checksum from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_block_checksum_decode(message, event->data, event->length);
@@ -1104,12 +858,15 @@ static inline icd_status_t bootloader_request_cache_enabled_state(bootloader_cli
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Decode Cache enabled state from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Cache enabled state from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_CACHE_ENABLED_STATE_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_CACHE_ENABLED_STATE_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_cache_enabled_state_decode(message, event->data, event->length);
@@ -1123,12 +880,15 @@ static inline icd_status_t bootloader_request_sram_scrub_parameters(bootloader_c
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Decode SRAM Scrub Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SRAM Scrub Parameters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
@@ -1142,12 +902,15 @@ static inline icd_status_t bootloader_request_current_unix_time(bootloader_clien
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Decode Current Unix Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Current Unix Time from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_CURRENT_UNIX_TIME_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_CURRENT_UNIX_TIME_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_current_unix_time_decode(message, event->data, event->length);
@@ -1161,12 +924,15 @@ static inline icd_status_t bootloader_request_unix_time_save_to_flash(bootloader
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Decode Unix Time Save to Flash from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Unix Time Save to Flash from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
@@ -1180,10 +946,13 @@ static inline icd_status_t bootloader_request_hole_map_1(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Decode Hole Map 1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 1 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_1_decode(message, event->data, event->length);
@@ -1197,10 +966,13 @@ static inline icd_status_t bootloader_request_hole_map_2(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Decode Hole Map 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 2 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_2_decode(message, event->data, event->length);
@@ -1214,10 +986,13 @@ static inline icd_status_t bootloader_request_hole_map_3(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Decode Hole Map 3 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 3 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_3_decode(message, event->data, event->length);
@@ -1231,10 +1006,13 @@ static inline icd_status_t bootloader_request_hole_map_4(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Decode Hole Map 4 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 4 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_4_decode(message, event->data, event->length);
@@ -1248,10 +1026,13 @@ static inline icd_status_t bootloader_request_hole_map_5(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Decode Hole Map 5 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 5 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_5_decode(message, event->data, event->length);
@@ -1265,10 +1046,13 @@ static inline icd_status_t bootloader_request_hole_map_6(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Decode Hole Map 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 6 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_6_decode(message, event->data, event->length);
@@ -1282,10 +1066,13 @@ static inline icd_status_t bootloader_request_hole_map_7(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Decode Hole Map 7 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 7 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_7_decode(message, event->data, event->length);
@@ -1299,10 +1086,13 @@ static inline icd_status_t bootloader_request_hole_map_8(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Decode Hole Map 8 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 8 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_8_decode(message, event->data, event->length);
@@ -1316,10 +1106,13 @@ static inline icd_status_t bootloader_request_state(bootloader_client_t *client,
     return icd_client_request(&client->client, now, BOOTLOADER_STATE_ID);
 }
 
-/** Decode Bootloader State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Bootloader State from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_state(bootloader_state_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, BOOTLOADER_STATE_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, BOOTLOADER_STATE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return bootloader_state_decode(message, event->data, event->length);
@@ -1333,12 +1126,15 @@ static inline icd_status_t bootloader_request_program_information(bootloader_cli
     return icd_client_request(&client->client, now, BOOTLOADER_PROGRAM_INFORMATION_ID);
 }
 
-/** Decode Program Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Program Information from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_program_information(
     bootloader_program_information_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, BOOTLOADER_PROGRAM_INFORMATION_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, BOOTLOADER_PROGRAM_INFORMATION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return bootloader_program_information_decode(message, event->data, event->length);
@@ -1352,12 +1148,15 @@ static inline icd_status_t bootloader_request_copy_to_internal_flash_progress(bo
     return icd_client_request(&client->client, now, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID);
 }
 
-/** Decode Copy To Internal Flash Progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Copy To Internal Flash Progress from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t bootloader_receive_copy_to_internal_flash_progress(
     bootloader_copy_to_internal_flash_progress_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, BOOTLOADER_NODE, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID)) {
+    if (!icd_is_telemetry(event, BOOTLOADER_NODE, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return bootloader_copy_to_internal_flash_progress_decode(message, event->data, event->length);

@@ -16,8 +16,10 @@
 #define COMMON_LONGEST 23u
 /** Buffer size in bytes of a CAN joiner, per slot. */
 #define COMMON_CAN_SLOT_BYTES 29u
-/** Buffer size of a client in bytes. */
+/** Buffer size in bytes of a client with one slot. */
 #define COMMON_CLIENT_BYTES 52u
+/** Size in bytes that each further slot adds to CLIENT_BYTES. */
+#define COMMON_REQUEST_BYTES 23u
 
 /** Return the description of the protocol of Common messages. */
 ICDGEN_API const icd_link_t *common_link(void);

@@ -128,28 +128,59 @@
 
 /**
  * A client that accepts only messages of CubeACP at compile time.
- * Pass `&client->client` to the icd_client_...() functions.
+ * Pass `&client->client` to the icd_client_...() functions. Do not move or copy it after initialization.
  */
 typedef struct {
     icd_client_t client;
+    icd_uart_line_t uart;
+    icd_i2c_line_t i2c;
+    icd_can_line_t can;
 } cubeacp_client_t;
 
-/** Initialize a client with a buffer of CUBEACP_CLIENT_BYTES bytes. See icd_client_uart(). */
-static inline icd_status_t cubeacp_client_uart(cubeacp_client_t *client, uint8_t *buffer, size_t size)
+/**
+ * Initialize a client. `slot_count` is the number of requests that can be in progress or waiting at the same time. The
+ * buffer needs CUBEACP_CLIENT_BYTES bytes, plus CUBEACP_REQUEST_BYTES for each slot after the first. See
+ * icd_client_uart().
+ */
+static inline icd_status_t cubeacp_client_uart(
+    cubeacp_client_t *client,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
 {
-    return icd_client_uart(&client->client, cubeacp_link(), buffer, size);
+    return icd_client_uart(&client->client, cubeacp_link(), &client->uart, slots, slot_count, buffer, size);
 }
 
-/** Initialize a client with a buffer of CUBEACP_CLIENT_BYTES bytes. See icd_client_i2c(). */
-static inline icd_status_t cubeacp_client_i2c(cubeacp_client_t *client, uint8_t *buffer, size_t size)
+/**
+ * Initialize a client. `slot_count` is the number of requests that can be in progress or waiting at the same time. The
+ * buffer needs CUBEACP_CLIENT_BYTES bytes, plus CUBEACP_REQUEST_BYTES for each slot after the first. See
+ * icd_client_i2c().
+ */
+static inline icd_status_t cubeacp_client_i2c(
+    cubeacp_client_t *client,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
 {
-    return icd_client_i2c(&client->client, cubeacp_link(), buffer, size);
+    return icd_client_i2c(&client->client, cubeacp_link(), &client->i2c, slots, slot_count, buffer, size);
 }
 
-/** Initialize a client with a buffer of CUBEACP_CLIENT_BYTES bytes. See icd_client_can(). */
-static inline icd_status_t cubeacp_client_can(cubeacp_client_t *client, uint8_t address, uint8_t *buffer, size_t size)
+/**
+ * Initialize a client. `slot_count` is the number of requests that can be in progress or waiting at the same time. The
+ * buffer needs CUBEACP_CLIENT_BYTES bytes, plus CUBEACP_REQUEST_BYTES for each slot after the first. See
+ * icd_client_can().
+ */
+static inline icd_status_t cubeacp_client_can(
+    cubeacp_client_t *client,
+    uint8_t address,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
 {
-    return icd_client_can(&client->client, cubeacp_link(), address, buffer, size);
+    return icd_client_can(&client->client, cubeacp_link(), &client->can, address, slots, slot_count, buffer, size);
 }
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET)
@@ -157,79 +188,38 @@ static inline icd_status_t cubeacp_client_can(cubeacp_client_t *client, uint8_t 
  * Send Reset. See icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
  */
-static inline icd_status_t cubeacp_send_reset(
-    cubeacp_client_t *client,
-    uint32_t now,
-    const common_reset_t *message,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_reset(cubeacp_client_t *client, uint32_t now, const common_reset_t *message)
 {
     uint8_t data[COMMON_RESET_LENGTH];
     const icd_status_t status = common_reset_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(&client->client, now, COMMON_RESET_ID, data, COMMON_RESET_LENGTH, false, on_event, context);
+    return icd_client_send(&client->client, now, COMMON_RESET_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_LOG_POINTER)
 /** Send Reset Log Pointer. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_reset_log_pointer(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_reset_log_pointer(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_LOG_POINTER_ID,
-        NULL,
-        COMMON_RESET_LOG_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_LOG_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_LOG_POINTER)
 /** Send Advance Log Pointer. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_advance_log_pointer(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_advance_log_pointer(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_ADVANCE_LOG_POINTER_ID,
-        NULL,
-        COMMON_ADVANCE_LOG_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_ADVANCE_LOG_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_BOOT_REGISTERS)
 /** Send Reset Boot Registers. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_reset_boot_registers(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_reset_boot_registers(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_BOOT_REGISTERS_ID,
-        NULL,
-        COMMON_RESET_BOOT_REGISTERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_BOOT_REGISTERS_ID, NULL, 0u, false);
 }
 #endif
 
@@ -241,24 +231,14 @@ static inline icd_status_t cubeacp_send_reset_boot_registers(
 static inline icd_status_t cubeacp_send_format_sd_card(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_format_sd_card_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_format_sd_card_t *message)
 {
     uint8_t data[COMMON_FORMAT_SD_CARD_LENGTH];
     const icd_status_t status = common_format_sd_card_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_FORMAT_SD_CARD_ID,
-        data,
-        COMMON_FORMAT_SD_CARD_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_FORMAT_SD_CARD_ID, data, sizeof data, false);
 }
 #endif
 
@@ -270,24 +250,14 @@ static inline icd_status_t cubeacp_send_format_sd_card(
 static inline icd_status_t cubeacp_send_erase_file(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_erase_file_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_erase_file_t *message)
 {
     uint8_t data[COMMON_ERASE_FILE_LENGTH];
     const icd_status_t status = common_erase_file_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_ERASE_FILE_ID,
-        data,
-        COMMON_ERASE_FILE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_ERASE_FILE_ID, data, sizeof data, false);
 }
 #endif
 
@@ -296,44 +266,22 @@ static inline icd_status_t cubeacp_send_erase_file(
 static inline icd_status_t cubeacp_send_load_file_download_block(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_load_file_download_block_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_load_file_download_block_t *message)
 {
     uint8_t data[COMMON_LOAD_FILE_DOWNLOAD_BLOCK_LENGTH];
     const icd_status_t status = common_load_file_download_block_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_LOAD_FILE_DOWNLOAD_BLOCK_ID,
-        data,
-        COMMON_LOAD_FILE_DOWNLOAD_BLOCK_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_LOAD_FILE_DOWNLOAD_BLOCK_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_FILE_LIST_READ_POINTER)
 /** Send Advance File List Read Pointer. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_ADVANCE_FILE_LIST_READ_POINTER_ID,
-        NULL,
-        COMMON_ADVANCE_FILE_LIST_READ_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_ADVANCE_FILE_LIST_READ_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
@@ -345,24 +293,14 @@ static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
 static inline icd_status_t cubeacp_send_initiate_file_upload(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_initiate_file_upload_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_initiate_file_upload_t *message)
 {
     uint8_t data[COMMON_INITIATE_FILE_UPLOAD_LENGTH];
     const icd_status_t status = common_initiate_file_upload_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_INITIATE_FILE_UPLOAD_ID,
-        data,
-        COMMON_INITIATE_FILE_UPLOAD_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_INITIATE_FILE_UPLOAD_ID, data, sizeof data, false);
 }
 #endif
 
@@ -371,24 +309,14 @@ static inline icd_status_t cubeacp_send_initiate_file_upload(
 static inline icd_status_t cubeacp_send_file_upload_packet(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_file_upload_packet_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_file_upload_packet_t *message)
 {
     uint8_t data[COMMON_FILE_UPLOAD_PACKET_LENGTH];
     const icd_status_t status = common_file_upload_packet_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_FILE_UPLOAD_PACKET_ID,
-        data,
-        COMMON_FILE_UPLOAD_PACKET_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_FILE_UPLOAD_PACKET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -397,64 +325,30 @@ static inline icd_status_t cubeacp_send_file_upload_packet(
 static inline icd_status_t cubeacp_send_finalize_upload_block(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_finalize_upload_block_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_finalize_upload_block_t *message)
 {
     uint8_t data[COMMON_FINALIZE_UPLOAD_BLOCK_LENGTH];
     const icd_status_t status = common_finalize_upload_block_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_FINALIZE_UPLOAD_BLOCK_ID,
-        data,
-        COMMON_FINALIZE_UPLOAD_BLOCK_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_FINALIZE_UPLOAD_BLOCK_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_UPLOAD_BLOCK)
 /** Send Reset Upload Block. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_reset_upload_block(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_reset_upload_block(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_UPLOAD_BLOCK_ID,
-        NULL,
-        COMMON_RESET_UPLOAD_BLOCK_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_UPLOAD_BLOCK_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_FILE_LIST_READ_POINTER)
 /** Send Reset File List Read Pointer. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_RESET_FILE_LIST_READ_POINTER_ID,
-        NULL,
-        COMMON_RESET_FILE_LIST_READ_POINTER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_RESET_FILE_LIST_READ_POINTER_ID, NULL, 0u, false);
 }
 #endif
 
@@ -463,24 +357,14 @@ static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
 static inline icd_status_t cubeacp_send_initiate_download_burst(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_initiate_download_burst_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_initiate_download_burst_t *message)
 {
     uint8_t data[COMMON_INITIATE_DOWNLOAD_BURST_LENGTH];
     const icd_status_t status = common_initiate_download_burst_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_INITIATE_DOWNLOAD_BURST_ID,
-        data,
-        COMMON_INITIATE_DOWNLOAD_BURST_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_INITIATE_DOWNLOAD_BURST_ID, data, sizeof data, false);
 }
 #endif
 
@@ -489,24 +373,14 @@ static inline icd_status_t cubeacp_send_initiate_download_burst(
 static inline icd_status_t cubeacp_send_cache_enabled_state(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_cache_enabled_state_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_cache_enabled_state_t *message)
 {
     uint8_t data[COMMON_CACHE_ENABLED_STATE_LENGTH];
     const icd_status_t status = common_cache_enabled_state_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_CACHE_ENABLED_STATE_SET_ID,
-        data,
-        COMMON_CACHE_ENABLED_STATE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_CACHE_ENABLED_STATE_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -515,24 +389,14 @@ static inline icd_status_t cubeacp_send_cache_enabled_state(
 static inline icd_status_t cubeacp_send_sram_scrub_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_sram_scrub_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_sram_scrub_parameters_t *message)
 {
     uint8_t data[COMMON_SRAM_SCRUB_PARAMETERS_LENGTH];
     const icd_status_t status = common_sram_scrub_parameters_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_SRAM_SCRUB_PARAMETERS_SET_ID,
-        data,
-        COMMON_SRAM_SCRUB_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -541,24 +405,14 @@ static inline icd_status_t cubeacp_send_sram_scrub_parameters(
 static inline icd_status_t cubeacp_send_current_unix_time(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_current_unix_time_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_current_unix_time_t *message)
 {
     uint8_t data[COMMON_CURRENT_UNIX_TIME_LENGTH];
     const icd_status_t status = common_current_unix_time_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_CURRENT_UNIX_TIME_SET_ID,
-        data,
-        COMMON_CURRENT_UNIX_TIME_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_CURRENT_UNIX_TIME_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -567,24 +421,14 @@ static inline icd_status_t cubeacp_send_current_unix_time(
 static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_unix_time_save_to_flash_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_unix_time_save_to_flash_t *message)
 {
     uint8_t data[COMMON_UNIX_TIME_SAVE_TO_FLASH_LENGTH];
     const icd_status_t status = common_unix_time_save_to_flash_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_UNIX_TIME_SAVE_TO_FLASH_SET_ID,
-        data,
-        COMMON_UNIX_TIME_SAVE_TO_FLASH_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -593,24 +437,14 @@ static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
 static inline icd_status_t cubeacp_send_hole_map_1(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_1_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_1_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_1_LENGTH];
     const icd_status_t status = common_hole_map_1_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_1_SET_ID,
-        data,
-        COMMON_HOLE_MAP_1_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_1_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -619,24 +453,14 @@ static inline icd_status_t cubeacp_send_hole_map_1(
 static inline icd_status_t cubeacp_send_hole_map_2(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_2_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_2_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_2_LENGTH];
     const icd_status_t status = common_hole_map_2_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_2_SET_ID,
-        data,
-        COMMON_HOLE_MAP_2_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_2_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -645,24 +469,14 @@ static inline icd_status_t cubeacp_send_hole_map_2(
 static inline icd_status_t cubeacp_send_hole_map_3(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_3_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_3_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_3_LENGTH];
     const icd_status_t status = common_hole_map_3_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_3_SET_ID,
-        data,
-        COMMON_HOLE_MAP_3_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_3_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -671,24 +485,14 @@ static inline icd_status_t cubeacp_send_hole_map_3(
 static inline icd_status_t cubeacp_send_hole_map_4(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_4_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_4_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_4_LENGTH];
     const icd_status_t status = common_hole_map_4_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_4_SET_ID,
-        data,
-        COMMON_HOLE_MAP_4_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_4_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -697,24 +501,14 @@ static inline icd_status_t cubeacp_send_hole_map_4(
 static inline icd_status_t cubeacp_send_hole_map_5(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_5_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_5_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_5_LENGTH];
     const icd_status_t status = common_hole_map_5_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_5_SET_ID,
-        data,
-        COMMON_HOLE_MAP_5_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_5_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -723,24 +517,14 @@ static inline icd_status_t cubeacp_send_hole_map_5(
 static inline icd_status_t cubeacp_send_hole_map_6(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_6_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_6_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_6_LENGTH];
     const icd_status_t status = common_hole_map_6_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_6_SET_ID,
-        data,
-        COMMON_HOLE_MAP_6_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_6_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -749,24 +533,14 @@ static inline icd_status_t cubeacp_send_hole_map_6(
 static inline icd_status_t cubeacp_send_hole_map_7(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_7_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_7_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_7_LENGTH];
     const icd_status_t status = common_hole_map_7_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_7_SET_ID,
-        data,
-        COMMON_HOLE_MAP_7_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_7_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -775,24 +549,14 @@ static inline icd_status_t cubeacp_send_hole_map_7(
 static inline icd_status_t cubeacp_send_hole_map_8(
     cubeacp_client_t *client,
     uint32_t now,
-    const common_hole_map_8_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const common_hole_map_8_t *message)
 {
     uint8_t data[COMMON_HOLE_MAP_8_LENGTH];
     const icd_status_t status = common_hole_map_8_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        COMMON_HOLE_MAP_8_SET_ID,
-        data,
-        COMMON_HOLE_MAP_8_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, COMMON_HOLE_MAP_8_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -804,24 +568,14 @@ static inline icd_status_t cubeacp_send_hole_map_8(
 static inline icd_status_t cubeacp_send_deploy_magnetometer_boom(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_deploy_magnetometer_boom_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_deploy_magnetometer_boom_t *message)
 {
     uint8_t data[CUBEACP_DEPLOY_MAGNETOMETER_BOOM_LENGTH];
     const icd_status_t status = cubeacp_deploy_magnetometer_boom_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_DEPLOY_MAGNETOMETER_BOOM_ID,
-        data,
-        CUBEACP_DEPLOY_MAGNETOMETER_BOOM_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_DEPLOY_MAGNETOMETER_BOOM_ID, data, sizeof data, false);
 }
 #endif
 
@@ -830,24 +584,14 @@ static inline icd_status_t cubeacp_send_deploy_magnetometer_boom(
 static inline icd_status_t cubeacp_send_set_adcs_run_mode(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_adcs_run_mode_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_adcs_run_mode_t *message)
 {
     uint8_t data[CUBEACP_SET_ADCS_RUN_MODE_LENGTH];
     const icd_status_t status = cubeacp_set_adcs_run_mode_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_ADCS_RUN_MODE_ID,
-        data,
-        CUBEACP_SET_ADCS_RUN_MODE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_ADCS_RUN_MODE_ID, data, sizeof data, false);
 }
 #endif
 
@@ -856,24 +600,14 @@ static inline icd_status_t cubeacp_send_set_adcs_run_mode(
 static inline icd_status_t cubeacp_send_clear_errors(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_clear_errors_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_clear_errors_t *message)
 {
     uint8_t data[CUBEACP_CLEAR_ERRORS_LENGTH];
     const icd_status_t status = cubeacp_clear_errors_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_CLEAR_ERRORS_ID,
-        data,
-        CUBEACP_CLEAR_ERRORS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_CLEAR_ERRORS_ID, data, sizeof data, false);
 }
 #endif
 
@@ -882,24 +616,14 @@ static inline icd_status_t cubeacp_send_clear_errors(
 static inline icd_status_t cubeacp_send_set_attitude_control_mode(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_attitude_control_mode_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_attitude_control_mode_t *message)
 {
     uint8_t data[CUBEACP_SET_ATTITUDE_CONTROL_MODE_LENGTH];
     const icd_status_t status = cubeacp_set_attitude_control_mode_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_ATTITUDE_CONTROL_MODE_ID,
-        data,
-        CUBEACP_SET_ATTITUDE_CONTROL_MODE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_ATTITUDE_CONTROL_MODE_ID, data, sizeof data, false);
 }
 #endif
 
@@ -908,24 +632,14 @@ static inline icd_status_t cubeacp_send_set_attitude_control_mode(
 static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_attitude_estimation_mode_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_attitude_estimation_mode_t *message)
 {
     uint8_t data[CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_LENGTH];
     const icd_status_t status = cubeacp_set_attitude_estimation_mode_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_ID,
-        data,
-        CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_ID, data, sizeof data, false);
 }
 #endif
 
@@ -934,24 +648,14 @@ static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
 static inline icd_status_t cubeacp_send_set_magnetorquer_output(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_magnetorquer_output_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_magnetorquer_output_t *message)
 {
     uint8_t data[CUBEACP_SET_MAGNETORQUER_OUTPUT_LENGTH];
     const icd_status_t status = cubeacp_set_magnetorquer_output_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_MAGNETORQUER_OUTPUT_ID,
-        data,
-        CUBEACP_SET_MAGNETORQUER_OUTPUT_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_MAGNETORQUER_OUTPUT_ID, data, sizeof data, false);
 }
 #endif
 
@@ -960,44 +664,22 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_output(
 static inline icd_status_t cubeacp_send_set_wheel_speed(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_wheel_speed_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_wheel_speed_t *message)
 {
     uint8_t data[CUBEACP_SET_WHEEL_SPEED_LENGTH];
     const icd_status_t status = cubeacp_set_wheel_speed_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_WHEEL_SPEED_ID,
-        data,
-        CUBEACP_SET_WHEEL_SPEED_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_WHEEL_SPEED_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_ADCS_LOOP)
 /** Send Trigger ADCS Loop. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_trigger_adcs_loop(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_trigger_adcs_loop(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_TRIGGER_ADCS_LOOP_ID,
-        NULL,
-        CUBEACP_TRIGGER_ADCS_LOOP_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_TRIGGER_ADCS_LOOP_ID, NULL, 0u, false);
 }
 #endif
 
@@ -1006,24 +688,14 @@ static inline icd_status_t cubeacp_send_trigger_adcs_loop(
 static inline icd_status_t cubeacp_send_trigger_simulated_loop(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_trigger_simulated_loop_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_trigger_simulated_loop_t *message)
 {
     uint8_t data[CUBEACP_TRIGGER_SIMULATED_LOOP_LENGTH];
     const icd_status_t status = cubeacp_trigger_simulated_loop_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_TRIGGER_SIMULATED_LOOP_ID,
-        data,
-        CUBEACP_TRIGGER_SIMULATED_LOOP_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_TRIGGER_SIMULATED_LOOP_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1032,44 +704,22 @@ static inline icd_status_t cubeacp_send_trigger_simulated_loop(
 static inline icd_status_t cubeacp_send_asgp4_run_mode(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_asgp4_run_mode_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_asgp4_run_mode_t *message)
 {
     uint8_t data[CUBEACP_ASGP4_RUN_MODE_LENGTH];
     const icd_status_t status = cubeacp_asgp4_run_mode_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_ASGP4_RUN_MODE_ID,
-        data,
-        CUBEACP_ASGP4_RUN_MODE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_ASGP4_RUN_MODE_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TRIGGER)
 /** Send ASGP4 Trigger. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_asgp4_trigger(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_asgp4_trigger(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_ASGP4_TRIGGER_ID,
-        NULL,
-        CUBEACP_ASGP4_TRIGGER_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_ASGP4_TRIGGER_ID, NULL, 0u, false);
 }
 #endif
 
@@ -1078,9 +728,7 @@ static inline icd_status_t cubeacp_send_asgp4_trigger(
 static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_mode_of_magnetometer_operation_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_mode_of_magnetometer_operation_t *message)
 {
     uint8_t data[CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_LENGTH];
     const icd_status_t status = cubeacp_set_mode_of_magnetometer_operation_encode(message, data, sizeof data);
@@ -1092,10 +740,8 @@ static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
         now,
         CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_ID,
         data,
-        CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1104,64 +750,30 @@ static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
 static inline icd_status_t cubeacp_send_convert_to_jpg_file(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_convert_to_jpg_file_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_convert_to_jpg_file_t *message)
 {
     uint8_t data[CUBEACP_CONVERT_TO_JPG_FILE_LENGTH];
     const icd_status_t status = cubeacp_convert_to_jpg_file_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_CONVERT_TO_JPG_FILE_ID,
-        data,
-        CUBEACP_CONVERT_TO_JPG_FILE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_CONVERT_TO_JPG_FILE_ID, data, sizeof data, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_CONFIGURATION)
 /** Send Save Configuration. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_save_configuration(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_save_configuration(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SAVE_CONFIGURATION_ID,
-        NULL,
-        CUBEACP_SAVE_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SAVE_CONFIGURATION_ID, NULL, 0u, false);
 }
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_ORBIT_PARAMETERS)
 /** Send Save Orbit Parameters. See icd_client_send(). */
-static inline icd_status_t cubeacp_send_save_orbit_parameters(
-    cubeacp_client_t *client,
-    uint32_t now,
-    icd_event_fn *on_event,
-    void *context)
+static inline icd_status_t cubeacp_send_save_orbit_parameters(cubeacp_client_t *client, uint32_t now)
 {
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SAVE_ORBIT_PARAMETERS_ID,
-        NULL,
-        CUBEACP_SAVE_ORBIT_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SAVE_ORBIT_PARAMETERS_ID, NULL, 0u, false);
 }
 #endif
 
@@ -1170,24 +782,14 @@ static inline icd_status_t cubeacp_send_save_orbit_parameters(
 static inline icd_status_t cubeacp_send_save_image(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_save_image_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_save_image_t *message)
 {
     uint8_t data[CUBEACP_SAVE_IMAGE_LENGTH];
     const icd_status_t status = cubeacp_save_image_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SAVE_IMAGE_ID,
-        data,
-        CUBEACP_SAVE_IMAGE_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SAVE_IMAGE_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1196,9 +798,7 @@ static inline icd_status_t cubeacp_send_save_image(
 static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_magnetorquer_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_magnetorquer_configuration_t *message)
 {
     uint8_t data[CUBEACP_SET_MAGNETORQUER_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_set_magnetorquer_configuration_encode(message, data, sizeof data);
@@ -1210,10 +810,8 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
         now,
         CUBEACP_SET_MAGNETORQUER_CONFIGURATION_SET_ID,
         data,
-        CUBEACP_SET_MAGNETORQUER_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1222,24 +820,14 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
 static inline icd_status_t cubeacp_send_set_wheel_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_wheel_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_wheel_configuration_t *message)
 {
     uint8_t data[CUBEACP_SET_WHEEL_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_set_wheel_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_WHEEL_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_SET_WHEEL_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1248,24 +836,14 @@ static inline icd_status_t cubeacp_send_set_wheel_configuration(
 static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_rate_gyro_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_rate_gyro_configuration_t *message)
 {
     uint8_t data[CUBEACP_SET_RATE_GYRO_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_set_rate_gyro_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SET_RATE_GYRO_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_SET_RATE_GYRO_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1274,24 +852,14 @@ static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
 static inline icd_status_t cubeacp_send_css_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_css_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_css_configuration_t *message)
 {
     uint8_t data[CUBEACP_CSS_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_css_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_CSS_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_CSS_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_CSS_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1300,24 +868,14 @@ static inline icd_status_t cubeacp_send_css_configuration(
 static inline icd_status_t cubeacp_send_adcs_power_control(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_adcs_power_control_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_adcs_power_control_t *message)
 {
     uint8_t data[CUBEACP_ADCS_POWER_CONTROL_LENGTH];
     const icd_status_t status = cubeacp_adcs_power_control_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_ADCS_POWER_CONTROL_SET_ID,
-        data,
-        CUBEACP_ADCS_POWER_CONTROL_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1326,24 +884,14 @@ static inline icd_status_t cubeacp_send_adcs_power_control(
 static inline icd_status_t cubeacp_send_commanded_attitude_angles(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_commanded_attitude_angles_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_commanded_attitude_angles_t *message)
 {
     uint8_t data[CUBEACP_COMMANDED_ATTITUDE_ANGLES_LENGTH];
     const icd_status_t status = cubeacp_commanded_attitude_angles_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_COMMANDED_ATTITUDE_ANGLES_SET_ID,
-        data,
-        CUBEACP_COMMANDED_ATTITUDE_ANGLES_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1352,9 +900,7 @@ static inline icd_status_t cubeacp_send_commanded_attitude_angles(
 static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_tracking_controller_target_reference_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_tracking_controller_target_reference_t *message)
 {
     uint8_t data[CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_LENGTH];
     const icd_status_t status = cubeacp_tracking_controller_target_reference_encode(message, data, sizeof data);
@@ -1366,10 +912,8 @@ static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
         now,
         CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_SET_ID,
         data,
-        CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1378,9 +922,7 @@ static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
 static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_star_tracker_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_star_tracker_configuration_t *message)
 {
     uint8_t data[CUBEACP_SET_STAR_TRACKER_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_set_star_tracker_configuration_encode(message, data, sizeof data);
@@ -1392,10 +934,8 @@ static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
         now,
         CUBEACP_SET_STAR_TRACKER_CONFIGURATION_SET_ID,
         data,
-        CUBEACP_SET_STAR_TRACKER_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1404,24 +944,14 @@ static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
 static inline icd_status_t cubeacp_send_cubesense_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_cubesense_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_cubesense_configuration_t *message)
 {
     uint8_t data[CUBEACP_CUBESENSE_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_cubesense_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_CUBESENSE_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_CUBESENSE_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1430,24 +960,14 @@ static inline icd_status_t cubeacp_send_cubesense_configuration(
 static inline icd_status_t cubeacp_send_magnetometer_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_magnetometer_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_magnetometer_configuration_t *message)
 {
     uint8_t data[CUBEACP_MAGNETOMETER_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_magnetometer_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_MAGNETOMETER_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1456,24 +976,14 @@ static inline icd_status_t cubeacp_send_magnetometer_configuration(
 static inline icd_status_t cubeacp_send_redundant_mag_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_redundant_mag_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_redundant_mag_configuration_t *message)
 {
     uint8_t data[CUBEACP_REDUNDANT_MAG_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_redundant_mag_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_REDUNDANT_MAG_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1482,24 +992,14 @@ static inline icd_status_t cubeacp_send_redundant_mag_configuration(
 static inline icd_status_t cubeacp_send_adcs_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_adcs_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_adcs_configuration_t *message)
 {
     uint8_t data[CUBEACP_ADCS_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_adcs_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_ADCS_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_ADCS_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_ADCS_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1508,24 +1008,14 @@ static inline icd_status_t cubeacp_send_adcs_configuration(
 static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_sgp4_orbit_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_sgp4_orbit_parameters_t *message)
 {
     uint8_t data[CUBEACP_SGP4_ORBIT_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_sgp4_orbit_parameters_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SGP4_ORBIT_PARAMETERS_SET_ID,
-        data,
-        CUBEACP_SGP4_ORBIT_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1534,9 +1024,7 @@ static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
 static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_detumbling_control_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_detumbling_control_parameters_t *message)
 {
     uint8_t data[CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_set_detumbling_control_parameters_encode(message, data, sizeof data);
@@ -1548,10 +1036,8 @@ static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
         now,
         CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_SET_ID,
         data,
-        CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1560,9 +1046,7 @@ static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
 static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_y_wheel_control_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_y_wheel_control_parameters_t *message)
 {
     uint8_t data[CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_set_y_wheel_control_parameters_encode(message, data, sizeof data);
@@ -1574,10 +1058,8 @@ static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
         now,
         CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_SET_ID,
         data,
-        CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1586,9 +1068,7 @@ static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
 static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_reaction_wheel_control_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_reaction_wheel_control_parameters_t *message)
 {
     uint8_t data[CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_set_reaction_wheel_control_parameters_encode(message, data, sizeof data);
@@ -1600,10 +1080,8 @@ static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
         now,
         CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_SET_ID,
         data,
-        CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1612,9 +1090,7 @@ static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
 static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_set_tracking_controller_gain_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_set_tracking_controller_gain_parameters_t *message)
 {
     uint8_t data[CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_set_tracking_controller_gain_parameters_encode(message, data, sizeof data);
@@ -1626,10 +1102,8 @@ static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
         now,
         CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_SET_ID,
         data,
-        CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1638,24 +1112,14 @@ static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
 static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_moment_of_inertia_matrix_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_moment_of_inertia_matrix_t *message)
 {
     uint8_t data[CUBEACP_MOMENT_OF_INERTIA_MATRIX_LENGTH];
     const icd_status_t status = cubeacp_moment_of_inertia_matrix_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_MOMENT_OF_INERTIA_MATRIX_SET_ID,
-        data,
-        CUBEACP_MOMENT_OF_INERTIA_MATRIX_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1664,24 +1128,14 @@ static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
 static inline icd_status_t cubeacp_send_estimation_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_estimation_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_estimation_parameters_t *message)
 {
     uint8_t data[CUBEACP_ESTIMATION_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_estimation_parameters_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_ESTIMATION_PARAMETERS_SET_ID,
-        data,
-        CUBEACP_ESTIMATION_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1690,24 +1144,14 @@ static inline icd_status_t cubeacp_send_estimation_parameters(
 static inline icd_status_t cubeacp_send_adcs_system_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_adcs_system_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_adcs_system_configuration_t *message)
 {
     uint8_t data[CUBEACP_ADCS_SYSTEM_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_adcs_system_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_ADCS_SYSTEM_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_ADCS_SYSTEM_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1716,9 +1160,7 @@ static inline icd_status_t cubeacp_send_adcs_system_configuration(
 static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_user_coded_controller_and_estimator_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_user_coded_controller_and_estimator_parameters_t *message)
 {
     uint8_t data[CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_user_coded_controller_and_estimator_parameters_encode(
@@ -1733,10 +1175,8 @@ static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_para
         now,
         CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_SET_ID,
         data,
-        CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1745,24 +1185,14 @@ static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_para
 static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_augmented_sgp4_parameters_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_augmented_sgp4_parameters_t *message)
 {
     uint8_t data[CUBEACP_AUGMENTED_SGP4_PARAMETERS_LENGTH];
     const icd_status_t status = cubeacp_augmented_sgp4_parameters_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_AUGMENTED_SGP4_PARAMETERS_SET_ID,
-        data,
-        CUBEACP_AUGMENTED_SGP4_PARAMETERS_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1771,24 +1201,14 @@ static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
 static inline icd_status_t cubeacp_send_sd_log1_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_sd_log1_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_sd_log1_configuration_t *message)
 {
     uint8_t data[CUBEACP_SD_LOG1_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_sd_log1_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SD_LOG1_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_SD_LOG1_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1797,24 +1217,14 @@ static inline icd_status_t cubeacp_send_sd_log1_configuration(
 static inline icd_status_t cubeacp_send_sd_log2_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_sd_log2_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_sd_log2_configuration_t *message)
 {
     uint8_t data[CUBEACP_SD_LOG2_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_sd_log2_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_SD_LOG2_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_SD_LOG2_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1823,24 +1233,14 @@ static inline icd_status_t cubeacp_send_sd_log2_configuration(
 static inline icd_status_t cubeacp_send_uart_log_configuration(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_uart_log_configuration_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_uart_log_configuration_t *message)
 {
     uint8_t data[CUBEACP_UART_LOG_CONFIGURATION_LENGTH];
     const icd_status_t status = cubeacp_uart_log_configuration_encode(message, data, sizeof data);
     if (status != ICD_OK) {
         return status;
     }
-    return icd_client_send(
-        &client->client,
-        now,
-        CUBEACP_UART_LOG_CONFIGURATION_SET_ID,
-        data,
-        CUBEACP_UART_LOG_CONFIGURATION_LENGTH,
-        false,
-        on_event,
-        context);
+    return icd_client_send(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_SET_ID, data, sizeof data, false);
 }
 #endif
 
@@ -1849,9 +1249,7 @@ static inline icd_status_t cubeacp_send_uart_log_configuration(
 static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
     cubeacp_client_t *client,
     uint32_t now,
-    const cubeacp_inertial_pointing_reference_vector_t *message,
-    icd_event_fn *on_event,
-    void *context)
+    const cubeacp_inertial_pointing_reference_vector_t *message)
 {
     uint8_t data[CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_LENGTH];
     const icd_status_t status = cubeacp_inertial_pointing_reference_vector_encode(message, data, sizeof data);
@@ -1863,10 +1261,8 @@ static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
         now,
         CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_SET_ID,
         data,
-        CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_LENGTH,
-        false,
-        on_event,
-        context);
+        sizeof data,
+        false);
 }
 #endif
 
@@ -1877,10 +1273,13 @@ static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Decode Identification from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Identification from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_IDENTIFICATION_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_IDENTIFICATION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_identification_decode(message, event->data, event->length);
@@ -1894,12 +1293,15 @@ static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubea
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Decode Boot And Running Program Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Boot And Running Program Status from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
@@ -1913,12 +1315,15 @@ static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Decode Boot Index and Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Boot Index and Status from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_BOOT_INDEX_AND_STATUS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_BOOT_INDEX_AND_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_boot_index_and_status_decode(message, event->data, event->length);
@@ -1932,12 +1337,15 @@ static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *c
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Decode Last Logged Event from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Last Logged Event from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_LAST_LOGGED_EVENT_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_LAST_LOGGED_EVENT_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_last_logged_event_decode(message, event->data, event->length);
@@ -1951,12 +1359,15 @@ static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Decode SRAM Latchup counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SRAM Latchup counters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_SRAM_LATCHUP_COUNTERS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_SRAM_LATCHUP_COUNTERS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_sram_latchup_counters_decode(message, event->data, event->length);
@@ -1970,12 +1381,15 @@ static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t 
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Decode EDAC Error Counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode EDAC Error Counters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_EDAC_ERROR_COUNTERS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_EDAC_ERROR_COUNTERS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_edac_error_counters_decode(message, event->data, event->length);
@@ -1989,12 +1403,15 @@ static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Decode Communication Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Communication Status from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_COMMUNICATION_STATUS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_COMMUNICATION_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_communication_status_decode(message, event->data, event->length);
@@ -2008,12 +1425,15 @@ static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Decode SD card format/erase progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SD card format/erase progress from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
@@ -2027,12 +1447,15 @@ static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_clien
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Decode Telecommand Acknowledge from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Telecommand Acknowledge from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_TELECOMMAND_ACKNOWLEDGE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_TELECOMMAND_ACKNOWLEDGE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
@@ -2048,12 +1471,15 @@ static inline icd_status_t cubeacp_request_file_download_buffer_with_file_conten
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/** Decode File Download Buffer with File Contents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode File Download Buffer with File Contents from an event: unsolicited, requested, or another response to a
+ * request. Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
@@ -2067,12 +1493,15 @@ static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Decode Download Block Ready from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Download Block Ready from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_DOWNLOAD_BLOCK_READY_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_DOWNLOAD_BLOCK_READY_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_download_block_ready_decode(message, event->data, event->length);
@@ -2086,12 +1515,15 @@ static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *cl
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Decode File Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode File Information from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_file_information(
     common_file_information_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_FILE_INFORMATION_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_FILE_INFORMATION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_file_information_decode(message, event->data, event->length);
@@ -2105,12 +1537,15 @@ static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_cl
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Decode Initialize Upload Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Initialize Upload Complete from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_initialize_upload_complete_decode(message, event->data, event->length);
@@ -2124,12 +1559,15 @@ static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Decode Upload Block Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Upload Block Complete from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_UPLOAD_BLOCK_COMPLETE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_UPLOAD_BLOCK_COMPLETE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_upload_block_complete_decode(message, event->data, event->length);
@@ -2143,10 +1581,13 @@ static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Decode Block Checksum from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Block Checksum from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_block_checksum_decode(message, event->data, event->length);
@@ -2160,12 +1601,15 @@ static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t 
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Decode Cache enabled state from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Cache enabled state from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_CACHE_ENABLED_STATE_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_CACHE_ENABLED_STATE_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_cache_enabled_state_decode(message, event->data, event->length);
@@ -2179,12 +1623,15 @@ static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Decode SRAM Scrub Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SRAM Scrub Parameters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
@@ -2198,12 +1645,15 @@ static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *c
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Decode Current Unix Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Current Unix Time from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_CURRENT_UNIX_TIME_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_CURRENT_UNIX_TIME_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_current_unix_time_decode(message, event->data, event->length);
@@ -2217,12 +1667,15 @@ static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_clien
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Decode Unix Time Save to Flash from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Unix Time Save to Flash from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
@@ -2236,10 +1689,13 @@ static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Decode Hole Map 1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 1 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_1_decode(message, event->data, event->length);
@@ -2253,10 +1709,13 @@ static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Decode Hole Map 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 2 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_2_decode(message, event->data, event->length);
@@ -2270,10 +1729,13 @@ static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Decode Hole Map 3 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 3 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_3_decode(message, event->data, event->length);
@@ -2287,10 +1749,13 @@ static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Decode Hole Map 4 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 4 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_4_decode(message, event->data, event->length);
@@ -2304,10 +1769,13 @@ static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Decode Hole Map 5 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 5 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_5_decode(message, event->data, event->length);
@@ -2321,10 +1789,13 @@ static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Decode Hole Map 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 6 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_6_decode(message, event->data, event->length);
@@ -2338,10 +1809,13 @@ static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Decode Hole Map 7 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 7 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_7_decode(message, event->data, event->length);
@@ -2355,10 +1829,13 @@ static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Decode Hole Map 8 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Hole Map 8 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return common_hole_map_8_decode(message, event->data, event->length);
@@ -2372,12 +1849,15 @@ static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_ID);
 }
 
-/** Decode Current ADCS State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Current ADCS State from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_current_adcs_state(
     cubeacp_current_adcs_state_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CURRENT_ADCS_STATE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CURRENT_ADCS_STATE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_current_adcs_state_decode(message, event->data, event->length);
@@ -2391,12 +1871,15 @@ static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_JPG_CONVERSION_PROGRESS_ID);
 }
 
-/** Decode JPG Conversion Progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode JPG Conversion Progress from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
     cubeacp_jpg_conversion_progress_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_JPG_CONVERSION_PROGRESS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_JPG_CONVERSION_PROGRESS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_jpg_conversion_progress_decode(message, event->data, event->length);
@@ -2410,10 +1893,13 @@ static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint3
     return icd_client_request(&client->client, now, CUBEACP_STATE_ID);
 }
 
-/** Decode CubeACP State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeACP State from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STATE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STATE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_state_decode(message, event->data, event->length);
@@ -2427,12 +1913,15 @@ static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID);
 }
 
-/** Decode Estimated Attitude Angles from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimated Attitude Angles from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
     cubeacp_estimated_attitude_angles_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimated_attitude_angles_decode(message, event->data, event->length);
@@ -2446,12 +1935,15 @@ static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ANGULAR_RATES_ID);
 }
 
-/** Decode Estimated Angular Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimated Angular Rates from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimated_angular_rates(
     cubeacp_estimated_angular_rates_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATED_ANGULAR_RATES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATED_ANGULAR_RATES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimated_angular_rates_decode(message, event->data, event->length);
@@ -2465,12 +1957,15 @@ static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_ECI_ID);
 }
 
-/** Decode Satellite Position (ECI) from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Satellite Position (ECI) from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_satellite_position_eci(
     cubeacp_satellite_position_eci_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SATELLITE_POSITION_ECI_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SATELLITE_POSITION_ECI_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_satellite_position_eci_decode(message, event->data, event->length);
@@ -2484,12 +1979,15 @@ static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_VELOCITY_ECI_ID);
 }
 
-/** Decode Satellite Velocity (ECI) from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Satellite Velocity (ECI) from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
     cubeacp_satellite_velocity_eci_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SATELLITE_VELOCITY_ECI_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SATELLITE_VELOCITY_ECI_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_satellite_velocity_eci_decode(message, event->data, event->length);
@@ -2503,12 +2001,15 @@ static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_LLH_ID);
 }
 
-/** Decode Satellite Position (LLH) from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Satellite Position (LLH) from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_satellite_position_llh(
     cubeacp_satellite_position_llh_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SATELLITE_POSITION_LLH_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SATELLITE_POSITION_LLH_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_satellite_position_llh_decode(message, event->data, event->length);
@@ -2522,12 +2023,15 @@ static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_MAGNETIC_FIELD_VECTOR_ID);
 }
 
-/** Decode Magnetic Field Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Magnetic Field Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_magnetic_field_vector(
     cubeacp_magnetic_field_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_MAGNETIC_FIELD_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_MAGNETIC_FIELD_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_magnetic_field_vector_decode(message, event->data, event->length);
@@ -2541,12 +2045,15 @@ static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_COARSE_SUN_VECTOR_ID);
 }
 
-/** Decode Coarse Sun Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Coarse Sun Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_coarse_sun_vector(
     cubeacp_coarse_sun_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_COARSE_SUN_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_COARSE_SUN_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_coarse_sun_vector_decode(message, event->data, event->length);
@@ -2560,10 +2067,13 @@ static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_FINE_SUN_VECTOR_ID);
 }
 
-/** Decode Fine Sun Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Fine Sun Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vector_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_FINE_SUN_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_FINE_SUN_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_fine_sun_vector_decode(message, event->data, event->length);
@@ -2577,10 +2087,13 @@ static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client
     return icd_client_request(&client->client, now, CUBEACP_NADIR_VECTOR_ID);
 }
 
-/** Decode Nadir Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Nadir Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_NADIR_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_NADIR_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_nadir_vector_decode(message, event->data, event->length);
@@ -2594,12 +2107,15 @@ static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_RATES_ID);
 }
 
-/** Decode Rate Sensor Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Rate Sensor Rates from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_rate_sensor_rates(
     cubeacp_rate_sensor_rates_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RATE_SENSOR_RATES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RATE_SENSOR_RATES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_rate_sensor_rates_decode(message, event->data, event->length);
@@ -2613,10 +2129,13 @@ static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client,
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_ID);
 }
 
-/** Decode Wheel Speed from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Wheel Speed from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_SPEED_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_WHEEL_SPEED_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_wheel_speed_decode(message, event->data, event->length);
@@ -2630,12 +2149,15 @@ static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_MAGNETORQUER_COMMAND_ID);
 }
 
-/** Decode Magnetorquer Command from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Magnetorquer Command from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_magnetorquer_command(
     cubeacp_magnetorquer_command_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_MAGNETORQUER_COMMAND_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_MAGNETORQUER_COMMAND_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_magnetorquer_command_decode(message, event->data, event->length);
@@ -2649,12 +2171,15 @@ static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_COMMANDS_ID);
 }
 
-/** Decode Wheel Speed Commands from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Wheel Speed Commands from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_wheel_speed_commands(
     cubeacp_wheel_speed_commands_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_SPEED_COMMANDS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_WHEEL_SPEED_COMMANDS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_wheel_speed_commands_decode(message, event->data, event->length);
@@ -2668,12 +2193,15 @@ static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(c
     return icd_client_request(&client->client, now, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID);
 }
 
-/** Decode IGRF Modelled Magnetic Field Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode IGRF Modelled Magnetic Field Vector from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_igrf_modelled_magnetic_field_vector_decode(message, event->data, event->length);
@@ -2687,12 +2215,15 @@ static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_MODELLED_SUN_VECTOR_ID);
 }
 
-/** Decode Modelled Sun Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Modelled Sun Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_modelled_sun_vector(
     cubeacp_modelled_sun_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_MODELLED_SUN_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_MODELLED_SUN_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_modelled_sun_vector_decode(message, event->data, event->length);
@@ -2706,12 +2237,15 @@ static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_GYRO_BIAS_ID);
 }
 
-/** Decode Estimated Gyro Bias from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimated Gyro Bias from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
     cubeacp_estimated_gyro_bias_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATED_GYRO_BIAS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATED_GYRO_BIAS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimated_gyro_bias_decode(message, event->data, event->length);
@@ -2725,12 +2259,15 @@ static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID);
 }
 
-/** Decode Estimation Innovation Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimation Innovation Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
     cubeacp_estimation_innovation_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimation_innovation_vector_decode(message, event->data, event->length);
@@ -2744,12 +2281,15 @@ static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_ERROR_VECTOR_ID);
 }
 
-/** Decode Quaternion Error Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Quaternion Error Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_quaternion_error_vector(
     cubeacp_quaternion_error_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_QUATERNION_ERROR_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_QUATERNION_ERROR_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_quaternion_error_vector_decode(message, event->data, event->length);
@@ -2763,12 +2303,15 @@ static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_COVARIANCE_ID);
 }
 
-/** Decode Quaternion Covariance from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Quaternion Covariance from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_quaternion_covariance(
     cubeacp_quaternion_covariance_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_QUATERNION_COVARIANCE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_QUATERNION_COVARIANCE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_quaternion_covariance_decode(message, event->data, event->length);
@@ -2782,12 +2325,15 @@ static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_ANGULAR_RATE_COVARIANCE_ID);
 }
 
-/** Decode Angular Rate Covariance from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Angular Rate Covariance from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_angular_rate_covariance(
     cubeacp_angular_rate_covariance_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ANGULAR_RATE_COVARIANCE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ANGULAR_RATE_COVARIANCE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_angular_rate_covariance_decode(message, event->data, event->length);
@@ -2801,10 +2347,13 @@ static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM2_SENSOR_ID);
 }
 
-/** Decode Raw Cam2 Sensor from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw Cam2 Sensor from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sensor_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CAM2_SENSOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_CAM2_SENSOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_cam2_sensor_decode(message, event->data, event->length);
@@ -2818,10 +2367,13 @@ static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM1_SENSOR_ID);
 }
 
-/** Decode Raw Cam1 Sensor from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw Cam1 Sensor from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sensor_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CAM1_SENSOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_CAM1_SENSOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_cam1_sensor_decode(message, event->data, event->length);
@@ -2835,10 +2387,13 @@ static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_1_TO_6_ID);
 }
 
-/** Decode Raw CSS 1 to 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw CSS 1 to 6 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CSS_1_TO_6_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_CSS_1_TO_6_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_css_1_to_6_decode(message, event->data, event->length);
@@ -2852,10 +2407,13 @@ static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_7_TO_10_ID);
 }
 
-/** Decode Raw CSS 7 to 10 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw CSS 7 to 10 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_10_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CSS_7_TO_10_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_CSS_7_TO_10_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_css_7_to_10_decode(message, event->data, event->length);
@@ -2869,12 +2427,15 @@ static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *cl
     return icd_client_request(&client->client, now, CUBEACP_RAW_MAGNETOMETER_ID);
 }
 
-/** Decode Raw Magnetometer from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw Magnetometer from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_magnetometer(
     cubeacp_raw_magnetometer_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_MAGNETOMETER_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_MAGNETOMETER_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_magnetometer_decode(message, event->data, event->length);
@@ -2888,12 +2449,15 @@ static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE1_CURRENTS_ID);
 }
 
-/** Decode CubeSense1 Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeSense1 Current Measurements from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cubesense1_currents(
     cubeacp_cubesense1_currents_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CUBESENSE1_CURRENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CUBESENSE1_CURRENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_cubesense1_currents_decode(message, event->data, event->length);
@@ -2907,12 +2471,15 @@ static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_CUBECONTROL_CURRENTS_ID);
 }
 
-/** Decode CubeControl Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeControl Current Measurements from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cubecontrol_currents(
     cubeacp_cubecontrol_currents_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CUBECONTROL_CURRENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CUBECONTROL_CURRENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_cubecontrol_currents_decode(message, event->data, event->length);
@@ -2926,10 +2493,13 @@ static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_CURRENTS_ID);
 }
 
-/** Decode Wheel Currents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Wheel Currents from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_CURRENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_WHEEL_CURRENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_wheel_currents_decode(message, event->data, event->length);
@@ -2943,12 +2513,15 @@ static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_ADCS_TEMPERATURES_ID);
 }
 
-/** Decode ADCS Temperatures from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS Temperatures from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_temperatures(
     cubeacp_adcs_temperatures_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_TEMPERATURES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_TEMPERATURES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_temperatures_decode(message, event->data, event->length);
@@ -2962,12 +2535,15 @@ static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_clie
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_TEMPERATURES_ID);
 }
 
-/** Decode Rate sensor temperatures from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Rate sensor temperatures from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
     cubeacp_rate_sensor_temperatures_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RATE_SENSOR_TEMPERATURES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RATE_SENSOR_TEMPERATURES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_rate_sensor_temperatures_decode(message, event->data, event->length);
@@ -2981,10 +2557,13 @@ static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_STATUS_ID);
 }
 
-/** Decode Raw GPS Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw GPS Status from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_STATUS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_GPS_STATUS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_gps_status_decode(message, event->data, event->length);
@@ -2998,10 +2577,13 @@ static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_TIME_ID);
 }
 
-/** Decode Raw GPS Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw GPS Time from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_TIME_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_GPS_TIME_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_gps_time_decode(message, event->data, event->length);
@@ -3015,10 +2597,13 @@ static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, u
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_X_ID);
 }
 
-/** Decode Raw GPS X from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw GPS X from an event: unsolicited, requested, or another response to a request. Return ICD_ERROR_UNKNOWN_ID
+ * for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_X_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_GPS_X_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_gps_x_decode(message, event->data, event->length);
@@ -3032,10 +2617,13 @@ static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, u
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Y_ID);
 }
 
-/** Decode Raw GPS Y from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw GPS Y from an event: unsolicited, requested, or another response to a request. Return ICD_ERROR_UNKNOWN_ID
+ * for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Y_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Y_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_gps_y_decode(message, event->data, event->length);
@@ -3049,10 +2637,13 @@ static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, u
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Z_ID);
 }
 
-/** Decode Raw GPS Z from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw GPS Z from an event: unsolicited, requested, or another response to a request. Return ICD_ERROR_UNKNOWN_ID
+ * for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Z_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Z_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_gps_z_decode(message, event->data, event->length);
@@ -3066,12 +2657,15 @@ static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_BODY_VECTOR_ID);
 }
 
-/** Decode Star 1 Body Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 1 Body Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_1_body_vector(
     cubeacp_star_1_body_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_1_BODY_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_1_BODY_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_1_body_vector_decode(message, event->data, event->length);
@@ -3085,12 +2679,15 @@ static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_BODY_VECTOR_ID);
 }
 
-/** Decode Star 2 Body Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 2 Body Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_2_body_vector(
     cubeacp_star_2_body_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_2_BODY_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_2_BODY_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_2_body_vector_decode(message, event->data, event->length);
@@ -3104,12 +2701,15 @@ static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_BODY_VECTOR_ID);
 }
 
-/** Decode Star 3 Body Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 3 Body Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_3_body_vector(
     cubeacp_star_3_body_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_3_BODY_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_3_BODY_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_3_body_vector_decode(message, event->data, event->length);
@@ -3123,12 +2723,15 @@ static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_ORBIT_VECTOR_ID);
 }
 
-/** Decode Star 1 Orbit Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 1 Orbit Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
     cubeacp_star_1_orbit_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_1_ORBIT_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_1_ORBIT_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_1_orbit_vector_decode(message, event->data, event->length);
@@ -3142,12 +2745,15 @@ static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_ORBIT_VECTOR_ID);
 }
 
-/** Decode Star 2 Orbit Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 2 Orbit Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
     cubeacp_star_2_orbit_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_2_ORBIT_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_2_ORBIT_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_2_orbit_vector_decode(message, event->data, event->length);
@@ -3161,12 +2767,15 @@ static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_ORBIT_VECTOR_ID);
 }
 
-/** Decode Star 3 Orbit Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 3 Orbit Vector from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
     cubeacp_star_3_orbit_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_3_ORBIT_VECTOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_3_ORBIT_VECTOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_3_orbit_vector_decode(message, event->data, event->length);
@@ -3180,10 +2789,13 @@ static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_STAR_MAGNITUDE_ID);
 }
 
-/** Decode Star Magnitude from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star Magnitude from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_MAGNITUDE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_MAGNITUDE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_magnitude_decode(message, event->data, event->length);
@@ -3197,12 +2809,15 @@ static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE1_ID);
 }
 
-/** Decode Star Performance1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star Performance1 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_performance1(
     cubeacp_star_performance1_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_PERFORMANCE1_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_PERFORMANCE1_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_performance1_decode(message, event->data, event->length);
@@ -3216,10 +2831,13 @@ static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client,
     return icd_client_request(&client->client, now, CUBEACP_STAR_TIMING_ID);
 }
 
-/** Decode Star Timing from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star Timing from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_TIMING_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_TIMING_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_timing_decode(message, event->data, event->length);
@@ -3233,10 +2851,13 @@ static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, CUBEACP_ADCS_STATE_ID);
 }
 
-/** Decode ADCS State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS State from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_STATE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_STATE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_state_decode(message, event->data, event->length);
@@ -3250,12 +2871,15 @@ static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MEASUREMENTS_ID);
 }
 
-/** Decode ADCS Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS Measurements from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_measurements(
     cubeacp_adcs_measurements_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_MEASUREMENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_MEASUREMENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_measurements_decode(message, event->data, event->length);
@@ -3269,12 +2893,15 @@ static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_ACTUATOR_COMMANDS_ID);
 }
 
-/** Decode Actuator Commands from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Actuator Commands from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_actuator_commands(
     cubeacp_actuator_commands_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ACTUATOR_COMMANDS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ACTUATOR_COMMANDS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_actuator_commands_decode(message, event->data, event->length);
@@ -3288,10 +2915,13 @@ static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_DATA_ID);
 }
 
-/** Decode Estimation Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimation Data from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_data_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATION_DATA_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATION_DATA_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimation_data_decode(message, event->data, event->length);
@@ -3305,12 +2935,15 @@ static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID);
 }
 
-/** Decode Raw Sensor Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw Sensor Measurements from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
     cubeacp_raw_sensor_measurements_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_sensor_measurements_decode(message, event->data, event->length);
@@ -3324,12 +2957,15 @@ static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_POWER_AND_TEMPERATURE_ID);
 }
 
-/** Decode Power and Temperature Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Power and Temperature Measurements from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_power_and_temperature(
     cubeacp_power_and_temperature_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_POWER_AND_TEMPERATURE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_POWER_AND_TEMPERATURE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_power_and_temperature_decode(message, event->data, event->length);
@@ -3343,12 +2979,15 @@ static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_ADCS_EXECUTION_TIMES_ID);
 }
 
-/** Decode Adcs Execution Times from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Adcs Execution Times from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_execution_times(
     cubeacp_adcs_execution_times_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_EXECUTION_TIMES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_EXECUTION_TIMES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_execution_times_decode(message, event->data, event->length);
@@ -3362,12 +3001,15 @@ static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MISC_CURRENTS_ID);
 }
 
-/** Decode ADCS Misc Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS Misc Current Measurements from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_misc_currents(
     cubeacp_adcs_misc_currents_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_MISC_CURRENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_MISC_CURRENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_misc_currents_decode(message, event->data, event->length);
@@ -3381,12 +3023,15 @@ static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_FINE_ANGULAR_RATES_ID);
 }
 
-/** Decode Fine Estimated Angular Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Fine Estimated Angular Rates from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_fine_angular_rates(
     cubeacp_fine_angular_rates_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_FINE_ANGULAR_RATES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_FINE_ANGULAR_RATES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_fine_angular_rates_decode(message, event->data, event->length);
@@ -3400,12 +3045,15 @@ static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_MEASUREMENTS_ID);
 }
 
-/** Decode Raw GPS Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw GPS Measurements from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_gps_measurements(
     cubeacp_raw_gps_measurements_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_MEASUREMENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_GPS_MEASUREMENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_gps_measurements_decode(message, event->data, event->length);
@@ -3419,12 +3067,15 @@ static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *cl
     return icd_client_request(&client->client, now, CUBEACP_RAW_STAR_TRACKER_ID);
 }
 
-/** Decode Raw Star Tracker from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw Star Tracker from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_star_tracker(
     cubeacp_raw_star_tracker_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_STAR_TRACKER_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_STAR_TRACKER_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_star_tracker_decode(message, event->data, event->length);
@@ -3438,10 +3089,13 @@ static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_RAW_DATA_ID);
 }
 
-/** Decode Star 1 Raw Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 1 Raw Data from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_data_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_1_RAW_DATA_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_1_RAW_DATA_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_1_raw_data_decode(message, event->data, event->length);
@@ -3455,10 +3109,13 @@ static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_RAW_DATA_ID);
 }
 
-/** Decode Star 2 Raw Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 2 Raw Data from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_data_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_2_RAW_DATA_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_2_RAW_DATA_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_2_raw_data_decode(message, event->data, event->length);
@@ -3472,10 +3129,13 @@ static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_RAW_DATA_ID);
 }
 
-/** Decode Star 3 Raw Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star 3 Raw Data from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_data_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_3_RAW_DATA_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_3_RAW_DATA_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_3_raw_data_decode(message, event->data, event->length);
@@ -3491,12 +3151,15 @@ static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measuremen
     return icd_client_request(&client->client, now, CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID);
 }
 
-/** Decode Secondary Magnetometer Raw Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Secondary Magnetometer Raw Measurements from an event: unsolicited, requested, or another response to a
+ * request. Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measurements(
     cubeacp_secondary_magnetometer_raw_measurements_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_secondary_magnetometer_raw_measurements_decode(message, event->data, event->length);
@@ -3510,10 +3173,13 @@ static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_RATE_SENSOR_ID);
 }
 
-/** Decode Raw Rate Sensor from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Raw Rate Sensor from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sensor_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_RATE_SENSOR_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_RAW_RATE_SENSOR_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_raw_rate_sensor_decode(message, event->data, event->length);
@@ -3527,12 +3193,15 @@ static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_QUATERNION_ID);
 }
 
-/** Decode Estimated Quaternion from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimated Quaternion from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimated_quaternion(
     cubeacp_estimated_quaternion_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATED_QUATERNION_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATED_QUATERNION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimated_quaternion_decode(message, event->data, event->length);
@@ -3546,10 +3215,13 @@ static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *clien
     return icd_client_request(&client->client, now, CUBEACP_ECEF_POSITION_ID);
 }
 
-/** Decode ECEF Position from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ECEF Position from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ECEF_POSITION_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ECEF_POSITION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_ecef_position_decode(message, event->data, event->length);
@@ -3563,12 +3235,15 @@ static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_ACP_EXECUTION_STATE_ID);
 }
 
-/** Decode ACP Execution State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ACP Execution State from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_acp_execution_state(
     cubeacp_acp_execution_state_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ACP_EXECUTION_STATE_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ACP_EXECUTION_STATE_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_acp_execution_state_decode(message, event->data, event->length);
@@ -3582,12 +3257,15 @@ static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_2_ID);
 }
 
-/** Decode Current ADCS State 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Current ADCS State 2 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_current_adcs_state_2(
     cubeacp_current_adcs_state_2_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CURRENT_ADCS_STATE_2_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CURRENT_ADCS_STATE_2_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_current_adcs_state_2_decode(message, event->data, event->length);
@@ -3601,10 +3279,13 @@ static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, CUBEACP_ASGP4_TLES_ID);
 }
 
-/** Decode ASGP4 TLEs from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ASGP4 TLEs from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *message, const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ASGP4_TLES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ASGP4_TLES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_asgp4_tles_decode(message, event->data, event->length);
@@ -3618,12 +3299,15 @@ static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_clie
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID);
 }
 
-/** Decode CubeStar Estimated Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeStar Estimated Rates from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
     cubeacp_cubestar_estimated_rates_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_cubestar_estimated_rates_decode(message, event->data, event->length);
@@ -3637,12 +3321,15 @@ static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID);
 }
 
-/** Decode CubeStar Estimated Quaternion from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeStar Estimated Quaternion from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
     cubeacp_cubestar_estimated_quaternion_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_cubestar_estimated_quaternion_decode(message, event->data, event->length);
@@ -3656,12 +3343,15 @@ static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE2_ID);
 }
 
-/** Decode Star Performance2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Star Performance2 from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_star_performance2(
     cubeacp_star_performance2_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_PERFORMANCE2_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STAR_PERFORMANCE2_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_star_performance2_decode(message, event->data, event->length);
@@ -3675,12 +3365,15 @@ static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE2_CURRENTS_ID);
 }
 
-/** Decode CubeSense2 Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeSense2 Current Measurements from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cubesense2_currents(
     cubeacp_cubesense2_currents_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CUBESENSE2_CURRENTS_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CUBESENSE2_CURRENTS_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_cubesense2_currents_decode(message, event->data, event->length);
@@ -3696,12 +3389,15 @@ static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_oper
     return icd_client_request(&client->client, now, CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID);
 }
 
-/** Decode Status of Image Capture and Save Operation from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Status of Image Capture and Save Operation from an event: unsolicited, requested, or another response to a
+ * request. Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_operation(
     cubeacp_status_of_image_capture_and_save_operation_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_status_of_image_capture_and_save_operation_decode(message, event->data, event->length);
@@ -3715,12 +3411,15 @@ static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeac
     return icd_client_request(&client->client, now, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID);
 }
 
-/** Decode Set Magnetorquer Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Magnetorquer Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
     cubeacp_set_magnetorquer_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_magnetorquer_configuration_decode(message, event->data, event->length);
@@ -3734,12 +3433,15 @@ static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID);
 }
 
-/** Decode Set Wheel Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Wheel Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_wheel_configuration(
     cubeacp_set_wheel_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_wheel_configuration_decode(message, event->data, event->length);
@@ -3753,12 +3455,15 @@ static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_c
     return icd_client_request(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID);
 }
 
-/** Decode Set Rate Gyro Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Rate Gyro Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
     cubeacp_set_rate_gyro_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_rate_gyro_configuration_decode(message, event->data, event->length);
@@ -3772,12 +3477,15 @@ static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_CSS_CONFIGURATION_GET_ID);
 }
 
-/** Decode CSS Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CSS Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_css_configuration(
     cubeacp_css_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CSS_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CSS_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_css_configuration_decode(message, event->data, event->length);
@@ -3791,12 +3499,15 @@ static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_GET_ID);
 }
 
-/** Decode ADCS Power Control from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS Power Control from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_power_control(
     cubeacp_adcs_power_control_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_POWER_CONTROL_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_POWER_CONTROL_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_power_control_decode(message, event->data, event->length);
@@ -3810,12 +3521,15 @@ static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID);
 }
 
-/** Decode Commanded Attitude Angles from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Commanded Attitude Angles from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
     cubeacp_commanded_attitude_angles_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_commanded_attitude_angles_decode(message, event->data, event->length);
@@ -3829,12 +3543,15 @@ static inline icd_status_t cubeacp_request_tracking_controller_target_reference(
     return icd_client_request(&client->client, now, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID);
 }
 
-/** Decode Tracking Controller Target Reference from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Tracking Controller Target Reference from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
     cubeacp_tracking_controller_target_reference_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_tracking_controller_target_reference_decode(message, event->data, event->length);
@@ -3848,12 +3565,15 @@ static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeac
     return icd_client_request(&client->client, now, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID);
 }
 
-/** Decode Set Star Tracker Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Star Tracker Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
     cubeacp_set_star_tracker_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_star_tracker_configuration_decode(message, event->data, event->length);
@@ -3867,12 +3587,15 @@ static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID);
 }
 
-/** Decode CubeSense Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode CubeSense Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_cubesense_configuration(
     cubeacp_cubesense_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_cubesense_configuration_decode(message, event->data, event->length);
@@ -3886,12 +3609,15 @@ static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_cl
     return icd_client_request(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID);
 }
 
-/** Decode Magnetometer Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Magnetometer Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_magnetometer_configuration(
     cubeacp_magnetometer_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_magnetometer_configuration_decode(message, event->data, event->length);
@@ -3905,12 +3631,15 @@ static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_c
     return icd_client_request(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID);
 }
 
-/** Decode Redundant Magnetometer Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Redundant Magnetometer Configuration from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
     cubeacp_redundant_mag_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_redundant_mag_configuration_decode(message, event->data, event->length);
@@ -3924,12 +3653,15 @@ static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_ADCS_CONFIGURATION_GET_ID);
 }
 
-/** Decode ADCS Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_configuration(
     cubeacp_adcs_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_configuration_decode(message, event->data, event->length);
@@ -3943,12 +3675,15 @@ static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID);
 }
 
-/** Decode SGP4 Orbit Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SGP4 Orbit Parameters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
     cubeacp_sgp4_orbit_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_sgp4_orbit_parameters_decode(message, event->data, event->length);
@@ -3962,12 +3697,15 @@ static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cub
     return icd_client_request(&client->client, now, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Decode Set Detumbling Control Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Detumbling Control Parameters from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
     cubeacp_set_detumbling_control_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_detumbling_control_parameters_decode(message, event->data, event->length);
@@ -3981,12 +3719,15 @@ static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeac
     return icd_client_request(&client->client, now, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Decode Set Y-Wheel Control Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Y-Wheel Control Parameters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
     cubeacp_set_y_wheel_control_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_y_wheel_control_parameters_decode(message, event->data, event->length);
@@ -4000,12 +3741,15 @@ static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters
     return icd_client_request(&client->client, now, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Decode Set Reaction Wheel Control Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Reaction Wheel Control Parameters from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters(
     cubeacp_set_reaction_wheel_control_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_reaction_wheel_control_parameters_decode(message, event->data, event->length);
@@ -4021,12 +3765,15 @@ static inline icd_status_t cubeacp_request_set_tracking_controller_gain_paramete
     return icd_client_request(&client->client, now, CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID);
 }
 
-/** Decode Set Tracking Controller Gain Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Set Tracking Controller Gain Parameters from an event: unsolicited, requested, or another response to a
+ * request. Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_parameters(
     cubeacp_set_tracking_controller_gain_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_set_tracking_controller_gain_parameters_decode(message, event->data, event->length);
@@ -4040,12 +3787,15 @@ static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_clie
     return icd_client_request(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID);
 }
 
-/** Decode Moment of Inertia Matrix from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Moment of Inertia Matrix from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
     cubeacp_moment_of_inertia_matrix_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_moment_of_inertia_matrix_decode(message, event->data, event->length);
@@ -4059,12 +3809,15 @@ static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_GET_ID);
 }
 
-/** Decode Estimation Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Estimation Parameters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_estimation_parameters(
     cubeacp_estimation_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATION_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ESTIMATION_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_estimation_parameters_decode(message, event->data, event->length);
@@ -4078,12 +3831,15 @@ static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID);
 }
 
-/** Decode ADCS System Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode ADCS System Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_adcs_system_configuration(
     cubeacp_adcs_system_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_adcs_system_configuration_decode(message, event->data, event->length);
@@ -4100,13 +3856,14 @@ static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_p
 }
 
 /**
- * Decode User-coded Controller and Estimator Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events.
+ * Decode User-coded Controller and Estimator Parameters from an event: unsolicited, requested, or another response to a
+ * request. Return ICD_ERROR_UNKNOWN_ID for other events.
  */
 static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_parameters(
     cubeacp_user_coded_controller_and_estimator_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_user_coded_controller_and_estimator_parameters_decode(message, event->data, event->length);
@@ -4120,12 +3877,15 @@ static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID);
 }
 
-/** Decode Augmented-SGP4 Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Augmented-SGP4 Parameters from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
     cubeacp_augmented_sgp4_parameters_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_augmented_sgp4_parameters_decode(message, event->data, event->length);
@@ -4139,12 +3899,15 @@ static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID);
 }
 
-/** Decode SD Log1 Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SD Log1 Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_sd_log1_configuration(
     cubeacp_sd_log1_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_sd_log1_configuration_decode(message, event->data, event->length);
@@ -4158,12 +3921,15 @@ static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID);
 }
 
-/** Decode SD Log2 Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode SD Log2 Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_sd_log2_configuration(
     cubeacp_sd_log2_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_sd_log2_configuration_decode(message, event->data, event->length);
@@ -4177,12 +3943,15 @@ static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_GET_ID);
 }
 
-/** Decode UART Log Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode UART Log Configuration from an event: unsolicited, requested, or another response to a request. Return
+ * ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_uart_log_configuration(
     cubeacp_uart_log_configuration_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_UART_LOG_CONFIGURATION_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_UART_LOG_CONFIGURATION_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_uart_log_configuration_decode(message, event->data, event->length);
@@ -4196,12 +3965,15 @@ static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cu
     return icd_client_request(&client->client, now, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID);
 }
 
-/** Decode Inertial Pointing Reference Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode Inertial Pointing Reference Vector from an event: unsolicited, requested, or another response to a request.
+ * Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_inertial_pointing_reference_vector(
     cubeacp_inertial_pointing_reference_vector_t *message,
     const icd_event_t *event)
 {
-    if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID)) {
+    if (!icd_is_telemetry(event, CUBEACP_NODE, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID)) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     return cubeacp_inertial_pointing_reference_vector_decode(message, event->data, event->length);

@@ -855,15 +855,6 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
     static const icd_unsolicited_t unsolicited[] = {
         {119u, 241u, 22u}, /* File Download Buffer with File Contents */
     };
-    static const icd_place_t polled_places[] = {
-        {ICD_ROLE_ID, 0u, 8u}, /* Last TC ID */
-        {ICD_ROLE_PROCESSED, 8u, 1u}, /* Processed flag */
-        {ICD_ROLE_ERROR, 16u, 8u}, /* TC error status */
-        {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
-    };
-    static const icd_report_t polled = {
-        -1, 240, 4u, 4u, polled_places,
-    };
     /**
      * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
@@ -1129,6 +1120,61 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
     static const icd_report_t identification = {
         -1, 128, 8u, 2u, identification_places,
     };
+    static const icd_number_place_t sources_0[] = {
+        {0u, 4u, 0u, 32u, false},
+    };
+    static const icd_echo_t echoes_0[] = {
+        {{4u, 1u, 0u, 8u, false}, 0u},
+    };
+    static const icd_meaning_t meanings_0[] = {
+        {0x0u, ICD_VERDICT_ACK},
+        {0x4u, ICD_VERDICT_AGAIN},
+    };
+    static const icd_response_t responses_0[] = {
+        {0x0u, ICD_VERDICT_NAK, 1u, true, 2u, echoes_0, meanings_0,
+            {5u, 1u, 0u, 8u, false}, {5u, 1u, 0u, 8u, false}, {0u, 0u, 0u, 0u, false}},
+    };
+    static const icd_exchange_t uart_exchanges[] = {
+        {sources_0, NULL, 1u, 0u, 0u, true, 0u, NULL},
+        {sources_0, responses_0, 1u, 0u, 1u, false, 0u, NULL},
+    };
+    static const icd_bus_exchanges_t on_uart = {
+        &uart_exchanges[1], &uart_exchanges[0],
+    };
+    static const icd_echo_t echoes_1[] = {
+        {{4u, 1u, 0u, 8u, true}, 0u},
+    };
+    static const icd_response_t responses_1[] = {
+        {0xf0u, ICD_VERDICT_NAK, 1u, false, 2u, echoes_1, meanings_0,
+            {6u, 1u, 0u, 8u, true}, {6u, 1u, 0u, 8u, true}, {7u, 1u, 0u, 8u, true}},
+    };
+    static const icd_outcome_poll_t outcome_poll = {
+        240u, {5u, 1u, 0u, 1u, true},
+    };
+    static const icd_exchange_t i2c_exchanges[] = {
+        {sources_0, NULL, 1u, 0u, 0u, true, 0u, NULL},
+        {sources_0, responses_1, 1u, 0u, 1u, false, 0u, &outcome_poll},
+    };
+    static const icd_bus_exchanges_t on_i2c = {
+        &i2c_exchanges[1], &i2c_exchanges[0],
+    };
+    static const icd_response_t responses_2[] = {
+        {0x2u, ICD_VERDICT_NAK, 1u, true, 0u, echoes_0, NULL,
+            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
+    };
+    static const icd_response_t responses_3[] = {
+        {0x0u, ICD_VERDICT_ACK, 1u, true, 0u, echoes_0, NULL,
+            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
+        {0x1u, ICD_VERDICT_NAK, 1u, true, 0u, echoes_0, NULL,
+            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
+    };
+    static const icd_exchange_t can_exchanges[] = {
+        {sources_0, responses_2, 1u, 0u, 1u, true, 0u, NULL},
+        {sources_0, responses_3, 1u, 0u, 2u, false, 0u, NULL},
+    };
+    static const icd_bus_exchanges_t on_can = {
+        &can_exchanges[1], &can_exchanges[0],
+    };
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
@@ -1160,7 +1206,6 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         87, /* I2C address */
         true, /* I2C: a read may follow its write without a stop */
         5000, /* boot time in ms */
-        &polled, /* what is polled for an acknowledge */
         &can, /* CAN */
         &checksum, /* checksums of messages */
         &crc16, /* CRC of files */
@@ -1170,6 +1215,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         ICDGEN_OF_FILES(&packed_time), /* packed times */
         ICDGEN_OF_FILES(&index_entry), /* index of files */
         &identification, /* identification */
+        {&on_uart, &on_i2c, &on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* framing */
     };
     /* clang-format on */

@@ -16,8 +16,10 @@
 #define CUBEACP_LONGEST 506u
 /** Buffer size in bytes of a CAN joiner, per slot. */
 #define CUBEACP_CAN_SLOT_BYTES 505u
-/** Buffer size of a client in bytes. */
+/** Buffer size in bytes of a client with one slot. */
 #define CUBEACP_CLIENT_BYTES 1012u
+/** Size in bytes that each further slot adds to CLIENT_BYTES. */
+#define CUBEACP_REQUEST_BYTES 506u
 /** Buffer size of a log reader in bytes. */
 #define CUBEACP_LOG_BYTES 496u
 

@@ -50,7 +50,7 @@ static inline void icdgen_can_tell(
     icd_event_fn *on_event,
     void *context)
 {
-    icd_event_t event = icdgen_event(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event = icdgen_event_of(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.missing = missing;
     on_event(context, &event);
@@ -66,11 +66,11 @@ static inline void icdgen_can_tell_message(
     icd_event_fn *on_event,
     void *context)
 {
-    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event = icdgen_event_of(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.destination = ICDGEN_U8(icdgen_can_part(link->can->destination, key));
     event.can_kind = kind;
-    data[-1] = event.id;
+    data[-1] = ICDGEN_U8(event.id);
     event.data = data;
     event.length = length;
     on_event(context, &event);
@@ -222,7 +222,7 @@ static inline void icdgen_can_extended(
     if (slot == NULL) {
         slot = icdgen_can_slot(joiner);
         if (slot == NULL) {
-            icdgen_can_tell(link, packet->id, ICD_EVENT_BUSY, 0, on_event, context);
+            icdgen_can_tell(link, packet->id, ICD_EVENT_NO_SLOT, 0, on_event, context);
             return;
         }
         fresh.data = slot->data;

@@ -60,7 +60,7 @@ ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event
 
 /**
  * Pass one received packet to the joiner. `now` is in milliseconds.
- * Events: ICD_EVENT_MESSAGE (`data` without the id), INCOMPLETE, MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
+ * Events: ICD_EVENT_MESSAGE (`data` without the id), INCOMPLETE, MALFORMED, DUPLICATE, NO_SLOT and UNKNOWN_TYPE.
  */
 ICDGEN_API void icd_can_feed(
     icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);

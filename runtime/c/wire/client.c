@@ -2,314 +2,497 @@
 #define ICDGEN_WIRE_CLIENT_C
 
 #include "client.h"
+#include "envelope.h"
 #include "events.c"
 
-ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
+/* A client and its event callback. */
+typedef struct {
+    icd_client_t *client;
+    icd_event_fn *on_event;
+    void *context;
+} icdgen_call_t;
+
+/* How a request is sent, and what responds to it. */
+typedef struct {
+    const icd_exchange_t *exchange; /* NULL: nothing responds, unless there is a reply */
+    uint32_t sent_id;               /* of icd_slot_t */
+    size_t least;                   /* bounds of the number of data bytes */
+    size_t most;
+    bool asks_by_id;
+    bool repeats;
+    bool has_reply; /* this and the following ones are of icd_awaited_t */
+    uint32_t reply;
+    bool is_nameless;
+    bool is_in_order;
+} icdgen_plan_t;
+
+/* What the client needs to know of a line. Functions that a line does not need are NULL. */
+struct icd_line {
+    bool has_results; /* of its transmissions, which can fail */
+    icd_bus_t bus;    /* except on framed links */
+    icd_status_t (*plan)(const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan);
+    /* Store the data of a request in its slot. Return an error if it cannot be encoded. */
+    icd_status_t (*store)(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length);
+    bool (*output)(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
+    void (*received)(const icdgen_call_t *call, const uint8_t *bytes, size_t count);
+    void (*expire)(const icdgen_call_t *call, uint32_t now); /* incomplete messages */
+};
+
+/* Return the largest number of bytes that a slot stores. */
+static inline size_t icdgen_request_bytes(const icd_link_t *link)
+{
+    const icd_stream_form_t *const form = link->stream;
+    size_t most = link->longest_telecommand;
+    if (form != NULL) {
+        most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
+        for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
+            const size_t bytes = form->rows[ICD_TELECOMMAND][i].most;
+            most = bytes > most ? bytes : most;
+        }
+    }
+    return most;
+}
+
+/* Return the buffer size of the decoder, or of the CAN joiner. */
+static inline size_t icdgen_receive_bytes(const icd_link_t *link)
 {
     const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
+    return slot > link->longest ? slot : ICDGEN_SIZE(link->longest);
 }
 
-static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
+ICDGEN_API size_t icd_client_bytes(const icd_link_t *link, size_t requests)
 {
-    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
+    return icdgen_receive_bytes(link) + (requests * icdgen_request_bytes(link));
 }
 
-/* Initialize the part that is the same for all buses. */
+/* Initialize what is the same on all lines. The first bytes of the buffer are for what is received. */
 static inline icd_status_t icdgen_client_init(
-    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
+    icd_client_t *client, const icd_link_t *link, icd_slot_t *slots, size_t slot_count, uint8_t *buffer, size_t size)
 {
+    const size_t first = icdgen_receive_bytes(link);
+    const size_t each = icdgen_request_bytes(link);
     (void)memset(client, 0, sizeof *client);
     client->link = link;
-    client->bus = bus;
     client->settings = link->client;
-    if (link->checksum != NULL) {
-        client->checks_telecommands = icdgen_on_bus(link->checksum->telecommand_always, bus);
-        client->checks_telemetry = icdgen_on_bus(link->checksum->telemetry_always, bus);
+    if (size < first + (slot_count * each)) {
+        return ICD_ERROR_LENGTH;
     }
-    client->whole = buffer;
-    client->encoder.ended = true;
-    return size < icd_client_bytes(link) ? ICD_ERROR_LENGTH : ICD_OK;
-}
-
-ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size)
-{
-    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_UART, buffer, size);
-    if (status == ICD_OK) {
-        status = icd_uart_decoder_init(
-            &client->decoder, link, buffer + ICDGEN_SIZE(link->longest_telecommand), ICDGEN_SIZE(link->longest));
+    client->slots = slots;
+    client->slot_count = slot_count;
+    for (size_t i = 0; i < slot_count; ++i) {
+        (void)memset(&slots[i], 0, sizeof slots[i]);
+        slots[i].data = buffer + first + (i * each);
     }
-    client->ready = status == ICD_OK;
-    return status;
+    return ICD_OK;
 }
 
-ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size)
+static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
 {
-    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_I2C, buffer, size);
-    if (status == ICD_OK && link->i2c_address < 0) {
-        status = ICD_ERROR_UNSUPPORTED;
+    return UINT32_C(1) << ICDGEN_U32(verdict);
+}
+
+static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_number_place_t *b)
+{
+    return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
+}
+
+/* The reply that the caller specified, or the requested telemetry. Its id is in icd_awaited_t. */
+static const icd_response_t icdgen_specified_reply = {
+    0u,
+    ICD_VERDICT_REPLY,
+    0u,
+    false,
+    0u,
+    NULL,
+    NULL,
+    {0u, 0u, 0u, 0u, false},
+    {0u, 0u, 0u, 0u, false},
+    {0u, 0u, 0u, 0u, false}};
+
+/* Return what a response can mean, as a mask of verdicts. */
+static inline uint32_t icdgen_verdicts(const icd_response_t *response)
+{
+    uint32_t verdicts = icdgen_verdict_bit(response->verdict);
+    for (size_t i = 0; i < response->meaning_count; ++i) {
+        verdicts |= icdgen_verdict_bit(response->meanings[i].verdict);
     }
-    client->ready = status == ICD_OK;
-    return status;
+    return verdicts;
 }
 
-static inline icd_status_t icdgen_client_split(const icd_client_t *client, icd_can_splitter_t *splitter)
+static inline bool icdgen_can_be_reply(const icd_response_t *response)
 {
-    const icd_can_kind_t kind = client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST;
-    return icd_can_split(
-        splitter, client->link, kind, client->whole[0], client->address, client->link->can->node_address,
-        client->whole + 1, client->whole_length - 1u);
+    return (icdgen_verdicts(response) & icdgen_verdict_bit(ICD_VERDICT_REPLY)) != 0u;
 }
 
-static inline bool icdgen_client_fits_can(const icd_client_t *client)
+/*
+ * Return the possible response to a request at a position or after it, and advance the position. NULL if there is none.
+ * The reply that the caller specified takes the place of those in the ICD, and is the last; requested telemetry is the
+ * first.
+ */
+static inline const icd_response_t *icdgen_next_response(const icd_awaited_t *awaited, size_t *position)
 {
-    icd_can_splitter_t splitter;
-    return icdgen_client_split(client, &splitter) == ICD_OK;
-}
-
-static inline void icdgen_client_expire_can(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    icd_can_expire(&client->joiner, now, on_event, context);
-}
-
-ICDGEN_API icd_status_t
-icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size)
-{
-    const size_t first = ICDGEN_SIZE(link->longest_telecommand);
-    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_CAN, buffer, size);
-    client->address = address;
-    client->fits = icdgen_client_fits_can;
-    client->expire = icdgen_client_expire_can;
-    if (status == ICD_OK) {
-        status = icd_can_joiner_init(&client->joiner, link, address, &client->slot, 1, buffer + first, size - first);
+    const icd_exchange_t *const exchange = awaited->exchange;
+    const bool has_reply = awaited->has_reply;
+    const size_t own = exchange->is_request ? ICDGEN_SIZE(0) : exchange->response_count;
+    while (*position <= exchange->response_count) {
+        const size_t i = *position;
+        (*position)++;
+        if (i == own) {
+            if (has_reply) {
+                return &icdgen_specified_reply;
+            }
+        } else {
+            const icd_response_t *const response = &exchange->responses[i - (i > own ? 1u : 0u)];
+            if (!has_reply || !icdgen_can_be_reply(response)) {
+                return response;
+            }
+        }
     }
-    client->ready = status == ICD_OK;
-    return status;
+    return NULL;
 }
 
-ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
+static inline uint32_t icdgen_response_source(const icd_awaited_t *awaited, const icd_response_t *response)
 {
-    const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands = form != NULL && icdgen_on_bus(form->telecommand_buses, client->bus);
-    client->checks_telemetry = form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus);
+    return response == &icdgen_specified_reply ? awaited->reply : response->source;
+}
+
+/* Return the verdicts without which a request is not done, as a mask. */
+static inline uint32_t icdgen_needed(const icd_awaited_t *awaited)
+{
+    uint32_t verdicts = 0;
+    size_t position = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, &position);
+    while (response != NULL) {
+        verdicts |= icdgen_verdicts(response);
+        response = icdgen_next_response(awaited, &position);
+    }
+    return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
+}
+
+/* Return the response to a request that telemetry or a packet is; NULL if it is none of them. */
+static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited, const icd_event_t *event)
+{
+    const uint32_t source = event->is_packet ? event->packet : event->id;
+    size_t position = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, &position);
+    while (response != NULL) {
+        bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
+        for (size_t i = 0; matches && i < response->echo_count; ++i) {
+            const icd_echo_t *const echo = &response->echoes[i];
+            matches = icdgen_stream_number(&echo->place, event->id, event->data, event->length) ==
+                awaited->sources[echo->source];
+        }
+        if (matches) {
+            break;
+        }
+        response = icdgen_next_response(awaited, &position);
+    }
+    return response;
+}
+
+/* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
+static inline size_t icdgen_message_sources(const icd_awaited_t *awaited)
+{
+    return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
+}
+
+/* Return whether the responses to two requests have different numbers at the same place. */
+static inline bool icdgen_differs_in_echo(
+    const icd_awaited_t *a, const icd_response_t *response_a, const icd_awaited_t *b, const icd_response_t *response_b)
+{
+    for (size_t i = 0; i < response_a->echo_count; ++i) {
+        const icd_echo_t *const echo = &response_a->echoes[i];
+        for (size_t j = 0; j < response_b->echo_count; ++j) {
+            const icd_echo_t *const other = &response_b->echoes[j];
+            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_message_sources(a) &&
+                other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* Return whether a response to one request could be taken for a response to the other. */
+static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b)
+{
+    if (a->is_in_order || b->is_in_order) {
+        return false;
+    }
+    if (a->is_nameless && b->is_nameless) {
+        return true;
+    }
+    size_t position_a = 0;
+    const icd_response_t *of_a = icdgen_next_response(a, &position_a);
+    while (of_a != NULL) {
+        size_t position_b = 0;
+        const icd_response_t *of_b = icdgen_next_response(b, &position_b);
+        while (of_b != NULL) {
+            const bool is_same = icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
+                of_a->is_packet == of_b->is_packet;
+            if (is_same && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
+                return true;
+            }
+            of_b = icdgen_next_response(b, &position_b);
+        }
+        of_a = icdgen_next_response(a, &position_a);
+    }
+    return false;
+}
+
+static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
+{
+    if (response->status.bits != 0u) {
+        const uint32_t status = icdgen_stream_number(&response->status, event->id, event->data, event->length);
+        for (size_t i = 0; i < response->meaning_count; ++i) {
+            if (response->meanings[i].value == status) {
+                return response->meanings[i].verdict;
+            }
+        }
+    }
+    return response->verdict;
+}
+
+static inline bool icdgen_is_owed(const icd_awaited_t *awaited)
+{
+    return awaited->owed[ICD_VERDICT_ACK] != 0u || awaited->owed[ICD_VERDICT_REPLY] != 0u;
+}
+
+/* Count a response. A refusal takes the place of all others to the same transmission. */
+static inline void icdgen_settle(icd_awaited_t *awaited, icd_verdict_t verdict)
+{
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
+        const bool settles = ICDGEN_SIZE(verdict) == i || verdict == ICD_VERDICT_NAK || verdict == ICD_VERDICT_BUSY ||
+            verdict == ICD_VERDICT_AGAIN;
+        if (settles && awaited->owed[i] != 0u) {
+            awaited->owed[i]--;
+        }
+    }
+}
+
+static inline uint32_t icdgen_timeout(const icd_client_t *client, const icd_awaited_t *awaited)
+{
+    return awaited->exchange->timeout != 0u ? awaited->exchange->timeout : client->settings.reply_timeout;
+}
+
+/* Return the time at which a late response to a request can no longer arrive. */
+static inline uint32_t icdgen_late_end(const icd_client_t *client, const icd_awaited_t *awaited)
+{
+    return awaited->latest + client->settings.late;
+}
+
+/*
+ * Return whether a late response to a request can still arrive. An idle client may not be called for so long that the
+ * clock wraps around, so a time in the future is only one that is not further away than it can be.
+ */
+static inline bool icdgen_can_be_late(const icd_client_t *client, const icd_awaited_t *awaited)
+{
+    const uint32_t left = icdgen_late_end(client, awaited) - client->now;
+    uint32_t longest = icdgen_timeout(client, awaited);
+    if (awaited->exchange->poll != NULL && client->settings.poll_timeout > longest) {
+        longest = client->settings.poll_timeout;
+    }
+    return left != 0u && left <= longest + client->settings.late;
+}
+
+/* Remove an entry of the late responses. */
+static inline void icdgen_forget(icd_client_t *client, size_t index)
+{
+    client->late_count--;
+    for (size_t i = index; i < client->late_count; ++i) {
+        client->late[i] = client->late[i + 1u];
+    }
+}
+
+/* Store the time, and drop what has passed. */
+static inline void icdgen_set_time(icd_client_t *client, uint32_t now)
+{
+    size_t i = 0;
+    client->now = now;
+    client->in_gap = client->in_gap && now - client->sent_at < client->settings.gap;
+    while (i < client->late_count) {
+        if (icdgen_can_be_late(client, &client->late[i])) {
+            i++;
+        } else {
+            icdgen_forget(client, i);
+        }
+    }
+}
+
+/* End a request, and remember the responses that may still arrive. */
+static inline void icdgen_request_end(icd_client_t *client, size_t index)
+{
+    const icd_awaited_t *const awaited = &client->slots[index].awaited;
+    uint8_t *const data = client->slots[index].data;
+    if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
+        client->late[client->late_count] = *awaited;
+        client->late_count++;
+    }
+    client->started--;
+    for (size_t i = index; i < client->started; ++i) {
+        client->slots[i] = client->slots[i + 1u];
+    }
+    client->slots[client->started].data = data;
+}
+
+/* Return the oldest request that is to be sent; NULL if there is none. */
+static inline icd_slot_t *icdgen_queued(const icd_client_t *client)
+{
+    for (size_t i = 0; i < client->started; ++i) {
+        if (client->slots[i].state == ICD_SLOT_QUEUED) {
+            return &client->slots[i];
+        }
+    }
+    return NULL;
+}
+
+/* Return whether the state of a request ends at a time: it was sent, and its output is taken. */
+static inline bool icdgen_has_end(const icd_client_t *client, const icd_slot_t *slot)
+{
+    return slot->state != ICD_SLOT_QUEUED && slot->data != client->partial;
+}
+
+/* Return whether a response may arrive for a request, and it does not poll. */
+static inline bool icdgen_has_responses(const icd_slot_t *slot)
+{
+    size_t position = 0;
+    return !slot->is_polled && icdgen_next_response(&slot->awaited, &position) != NULL;
+}
+
+/* Return how many other requests in progress wait for responses, also those that are to be sent again. */
+static inline size_t icdgen_unfinished(const icd_client_t *client, const icd_slot_t *slot)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < client->started; ++i) {
+        count += (&client->slots[i] != slot && client->slots[i].missing != 0u) ? 1u : 0u;
+    }
+    return count;
+}
+
+/*
+ * Return whether a late response must arrive, or be forgotten, before a request is sent: it could be taken for its own,
+ * or no more of them can be remembered.
+ */
+static inline bool icdgen_is_blocked(const icd_client_t *client, const icd_slot_t *slot, const icd_awaited_t *late)
+{
+    return icdgen_has_responses(slot) &&
+        (icdgen_unfinished(client, slot) + client->late_count >= ICDGEN_MOST_AWAITED ||
+         icdgen_is_like(&slot->awaited, late));
+}
+
+/* The earliest of some times. */
+typedef struct {
+    uint32_t time;
+    bool exists;
+} icdgen_earliest_t;
+
+static inline void icdgen_earliest_add(icdgen_earliest_t *earliest, uint32_t time)
+{
+    if (!earliest->exists || icdgen_reached(earliest->time, time)) {
+        earliest->time = time;
+        earliest->exists = true;
+    }
 }
 
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
 {
-    *deadline = client->until;
-    return client->state != ICD_CLIENT_IDLE;
-}
-
-/* Forget the late responses that can no longer arrive. */
-static inline void icdgen_client_forget(icd_client_t *client, uint32_t now)
-{
-    const icd_client_settings_t *const settings = &client->settings;
-    const bool polls = client->bus == ICD_BUS_I2C && settings->poll_timeout > settings->reply_timeout;
-    const uint32_t longest = (polls ? settings->poll_timeout : settings->reply_timeout) + settings->late;
-    uint8_t kept = 0;
-    for (uint8_t i = 0; i < client->late_count; ++i) {
-        const icd_late_t late = client->late[i];
-        const uint32_t left = late.until - now; /* large if the time is over */
-        if (late.responses != 0u && left != 0u && left <= longest) {
-            client->late[kept] = late;
-            kept++;
+    icdgen_earliest_t earliest = {0u, false};
+    const icd_slot_t *const queued = icdgen_queued(client);
+    for (size_t i = 0; i < client->started; ++i) {
+        if (icdgen_has_end(client, &client->slots[i])) {
+            icdgen_earliest_add(&earliest, client->slots[i].until);
         }
     }
-    client->late_count = kept;
-}
-
-static inline bool icdgen_client_waits_for(const icd_client_t *client, icd_direction_t direction, uint32_t id)
-{
-    return client->state == ICD_CLIENT_WAIT && client->direction == direction && client->message->id == id;
-}
-
-/* Return whether this is a response to a request that has ended, and count it. */
-static inline bool icdgen_client_is_late(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
-{
-    bool is_late = false;
-    for (uint8_t i = 0; i < client->late_count; ++i) {
-        icd_late_t *const late = &client->late[i];
-        if (late->direction == direction && late->id == id) {
-            late->responses--;
-            is_late = true;
+    if (queued != NULL) {
+        /* It may be possible to send the request then. */
+        if (client->in_gap) {
+            icdgen_earliest_add(&earliest, client->sent_at + client->settings.gap);
+        }
+        for (size_t i = 0; i < client->late_count; ++i) {
+            if (icdgen_is_blocked(client, queued, &client->late[i])) {
+                icdgen_earliest_add(&earliest, icdgen_late_end(client, &client->late[i]));
+            }
         }
     }
-    icdgen_client_forget(client, now);
-    return is_late;
+    *deadline = earliest.time;
+    return earliest.exists;
 }
 
-/* End the request, and remember the responses that may still arrive. They count from the last transmission. */
-static inline void icdgen_client_stop(icd_client_t *client)
+/* Return whether telemetry is a possible reply in the ICD. */
+static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 {
-    if (client->awaited != 0u && client->late_count < ICDGEN_MOST_AWAITED) {
-        icd_late_t *const late = &client->late[client->late_count];
-        late->direction = client->direction;
-        late->id = client->message->id;
-        late->responses = client->awaited;
-        late->until = client->latest + client->settings.late;
-        client->late_count++;
-    }
-    client->state = ICD_CLIENT_IDLE;
-}
-
-static inline void icdgen_client_end(icd_client_t *client, icd_event_t *event, icd_event_fn *on_event, void *context)
-{
-    event->link = client->link;
-    event->direction = client->direction;
-    event->id = client->message->id;
-    event->attempts = client->attempts;
-    client->awaited -= (event->kind != ICD_EVENT_TIMEOUT && client->awaited != 0u) ? 1u : 0u;
-    icdgen_client_stop(client);
-    on_event(context, event);
-}
-
-static inline void icdgen_client_done(
-    icd_client_t *client, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_DONE, 0);
-    event.data = data;
-    event.length = length;
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-static inline void icdgen_client_timeout(icd_client_t *client, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_TIMEOUT, 0);
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-/* End a telecommand to which nothing responds. */
-static inline void icdgen_client_sent(icd_client_t *client, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_SENT, 0);
-    icdgen_client_end(client, &event, on_event, context);
-}
-
-/* Send the request, for the first time or again. */
-static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    const bool is_telecommand = client->direction == ICD_TELECOMMAND;
-    const bool is_answered = !is_telecommand || (client->message->flags & ICD_ACKNOWLEDGED) != 0u;
-    client->attempts++;
-    client->sent_whole = false;
-    client->state = ICD_CLIENT_WAIT;
-    client->until = now + client->settings.reply_timeout;
-    client->latest = client->until;
-    client->pending++;
-    if (client->bus == ICD_BUS_I2C) { /* a transaction brings telemetry itself; only an acknowledge is polled */
-        client->awaited = (is_telecommand && is_answered) ? 1u : 0u;
-    } else if (is_answered) {
-        client->awaited++;
-    } else {
-        icdgen_client_sent(client, on_event, context);
-    }
-}
-
-/* Send the request, or wait while a late response could be taken for its own. */
-static inline void icdgen_client_send_or_hold(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    bool is_held = false;
-    icdgen_client_forget(client, now);
-    /* So that the responses to all requests can be remembered, no other one is sent. */
-    const bool is_full = client->late_count == ICDGEN_MOST_AWAITED;
-    for (uint8_t i = 0; i < client->late_count; ++i) {
-        const icd_late_t *const late = &client->late[i];
-        const bool is_same = late->direction == client->direction && late->id == client->message->id;
-        if ((is_same || is_full) && (!is_held || icdgen_reached(client->until, late->until))) {
-            is_held = true;
-            client->until = late->until;
+    for (size_t i = 0; i < exchange->response_count; ++i) {
+        const icd_response_t *const response = &exchange->responses[i];
+        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
+            return true;
         }
     }
-    if (is_held) {
-        client->state = ICD_CLIENT_HOLD;
-    } else {
-        icdgen_client_send(client, now, on_event, context);
-    }
+    return false;
 }
 
-/* Return whether there is output that has not been taken. */
-static inline bool icdgen_client_has_output(const icd_client_t *client)
+/* Return whether there is memory for another request. */
+static inline bool icdgen_has_room(const icd_client_t *client)
 {
-    return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||
-        client->splitter.next < client->splitter.count;
+    return client->started < client->slot_count && client->slots[client->started].data != client->partial;
 }
 
-static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
+ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, const icd_request_t *request)
 {
-    (void)context;
-    (void)event;
-}
-
-ICDGEN_API icd_status_t icd_client_start(
-    icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context)
-{
-    const icd_message_t *message;
-    const bool telecommand = request->direction == ICD_TELECOMMAND;
-    icd_status_t status;
-    if (!client->ready) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    message = icd_find_message(client->link, request->direction, request->id);
-    if (message == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client)) {
-        return ICD_ERROR_BUSY;
-    }
-    if (telecommand && request->length != message->length) {
-        return ICD_ERROR_LENGTH;
-    }
-    status = icd_i2c_write(
-        client->link, message->id, request->data, telecommand ? request->length : 0u,
-        telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
-        &client->whole_length);
-    client->direction = request->direction;
-    if (status == ICD_OK && client->fits != NULL && !client->fits(client)) {
-        status = ICD_ERROR_LENGTH;
+    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u, NULL};
+    const bool asks = request->direction == ICD_TELEMETRY;
+    icdgen_plan_t plan;
+    icd_status_t status = client->line != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+    (void)memset(&plan, 0, sizeof plan);
+    if (status == ICD_OK) {
+        status = client->line->plan(client, request, &plan);
     }
     if (status != ICD_OK) {
         return status;
     }
-    client->message = message;
-    client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
-    client->attempts = 0;
-    client->awaited = 0;
-    icdgen_client_send_or_hold(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
+    if (!icdgen_has_room(client)) {
+        return ICD_ERROR_BUSY;
+    }
+    icd_slot_t *const slot = &client->slots[client->started];
+    if (!asks && (request->length < plan.least || request->length > plan.most)) {
+        return ICD_ERROR_LENGTH;
+    }
+    uint8_t *const data = slot->data;
+    (void)memset(slot, 0, sizeof *slot);
+    slot->data = data;
+    slot->id = request->id;
+    slot->direction = request->direction;
+    slot->sent_id = plan.sent_id;
+    slot->asks_by_id = plan.asks_by_id;
+    status = client->line->store(client, slot, asks ? NULL : request->data, asks ? plan.least : request->length);
+    if (status != ICD_OK) {
+        return status;
+    }
+    slot->repeat = request->repeat || asks || plan.repeats;
+    slot->state = ICD_SLOT_QUEUED;
+    icd_awaited_t *const awaited = &slot->awaited;
+    awaited->exchange = plan.exchange != NULL ? plan.exchange : &no_exchange;
+    awaited->has_reply = plan.has_reply && (asks || !icdgen_has_reply(awaited->exchange, plan.reply));
+    awaited->reply = plan.reply;
+    awaited->is_nameless = awaited->has_reply && plan.is_nameless;
+    awaited->is_in_order = plan.is_in_order;
+    for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
+        awaited->sources[i] = icdgen_stream_number(&awaited->exchange->sources[i], slot->sent_id, data, slot->length);
+    }
+    client->started++;
+    icdgen_set_time(client, now);
     return ICD_OK;
 }
 
-ICDGEN_API void icd_client_cancel(icd_client_t *client)
-{
-    /* Nothing responds to what was not sent. */
-    client->awaited -= client->pending < client->awaited ? client->pending : client->awaited;
-    client->pending = 0;
-    client->poll = false;
-    client->encoder.ended = true;
-    client->encoder.pending = 0;
-    client->splitter.next = client->splitter.count;
-    if (client->state != ICD_CLIENT_IDLE) {
-        icdgen_client_stop(client);
-    }
-}
-
-ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
+ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint32_t id)
 {
     icd_request_t request;
     (void)memset(&request, 0, sizeof request);
     request.direction = ICD_TELEMETRY;
     request.id = id;
-    return icd_client_start(client, now, &request, NULL, NULL);
+    return icd_client_start(client, now, &request);
 }
 
-ICDGEN_API icd_status_t icd_client_send(
-    icd_client_t *client,
-    uint32_t now,
-    uint8_t id,
-    const uint8_t *data,
-    size_t length,
-    bool repeat,
-    icd_event_fn *on_event,
-    void *context)
+static icd_request_t icdgen_telecommand_of(uint32_t id, const uint8_t *data, size_t length)
 {
     icd_request_t request;
     (void)memset(&request, 0, sizeof request);
@@ -317,75 +500,344 @@ ICDGEN_API icd_status_t icd_client_send(
     request.id = id;
     request.data = data;
     request.length = length;
+    return request;
+}
+
+ICDGEN_API icd_status_t
+icd_client_send(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat)
+{
+    icd_request_t request = icdgen_telecommand_of(id, data, length);
     request.repeat = repeat;
-    return icd_client_start(client, now, &request, on_event, context);
+    return icd_client_start(client, now, &request);
 }
 
-ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id)
+ICDGEN_API icd_status_t
+icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
 {
-    return event->kind == ICD_EVENT_DONE && event->direction == ICD_TELEMETRY && event->id == id &&
-        event->link != NULL && icd_has_messages_of(event->link, node);
+    icd_request_t request = icdgen_telecommand_of(id, data, length);
+    request.has_reply = true;
+    request.reply = reply;
+    return icd_client_start(client, now, &request);
 }
 
-ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
+/*
+ * Return whether the device handles the request now, and no response to another request could be taken for a response
+ * to it.
+ */
+static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot_t *slot)
 {
-    *bytes = client->chunk;
-    *count = 0;
-    if (client->bus != ICD_BUS_UART) {
+    size_t in_flight = 0;
+    if (client->in_gap) {
         return false;
     }
-    while (*count < sizeof client->chunk) {
-        *count += icd_uart_encode_some(&client->encoder, client->chunk + *count, sizeof client->chunk - *count);
-        if (client->encoder.ended && client->encoder.pending == 0u) {
-            if (client->pending == 0u) {
-                break;
-            }
-            client->pending--;
-            (void)icd_uart_encode_begin(&client->encoder, client->link, client->whole, client->whole_length);
+    if (!icdgen_has_responses(slot)) {
+        return true;
+    }
+    for (size_t i = 0; i < client->started; ++i) {
+        const icd_slot_t *const other = &client->slots[i];
+        if (other == slot) {
+            continue;
+        }
+        if (other->state == ICD_SLOT_WAIT || other->state == ICD_SLOT_PAUSE) {
+            in_flight++;
+        }
+        /* Also a request that is to be sent again: otherwise each could wait until the other has ended. */
+        if (other->missing != 0u && icdgen_is_like(&slot->awaited, &other->awaited)) {
+            return false;
         }
     }
-    return *count != 0u;
+    for (size_t i = 0; i < client->late_count; ++i) {
+        if (icdgen_is_blocked(client, slot, &client->late[i])) {
+            return false;
+        }
+    }
+    return in_flight < client->settings.in_flight && icdgen_unfinished(client, slot) < ICDGEN_MOST_AWAITED;
 }
 
-ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet)
+/* Return the next request to send; NULL if none may be sent. */
+static inline icd_slot_t *icdgen_next_to_send(const icd_client_t *client)
 {
-    if (client->bus != ICD_BUS_CAN) {
-        return false;
-    }
-    if (client->splitter.next >= client->splitter.count && client->pending != 0u) {
-        client->pending--;
-        (void)icdgen_client_split(client, &client->splitter);
-    }
-    return icd_can_next(&client->splitter, packet);
+    icd_slot_t *const slot = icdgen_queued(client);
+    return slot != NULL && icdgen_may_be_sent(client, slot) ? slot : NULL;
 }
 
-ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
+/* The output of a request is taken: its times count from now. */
+static inline void icdgen_count_times(icd_client_t *client, icd_slot_t *slot)
 {
-    icd_transaction_t transaction;
-    *read = 0;
-    if (client->bus != ICD_BUS_I2C || client->taken_count == ICDGEN_MOST_AWAITED) {
-        return false;
+    client->sent_at = client->now;
+    client->in_gap = client->settings.gap != 0u;
+    slot->sent_at = client->now;
+    slot->until = client->now + (slot->state == ICD_SLOT_WAIT ? icdgen_timeout(client, &slot->awaited) : 0u);
+    if (!slot->is_polled) {
+        slot->awaited.latest = slot->until;
     }
-    if (client->poll) {
-        client->poll = false;
-        *bytes = &client->poll_id;
-        *count = 1;
-        transaction.reads = true;
-    } else if (client->pending != 0u) {
-        client->pending--;
-        *bytes = client->whole;
-        *count = client->whole_length;
-        transaction.reads = client->direction == ICD_TELEMETRY;
+}
+
+/* Begin an attempt of a request. */
+static inline void icdgen_begin_attempt(icd_client_t *client, icd_slot_t *slot)
+{
+    slot->attempts++;
+    slot->missing = ICDGEN_U8(icdgen_needed(&slot->awaited));
+    slot->state = slot->missing != 0u || client->line->has_results ? ICD_SLOT_WAIT : ICD_SLOT_SENT;
+    icdgen_count_times(client, slot);
+}
+
+/* Expect the responses to a transmission of a request. */
+static inline void icdgen_owe(icd_slot_t *slot)
+{
+    icd_awaited_t *const awaited = &slot->awaited;
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS && !awaited->is_in_order; ++i) {
+        awaited->owed[i] = ICDGEN_U16(awaited->owed[i] + ((ICDGEN_U32(slot->missing) >> i) & 1u));
+    }
+}
+
+/* Count a transmission of a request. */
+static inline void icdgen_count_sent(icd_client_t *client, icd_slot_t *slot)
+{
+    icdgen_begin_attempt(client, slot);
+    icdgen_owe(slot);
+}
+
+/* The last part of the output of a request is taken. The request may have ended before. */
+static inline void icdgen_output_ends(icd_client_t *client)
+{
+    for (size_t i = 0; i < client->started; ++i) {
+        icd_slot_t *const slot = &client->slots[i];
+        if (slot->data == client->partial && slot->state != ICD_SLOT_QUEUED) {
+            icdgen_count_times(client, slot);
+        }
+    }
+    client->partial = NULL;
+}
+
+ICDGEN_API bool icd_client_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    *written = 0;
+    return client->line != NULL && client->line->output != NULL &&
+        client->line->output(client, buffer, capacity, written);
+}
+
+/* Report an event of a request. An outcome ends the request. */
+static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kind, size_t index, icd_event_t *event)
+{
+    const icd_slot_t *const slot = &call->client->slots[index];
+    event->kind = kind;
+    event->has_id = true;
+    event->id = slot->id;
+    event->link = call->client->link;
+    event->direction = slot->direction;
+    event->attempts = slot->attempts;
+    if (kind != ICD_EVENT_PROGRESS && kind != ICD_EVENT_REPLY) {
+        icdgen_request_end(call->client, index);
+    }
+    call->on_event(call->context, event);
+}
+
+/* End a request without a response. */
+static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, size_t index)
+{
+    icd_event_t event = icdgen_event(kind);
+    icdgen_report(call, kind, index, &event);
+}
+
+/*
+ * Process a missing or unusable response: poll or send again, or end the request. Return whether the request has ended.
+ */
+static inline bool icdgen_unanswered(const icdgen_call_t *call, size_t index)
+{
+    const icd_client_t *const client = call->client;
+    icd_slot_t *const slot = &client->slots[index];
+    const bool is_left = slot->is_polled ? !icdgen_reached(client->now, slot->poll_end)
+                                         : slot->repeat && slot->attempts <= client->settings.retries;
+    slot->transaction = 0;
+    if (!is_left) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
+    } else if (!client->line->has_results) {
+        slot->state = ICD_SLOT_QUEUED;
+    } else { /* a failure can be immediate: wait before the next attempt */
+        slot->state = ICD_SLOT_PAUSE;
+        slot->until = client->now + client->settings.poll_interval;
+        if (!slot->is_polled) {
+            slot->poll_end = client->now + client->settings.poll_timeout;
+        }
+    }
+    return !is_left;
+}
+
+/* Process the end of the time of a state. Return whether the request has ended. */
+static inline bool icdgen_state_ends(const icdgen_call_t *call, size_t index)
+{
+    const icd_client_t *const client = call->client;
+    icd_slot_t *const slot = &client->slots[index];
+    if (slot->state == ICD_SLOT_SENT) {
+        icdgen_end_request(call, ICD_EVENT_SENT, index);
+        return true;
+    }
+    if (slot->state == ICD_SLOT_WAIT) {
+        return icdgen_unanswered(call, index);
+    }
+    if (client->line->has_results && icdgen_reached(client->now, slot->poll_end)) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
+        return true;
+    }
+    slot->state = ICD_SLOT_QUEUED;
+    return false;
+}
+
+ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    const icdgen_call_t call = {client, on_event, context};
+    size_t i = 0;
+    if (client->line != NULL && client->line->expire != NULL) {
+        client->line->expire(&call, now);
+    }
+    icdgen_set_time(client, now);
+    while (i < client->started) {
+        const icd_slot_t *const slot = &client->slots[i];
+        const bool is_over = icdgen_has_end(client, slot) && icdgen_reached(now, slot->until);
+        if (!is_over || !icdgen_state_ends(&call, i)) {
+            i++;
+        }
+    }
+}
+
+/* Get the reason of a refusal, or why the device is busy. */
+static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_t *response, icd_event_t *event)
+{
+    if (response->reason.bits != 0u) {
+        event->has_code = true;
+        event->code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
+        for (size_t i = link->error_count; i > 0u; --i) {
+            if (link->errors[i - 1u].code == event->code) {
+                event->reason = link->errors[i - 1u].reason;
+            }
+        }
+    }
+    if (response->detail.bits != 0u) {
+        event->has_detail = true;
+        event->detail = icdgen_stream_number(&response->detail, event->id, event->data, event->length);
+    }
+}
+
+/* Process a response to a request. */
+static inline void icdgen_responded(
+    const icdgen_call_t *call, size_t index, const icd_response_t *response, icd_event_t *event)
+{
+    icd_client_t *const client = call->client;
+    icd_slot_t *const slot = &client->slots[index];
+    const icd_verdict_t verdict = icdgen_verdict(response, event);
+    const bool is_left = slot->attempts <= client->settings.retries;
+    icd_event_kind_t kind = ICD_EVENT_PROGRESS;
+    event->has_reply = !event->is_packet;
+    event->reply = event->id;
+    icdgen_settle(&slot->awaited, verdict);
+    if (verdict == ICD_VERDICT_PROGRESS) {
+        const uint32_t limit = slot->sent_at + client->settings.progress_for;
+        const uint32_t extended = client->now + icdgen_timeout(client, &slot->awaited);
+        const uint32_t latest = icdgen_reached(extended, limit) ? limit : extended;
+        if (icdgen_reached(latest, slot->awaited.latest)) {
+            slot->awaited.latest = latest;
+        }
+        if (slot->state == ICD_SLOT_WAIT) {
+            slot->until = slot->awaited.latest;
+        }
+    } else if (verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY) {
+        slot->missing = ICDGEN_U8(slot->missing & ~icdgen_verdict_bit(verdict));
+        if (slot->missing == 0u) {
+            kind = ICD_EVENT_DONE;
+        } else if (verdict == ICD_VERDICT_REPLY) {
+            kind = ICD_EVENT_REPLY;
+        } else {
+            /* the reply is still to come */
+        }
+    } else if (verdict == ICD_VERDICT_BUSY && is_left) {
+        slot->state = ICD_SLOT_PAUSE;
+        slot->until = client->now + client->settings.busy_pause;
+    } else if (verdict == ICD_VERDICT_AGAIN && is_left && client->checks_telecommands) {
+        slot->state = ICD_SLOT_QUEUED;
+        slot->is_polled = false;
+        return;
     } else {
-        return false;
+        kind = verdict == ICD_VERDICT_BUSY ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
+        icdgen_set_reason(client->link, response, event);
     }
-    transaction.id = **bytes;
-    if (transaction.reads) {
-        (void)icd_i2c_read_length(client->link, transaction.id, client->checks_telemetry, read);
+    icdgen_report(call, kind, index, event);
+}
+
+/* Return whether telemetry is a response to a request that has ended. */
+static inline bool icdgen_is_late(icd_client_t *client, const icd_event_t *event)
+{
+    for (size_t i = 0; i < client->late_count; ++i) {
+        const icd_response_t *const response = icdgen_matching(&client->late[i], event);
+        if (response != NULL) {
+            icdgen_settle(&client->late[i], icdgen_verdict(response, event));
+            if (!icdgen_is_owed(&client->late[i])) {
+                icdgen_forget(client, i);
+            }
+            return true;
+        }
     }
-    client->taken[client->taken_count] = transaction;
-    client->taken_count++;
-    return true;
+    return false;
+}
+
+/* Process telemetry or a packet without a message. `unawaited` is its event if it is no response to any request. */
+static inline void icdgen_client_arrived(const icdgen_call_t *call, icd_event_t *event, icd_event_kind_t unawaited)
+{
+    icd_client_t *const client = call->client;
+    event->link = client->link;
+    event->direction = ICD_TELEMETRY;
+    for (size_t i = 0; i < client->started; ++i) {
+        const icd_slot_t *const slot = &client->slots[i];
+        const bool is_awaited = slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
+        const icd_response_t *const response = is_awaited ? icdgen_matching(&slot->awaited, event) : NULL;
+        if (response != NULL) {
+            icdgen_responded(call, i, response, event);
+            return;
+        }
+    }
+    event->kind = icdgen_is_late(client, event) ? ICD_EVENT_LATE : unawaited;
+    call->on_event(call->context, event);
+}
+
+ICDGEN_API void icd_client_received(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+{
+    const icdgen_call_t call = {client, on_event, context};
+    icd_client_tick(client, now, on_event, context);
+    if (client->line != NULL && client->line->received != NULL) {
+        client->line->received(&call, bytes, count);
+    }
+}
+
+ICDGEN_API void icd_client_cancel(icd_client_t *client)
+{
+    client->partial = NULL;
+    while (client->started != 0u) {
+        icdgen_request_end(client, 0);
+    }
+}
+
+ICDGEN_API void icd_client_cancel_request(icd_client_t *client, icd_direction_t direction, uint32_t id)
+{
+    size_t i = 0;
+    while (i < client->started) {
+        const icd_slot_t *const slot = &client->slots[i];
+        if (slot->direction == direction && slot->id == id) {
+            client->partial = slot->data == client->partial ? NULL : client->partial;
+            icdgen_request_end(client, i);
+        } else {
+            i++;
+        }
+    }
+}
+
+ICDGEN_API bool icd_is_telemetry(const icd_event_t *event, const char *node, uint32_t id)
+{
+    const bool arrived = event->kind == ICD_EVENT_ARRIVED || event->kind == ICD_EVENT_LATE ||
+        event->kind == ICD_EVENT_STRAY || event->kind == ICD_EVENT_MESSAGE;
+    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY && !event->is_packet);
+    return brings && (event->has_reply ? event->reply : event->id) == id && event->link != NULL &&
+        icd_has_messages_of(event->link, node);
 }
 
 #endif /* ICDGEN_WIRE_CLIENT_C */

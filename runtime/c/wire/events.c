@@ -3,14 +3,19 @@
 
 #include "events.h"
 
-static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
+static inline icd_event_t icdgen_event(icd_event_kind_t kind)
 {
     icd_event_t event;
     (void)memset(&event, 0, sizeof event);
     event.kind = kind;
+    return event;
+}
+
+static inline icd_event_t icdgen_event_of(icd_event_kind_t kind, uint32_t id)
+{
+    icd_event_t event = icdgen_event(kind);
+    event.has_id = true;
     event.id = id;
-    event.code = -1;
-    event.parameter = -1;
     return event;
 }
 

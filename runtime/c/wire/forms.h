@@ -7,6 +7,8 @@
 
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
 
+#define ICD_BUSES 3u
+
 typedef enum { ICD_TELECOMMAND = 0, ICD_TELEMETRY = 1 } icd_direction_t;
 
 /** Flags of a telecommand. */
@@ -253,14 +255,7 @@ typedef struct {
 } icd_index_form_t;
 
 /** Role of a field in a message that the wire layer requests. */
-typedef enum {
-    ICD_ROLE_NODE_TYPE,
-    ICD_ROLE_INTERFACE_VERSION,
-    ICD_ROLE_ID,
-    ICD_ROLE_PROCESSED,
-    ICD_ROLE_ERROR,
-    ICD_ROLE_PARAMETER
-} icd_role_t;
+typedef enum { ICD_ROLE_NODE_TYPE, ICD_ROLE_INTERFACE_VERSION } icd_role_t;
 
 /** Position of the field with a role, in bits. */
 typedef struct {

@@ -57,10 +57,9 @@ typedef struct {
     const icd_acknowledge_t *acknowledge;
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
     uint8_t unsolicited_count;
-    int16_t i2c_address;        /**< 7-bit address, -1 if the ICD has none. */
-    bool i2c_repeated_start;    /**< Whether a read may follow its write without a stop. */
-    int32_t boot_ms;            /**< Waiting time of the boot program in ms, -1 if unknown. */
-    const icd_report_t *polled; /**< Frame that reports the result of a telecommand. */
+    int16_t i2c_address;     /**< 7-bit address, -1 if the ICD has none. */
+    bool i2c_repeated_start; /**< Whether a read may follow its write without a stop. */
+    int32_t boot_ms;         /**< Waiting time of the boot program in ms, -1 if unknown. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
     const icd_crc_form_t *crc16;
@@ -70,6 +69,7 @@ typedef struct {
     const icd_time_form_t *time;
     const icd_index_form_t *index;
     const icd_report_t *identification;
+    const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 

@@ -7,7 +7,6 @@
 #include "events.c"
 #include "crc.c"
 #include "client.c"
-#include "stream_client.c"
 
 static inline void icdgen_end(icd_procedure_t *procedure, icd_result_t result)
 {
@@ -649,49 +648,30 @@ static inline void icdgen_arrived(icd_procedure_t *procedure, uint32_t id, const
 
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
 {
-    procedure->now = now;
-    if (procedure->result != ICD_RUNNING) {
-        return;
-    }
-    if (event->kind == ICD_EVENT_ARRIVED) {
-        icdgen_arrived(procedure, event->id, event->data, event->length);
-    } else if (!procedure->is_requested) {
-        /* of a request of the application */
-    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT) {
-        icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
-    } else if (event->kind == ICD_EVENT_TIMEOUT) {
-        icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
-    } else if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
-        icdgen_damaged(procedure);
-    } else if (event->kind == ICD_EVENT_REFUSED) {
-        icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
-    } else {
-        /* not related to this procedure */
-    }
-}
-
-ICDGEN_API void icd_procedure_stream_event(icd_procedure_t *procedure, uint32_t now, const icd_stream_event_t *event)
-{
     const bool is_mine = procedure->is_requested && event->direction == procedure->request.direction &&
         event->id == procedure->request.id;
     procedure->now = now;
     if (procedure->result != ICD_RUNNING) {
         return;
     }
-    if (event->kind == ICD_STREAM_MESSAGE) {
+    if (event->kind == ICD_EVENT_ARRIVED) {
         icdgen_arrived(procedure, event->id, event->data, event->length);
     } else if (!is_mine) {
         /* of a request of the application */
-    } else if (event->kind == ICD_STREAM_REPLY) {
+    } else if (event->kind == ICD_EVENT_REPLY) {
         icdgen_keep_frame(procedure, event->data, event->length);
         procedure->has_reply = true;
-    } else if (event->kind == ICD_STREAM_DONE || event->kind == ICD_STREAM_SENT) {
+    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_SENT) {
         icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
-    } else if (event->kind == ICD_STREAM_TIMEOUT) {
+    } else if (event->kind == ICD_EVENT_TIMEOUT) {
         icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
-    } else if (event->kind == ICD_STREAM_REFUSED) {
+    } else if (
+        event->kind == ICD_EVENT_REFUSED && procedure->link->stream == NULL && event->has_code &&
+        event->reason == ICD_REASON_UNKNOWN) {
+        icdgen_damaged(procedure); /* the messages of framed links have a checksum */
+    } else if (event->kind == ICD_EVENT_REFUSED) {
         icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
-    } else if (event->kind == ICD_STREAM_BUSY) {
+    } else if (event->kind == ICD_EVENT_BUSY) {
         icdgen_outcome(procedure, ICD_BUSY, NULL, 0);
     } else {
         /* not related to this procedure */
@@ -710,31 +690,13 @@ ICDGEN_API uint32_t icd_procedure_progress(const icd_procedure_t *procedure, uin
     return procedure->registers[ICD_BLOCK_OFFSET];
 }
 
-ICDGEN_API icd_status_t icd_procedure_step(
-    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+ICDGEN_API icd_status_t icd_procedure_step(icd_procedure_t *procedure, icd_client_t *client, uint32_t now)
 {
     icd_request_t request;
-    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client) ||
-        !icd_procedure_next(procedure, now, &request)) {
+    if (!icdgen_has_room(client) || !icd_procedure_next(procedure, now, &request)) {
         return ICD_OK;
     }
-    return icd_client_start(client, now, &request, on_event, context);
-}
-
-ICDGEN_API icd_status_t icd_procedure_stream_step(icd_procedure_t *procedure, icd_stream_client_t *client, uint32_t now)
-{
-    icd_stream_request_t request;
-    icd_request_t next;
-    if (client->started == client->slot_count || !icd_procedure_next(procedure, now, &next)) {
-        return ICD_OK;
-    }
-    (void)memset(&request, 0, sizeof request);
-    request.direction = next.direction;
-    request.id = next.id;
-    request.repeat = next.repeat;
-    request.data = next.data;
-    request.length = next.length;
-    return icd_stream_client_start(client, now, &request);
+    return icd_client_start(client, now, &request);
 }
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */

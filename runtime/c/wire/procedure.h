@@ -8,7 +8,6 @@
 #include "link.h"
 #include "events.h"
 #include "client.h"
-#include "stream_client.h"
 #include "sizes.h"
 
 /* ---- procedures -------------------------------------------------------------------------------------------------- */
@@ -112,9 +111,6 @@ ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd
 /** Pass an event of the client to the procedure. Unrelated events are ignored. */
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event);
 
-/** Pass an event of the client of a framed link to the procedure. Unrelated events are ignored. */
-ICDGEN_API void icd_procedure_stream_event(icd_procedure_t *procedure, uint32_t now, const icd_stream_event_t *event);
-
 /**
  * Get the time in milliseconds at which icd_procedure_next() must be called again. Return false if the procedure is not
  * waiting for a time: before the first call and after an outcome (call icd_procedure_next() at once), while a request
@@ -126,17 +122,9 @@ ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_
 ICDGEN_API uint32_t icd_procedure_progress(const icd_procedure_t *procedure, uint32_t *total);
 
 /**
- * Start the next request of the procedure if there is one and the client is idle. `on_event` is the callback that is
- * also passed to the client; it must pass each event to icd_procedure_event().
- */
-ICDGEN_API icd_status_t icd_procedure_step(
-    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
-
-/**
  * Start the next request of the procedure if there is one and the client has a free slot. The callback of the client
- * must pass each event to icd_procedure_stream_event().
+ * must pass each event to icd_procedure_event().
  */
-ICDGEN_API icd_status_t
-icd_procedure_stream_step(icd_procedure_t *procedure, icd_stream_client_t *client, uint32_t now);
+ICDGEN_API icd_status_t icd_procedure_step(icd_procedure_t *procedure, icd_client_t *client, uint32_t now);
 
 #endif /* ICDGEN_WIRE_PROCEDURE_H */

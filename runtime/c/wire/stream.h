@@ -4,17 +4,10 @@
 #include "../icdgen.h"
 #include "linkage.h"
 #include "link.h"
+#include "events.h"
 #include "crc.h"
 
 /* ---- messages with header and trailer, in a stream of bytes or in packets ---------------------------------------- */
-
-/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
-typedef struct {
-    uint32_t of[ICD_ENVELOPE_VALUES];
-} icd_envelope_values_t;
-
-/** A value that stands for the default of the packet format, in fields of less than 32 bits. */
-#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
 
 /**
  * Return the values of the ICD for this direction. Fields without a value in the ICD are 0. If packet formats have
@@ -121,54 +114,6 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     size_t capacity,
     size_t *written);
 
-typedef enum {
-    ICD_STREAM_MESSAGE = 0,
-    ICD_STREAM_GAP = 1,        /**< `missing` messages were lost before this one; 0: this message is a repetition. */
-    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: wrong checksum. */
-    ICD_STREAM_LENGTH = 3,     /**< Dropped: wrong length of the message. */
-    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no message with this id. */
-    ICD_STREAM_OVERRUN = 5,    /**< Dropped: the message is longer than the buffer. */
-    ICD_STREAM_FRAMING = 6,    /**< Dropped: wrong constant or delimiter. */
-    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded. */
-    ICD_STREAM_TIMEOUT = 8,    /**< Client: no response; it is not known whether the request was executed. */
-    ICD_STREAM_SENT = 9,       /**< Client: a telecommand to which nothing responds was sent. */
-    ICD_STREAM_REFUSED = 10,   /**< Client: the device refused the request. */
-    ICD_STREAM_BUSY = 11,      /**< Client: the device was busy each time, so the request was not executed. */
-    ICD_STREAM_PROGRESS = 12,  /**< Client: the request is still in progress. */
-    ICD_STREAM_REPLY = 13,     /**< Client: the requested telemetry; the acknowledge is still to come. */
-    ICD_STREAM_LATE = 14,      /**< Client: a response to a request that has ended. */
-    ICD_STREAM_STRAY = 15,     /**< Client: a response without a request. */
-    ICD_STREAM_REQUEST = 16,   /**< Decoder of telecommands: a packet that requests telemetry. */
-    ICD_STREAM_PACKET = 17     /**< Decoder: a packet without a message. `data` are all its bytes. */
-} icd_stream_kind_t;
-
-/**
- * An event of a decoder or a client. The event and its data are valid only during the call of the callback.
- *
- * Every request ends with one of DONE, SENT, REFUSED, BUSY and TIMEOUT. These events, PROGRESS and REPLY have the
- * direction and the id of the request.
- */
-typedef struct {
-    icd_stream_kind_t kind;
-    bool has_id; /**< Whether the id could be read. */
-    uint32_t id;
-    const uint8_t *data; /**< Data of the message or the response. */
-    size_t length;
-    icd_envelope_values_t values;
-    uint32_t missing;
-    const icd_link_t *link; /**< Client: link of the node; otherwise NULL. */
-    icd_direction_t direction;
-    uint32_t attempts; /**< Outcomes: number of times the request was sent. */
-    bool has_reply;    /**< Events of a request: whether a response led to the event. */
-    uint32_t reply;    /**< Id of this response. */
-    bool is_packet;    /**< Whether the packet or the response contains no message. `data` are all its bytes. */
-    uint8_t packet;    /**< MESSAGE, REQUEST, PACKET: index of the packet format. */
-    bool has_code;     /**< REFUSED, BUSY: whether the response has a reason. */
-    uint32_t code;     /**< The reason. */
-} icd_stream_event_t;
-
-typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
-
 /** Decoder that finds the messages of one direction in a stream. */
 typedef struct {
     const icd_link_t *link;
@@ -187,7 +132,7 @@ typedef struct {
     bool zero;    /* COBS: whether a zero follows the block */
     uint8_t left; /* COBS: remaining bytes of the block */
     bool faulty;
-    icd_stream_kind_t fault;
+    icd_event_kind_t fault;
 } icd_stream_decoder_t;
 
 /**
@@ -210,6 +155,6 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
  * stream is divided into pieces.
  */
 ICDGEN_API void icd_stream_feed(
-    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context);
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 #endif /* ICDGEN_WIRE_STREAM_H */

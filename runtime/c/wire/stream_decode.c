@@ -9,28 +9,20 @@ typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
 /* The event callback. */
 typedef struct {
-    icd_stream_event_fn *on_event;
+    icd_event_fn *on_event;
     void *context;
 } icdgen_listener_t;
 
-static inline icd_stream_event_t icdgen_stream_event(icd_stream_kind_t kind)
-{
-    icd_stream_event_t event;
-    (void)memset(&event, 0, sizeof event);
-    event.kind = kind;
-    return event;
-}
-
 static inline void icdgen_stream_tell_of(
-    const icdgen_listener_t *listener, icd_stream_kind_t kind, bool has_id, uint32_t id)
+    const icdgen_listener_t *listener, icd_event_kind_t kind, bool has_id, uint32_t id)
 {
-    icd_stream_event_t event = icdgen_stream_event(kind);
+    icd_event_t event = icdgen_event(kind);
     event.has_id = has_id;
     event.id = id;
     listener->on_event(listener->context, &event);
 }
 
-static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
+static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_event_kind_t kind)
 {
     icdgen_stream_tell_of(listener, kind, false, 0);
 }
@@ -77,7 +69,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
 
 /* What a packet contains. */
 typedef struct {
-    icd_stream_kind_t kind;      /* of its event; ICD_STREAM_UNKNOWN_ID if there is no message with its id */
+    icd_event_kind_t kind;       /* of its event; ICD_EVENT_UNKNOWN_ID if there is no message with its id */
     const icd_stream_row_t *row; /* the message, or the requested telemetry; otherwise NULL */
     size_t least;                /* bounds of the number of data bytes */
     size_t most;
@@ -103,7 +95,7 @@ static inline icdgen_incoming_t icdgen_incoming(
 {
     const icd_stream_form_t *const form = decoder->form;
     const size_t index = ICDGEN_SIZE(packet - form->packets);
-    icdgen_incoming_t incoming = {ICD_STREAM_PACKET, NULL, packet->reserved, packet->reserved};
+    icdgen_incoming_t incoming = {ICD_EVENT_PACKET, NULL, packet->reserved, packet->reserved};
     if (packet->content == ICD_PACKET_NOTHING) {
         return incoming;
     }
@@ -113,17 +105,17 @@ static inline icdgen_incoming_t icdgen_incoming(
     }
     const icd_stream_row_t *row = icdgen_stream_row(form, decoder->direction, id);
     if (row != NULL && row->packet == index) {
-        incoming.kind = ICD_STREAM_MESSAGE;
+        incoming.kind = ICD_EVENT_MESSAGE;
         incoming.row = row;
         incoming.least = row->least;
         incoming.most = row->most;
         return incoming;
     }
-    incoming.kind = ICD_STREAM_UNKNOWN_ID;
+    incoming.kind = ICD_EVENT_UNKNOWN_ID;
     if (decoder->direction == ICD_TELECOMMAND && form->request != NULL && form->request->packet == index) {
         row = icdgen_stream_row(form, ICD_TELEMETRY, id);
         if (row != NULL && (row->flags & ICD_STREAM_REQUESTED) != 0u) {
-            incoming.kind = ICD_STREAM_REQUEST;
+            incoming.kind = ICD_EVENT_REQUEST;
             incoming.row = row;
         }
     }
@@ -135,12 +127,12 @@ static inline void icdgen_stream_count(
     icd_stream_decoder_t *decoder,
     const icdgen_incoming_t *incoming,
     const icd_envelope_field_t *field,
-    const icd_stream_event_t *message,
+    const icd_event_t *message,
     const icdgen_listener_t *listener)
 {
     const icd_stream_form_t *const form = decoder->form;
     /* With a sequence for each id, other packets than messages have no counter. */
-    if (field == NULL || (form->per_id && incoming->kind != ICD_STREAM_MESSAGE)) {
+    if (field == NULL || (form->per_id && incoming->kind != ICD_EVENT_MESSAGE)) {
         return;
     }
     const size_t key = form->per_id ? ICDGEN_SIZE(incoming->row - form->rows[decoder->direction]) : 0u;
@@ -152,7 +144,7 @@ static inline void icdgen_stream_count(
     const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
-        icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_GAP);
+        icd_event_t event = icdgen_event(ICD_EVENT_GAP);
         event.has_id = true;
         event.id = message->id;
         event.missing = number == last ? 0u : missing;
@@ -227,7 +219,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
 {
     const size_t around = icdgen_packet_around(packet);
     if (count < around) {
-        icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
+        icdgen_stream_tell(listener, ICD_EVENT_LENGTH);
         return ICDGEN_DOUBTFUL;
     }
     const size_t length = count - around;
@@ -238,7 +230,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     uint32_t sum = 0;
     bool is_framed = true;
     bool is_long = true; /* whether each length is right */
-    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
+    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
@@ -274,34 +266,34 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         }
     }
     if (!is_framed || !is_long) {
-        icdgen_stream_tell(listener, is_framed ? ICD_STREAM_LENGTH : ICD_STREAM_FRAMING);
+        icdgen_stream_tell(listener, is_framed ? ICD_EVENT_LENGTH : ICD_EVENT_FRAMING);
         return ICDGEN_DOUBTFUL;
     }
     const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, event.id);
     icdgen_verdict_t verdict = ICDGEN_PROVEN;
     event.kind = incoming.kind;
     if (packet->check != NULL) {
-        if (packet->check->is_seeded && incoming.kind == ICD_STREAM_UNKNOWN_ID) {
+        if (packet->check->is_seeded && incoming.kind == ICD_EVENT_UNKNOWN_ID) {
             verdict = ICDGEN_DOUBTFUL;
         } else if (icdgen_envelope_check(packet, incoming.row, frame, data, length, trailer) != sum) {
-            event.kind = ICD_STREAM_CHECKSUM;
+            event.kind = ICD_EVENT_CHECKSUM;
             verdict = ICDGEN_DOUBTFUL;
         } else {
             /* the checksum is correct */
         }
     }
-    if (verdict == ICDGEN_PROVEN && event.kind != ICD_STREAM_UNKNOWN_ID &&
+    if (verdict == ICDGEN_PROVEN && event.kind != ICD_EVENT_UNKNOWN_ID &&
         (length < incoming.least || length > incoming.most ||
-         (incoming.kind == ICD_STREAM_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
-        event.kind = ICD_STREAM_LENGTH;
+         (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
+        event.kind = ICD_EVENT_LENGTH;
     }
-    if (event.kind != incoming.kind || event.kind == ICD_STREAM_UNKNOWN_ID) {
+    if (event.kind != incoming.kind || event.kind == ICD_EVENT_UNKNOWN_ID) {
         icdgen_stream_tell_of(listener, event.kind, true, event.id);
         return verdict;
     }
     event.has_id = true;
     event.packet = ICDGEN_U8(packet - decoder->form->packets);
-    event.is_packet = incoming.kind == ICD_STREAM_PACKET;
+    event.is_packet = incoming.kind == ICD_EVENT_PACKET;
     event.data = event.is_packet ? frame : data;
     event.length = event.is_packet ? count : length;
     icdgen_stream_count(decoder, &incoming, sequence, &event, listener);
@@ -343,8 +335,8 @@ static inline size_t icdgen_stream_front(
     } else {
         const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
-        if (incoming.kind == ICD_STREAM_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
+        if (incoming.kind == ICD_EVENT_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
+            icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
             return icdgen_stream_skip(decoder);
         }
         length = ICDGEN_I64(incoming.most);
@@ -352,7 +344,7 @@ static inline size_t icdgen_stream_front(
     const int64_t size = length + ICDGEN_I64(icdgen_packet_around(packet));
     if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
         const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
-        icdgen_stream_tell(listener, fits ? ICD_STREAM_OVERRUN : ICD_STREAM_LENGTH);
+        icdgen_stream_tell(listener, fits ? ICD_EVENT_OVERRUN : ICD_EVENT_LENGTH);
         return icdgen_stream_skip(decoder);
     }
     const size_t whole = ICDGEN_SIZE(size);
@@ -403,7 +395,7 @@ static inline void icdgen_stream_append(
     }
 }
 
-static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_stream_kind_t fault)
+static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_event_kind_t fault)
 {
     if (!decoder->faulty) {
         decoder->faulty = true;
@@ -417,7 +409,7 @@ static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byt
         decoder->buffer[decoder->length] = ICDGEN_U8(byte);
         decoder->length++;
     } else {
-        icdgen_stream_fail(decoder, ICD_STREAM_OVERRUN);
+        icdgen_stream_fail(decoder, ICD_EVENT_OVERRUN);
     }
 }
 
@@ -445,7 +437,7 @@ static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t b
         } else if (byte == ICDGEN_SLIP_ESCAPED_ESCAPE) {
             icdgen_stream_put(decoder, ICDGEN_SLIP_ESCAPE);
         } else {
-            icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+            icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
         }
     } else if (byte == escape) {
         decoder->escaped = true;
@@ -459,7 +451,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
 {
     bool taken = false;
     if (decoder->escaped || decoder->left != 0u) {
-        icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+        icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
     }
     if (decoder->faulty) {
         icdgen_stream_tell(listener, decoder->fault);
@@ -487,7 +479,7 @@ static inline void icdgen_stream_plain(icd_stream_decoder_t *decoder, const uint
         (void)memcpy(decoder->buffer + decoder->length, bytes, piece);
         decoder->length += piece;
         if (piece < count) {
-            icdgen_stream_fail(decoder, ICD_STREAM_OVERRUN);
+            icdgen_stream_fail(decoder, ICD_EVENT_OVERRUN);
         }
     }
 }
@@ -510,7 +502,7 @@ static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t 
     if (icdgen_stream_begins(escaping, byte)) {
         if (decoder->inside) { /* the end of the packet before was lost */
             decoder->pending -= 2u;
-            icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+            icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
             icdgen_stream_end(decoder, listener);
         }
         decoder->inside = true;
@@ -530,7 +522,7 @@ static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t 
             icdgen_stream_put(decoder, escaping->escape);
         }
     } else if (!escaping->ignores_other) {
-        icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+        icdgen_stream_fail(decoder, ICD_EVENT_FRAMING);
         decoder->escaped = byte == escaping->escape;
     } else {
         /* both bytes are ignored */
@@ -564,13 +556,13 @@ static inline void icdgen_stream_unescape(
 }
 
 ICDGEN_API void icd_stream_feed(
-    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context)
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     const icd_delimiter_t delimiter = decoder->form->delimited_by;
     const icdgen_listener_t listener = {on_event, context};
     if (delimiter == ICD_DELIMITED_BY_DATAGRAM) {
         if (count > decoder->capacity) {
-            icdgen_stream_tell(&listener, ICD_STREAM_OVERRUN);
+            icdgen_stream_tell(&listener, ICD_EVENT_OVERRUN);
             decoder->discarded += count;
         } else if (!icdgen_stream_frame(decoder, bytes, count, &listener)) {
             decoder->discarded += count;

@@ -45,6 +45,14 @@ typedef enum {
 
 #define ICD_ENVELOPE_VALUES 8 /**< Number of roles whose values the sender chooses. */
 
+/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
+typedef struct {
+    uint32_t of[ICD_ENVELOPE_VALUES];
+} icd_envelope_values_t;
+
+/** A value that stands for the default of the packet format, in fields of less than 32 bits. */
+#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
+
 /**
  * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
  * `bits` bits.
@@ -104,11 +112,12 @@ typedef struct {
 
 /** What a response means for its telecommand. */
 typedef enum {
-    ICD_VERDICT_ACK = 0,     /**< The telecommand was accepted. */
-    ICD_VERDICT_REPLY = 1,   /**< This is the telemetry that the telecommand requested. */
-    ICD_VERDICT_NAK = 2,     /**< The telecommand was refused. */
-    ICD_VERDICT_BUSY = 3,    /**< The device is busy. */
-    ICD_VERDICT_PROGRESS = 4 /**< The telecommand is still being executed. */
+    ICD_VERDICT_ACK = 0,      /**< The telecommand was accepted. */
+    ICD_VERDICT_REPLY = 1,    /**< This is the telemetry that the telecommand requested. */
+    ICD_VERDICT_NAK = 2,      /**< The telecommand was refused. */
+    ICD_VERDICT_BUSY = 3,     /**< The device is busy. */
+    ICD_VERDICT_PROGRESS = 4, /**< The telecommand is still being executed. */
+    ICD_VERDICT_AGAIN = 5     /**< The telecommand was damaged on the line, and is sent again. */
 } icd_verdict_t;
 
 /**
@@ -147,7 +156,14 @@ typedef struct {
     const icd_meaning_t *meanings;
     icd_number_place_t status;
     icd_number_place_t reason; /**< Reason of a refusal. */
+    icd_number_place_t detail; /**< A number that says more about a refusal. */
 } icd_response_t;
+
+/** Telemetry that a client requests until it has the right echo and the number `until` is not 0. */
+typedef struct {
+    uint32_t telemetry;
+    icd_number_place_t until;
+} icd_outcome_poll_t;
 
 #define ICD_MOST_SOURCES 4u /**< Largest number of numbers of a telecommand that its responses repeat. */
 
@@ -162,9 +178,16 @@ typedef struct {
     uint8_t source_count;
     uint8_t header_count;
     uint8_t response_count;
-    bool is_request;  /**< Of a request of telemetry: the requested telemetry precedes `responses`. */
-    uint32_t timeout; /**< In milliseconds; 0: the time-out of the client. */
+    bool is_request;                /**< Of a request of telemetry: the requested telemetry precedes `responses`. */
+    uint32_t timeout;               /**< In milliseconds; 0: the time-out of the client. */
+    const icd_outcome_poll_t *poll; /**< I2C: what is requested until it is the response; otherwise NULL. */
 } icd_exchange_t;
+
+/** The exchanges on UART, I2C or CAN. */
+typedef struct {
+    const icd_exchange_t *command; /**< Of telecommands with ICD_ACKNOWLEDGED; NULL if the bus has no acknowledge. */
+    const icd_exchange_t *request; /**< Of requests of telemetry. */
+} icd_bus_exchanges_t;
 
 #define ICD_STREAM_CUTS_ZEROS 1u /**< Trailing zeros of the data are not sent, except for the first byte. */
 #define ICD_STREAM_REPEATS 2u    /**< Of a telecommand: it may be sent again after a time-out. */

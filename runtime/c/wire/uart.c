@@ -103,8 +103,9 @@ static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped
 static inline void icdgen_uart_tell(
     const icd_uart_decoder_t *decoder, icd_event_kind_t kind, icd_event_fn *on_event, void *context)
 {
-    icd_event_t event = icdgen_event(kind, 0);
+    icd_event_t event = icdgen_event(kind);
     if (kind == ICD_EVENT_MESSAGE) {
+        event.has_id = true;
         event.id = decoder->buffer[0];
         event.data = decoder->buffer;
         event.length = decoder->length;

@@ -9,6 +9,9 @@
 
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
 
+/** Kinds of messages from the node on the UART. */
+typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_ARRIVED, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
+
 /** Encoder that frames a message piece by piece, so that no buffer for the whole message is needed. */
 typedef struct {
     const icd_framing_t *framing;

@@ -170,8 +170,7 @@ def _link(
     yield folder / "link.c", render("link.c.j2", tables=tables, **values)
     if procedures:
         yield folder / "procedures.h", render("procedures.h.j2", **values)
-    client = "client.h.j2" if node.has_client else "stream_client.h.j2"
-    yield folder / "client.h", render(client, **values)
+    yield folder / "client.h", render("client.h.j2", **values)
 
 
 def client_headers(node: NodeDescription) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from icdgen.backends.c.facts import TYPES, Row, boolean, or_none
 from icdgen.backends.c.stream_rows import (
@@ -33,7 +33,7 @@ from icdgen.protocol.envelope import (
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, Response
-from icdgen.protocol.sections import CAN_KINDS, Crc
+from icdgen.protocol.sections import BUSES, CAN_KINDS, Crc
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256
@@ -61,7 +61,14 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
         (
             "CLIENT_BYTES",
             facts.longest_telecommand + max(slot, facts.longest),
-            "Buffer size of a client in bytes.",
+            "Buffer size in bytes of a client with one slot.",
+        )
+    )
+    rows.append(
+        (
+            "REQUEST_BYTES",
+            facts.longest_telecommand,
+            "Size in bytes that each further slot adds to CLIENT_BYTES.",
         )
     )
     if facts.log_file and facts.mask:
@@ -140,16 +147,13 @@ class _Tables(TableSet):
                 "I2C: a read may follow its write without a stop",
             ),
             Row(or_none(facts.boot_ms), "boot time in ms"),
-            Row(
-                self.report("polled", link.polled),
-                "what is polled for an acknowledge",
-            ),
             Row(self.can(), "CAN"),
             Row(self.checksum(), "checksums of messages"),
             Row(self.crc16(), "CRC of files"),
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
             Row(self.report("identification", link.identification), "identification"),
+            Row(self.buses(), "exchanges on UART, I2C, CAN"),
             Row(self.stream(), "framing"),
         ]
         assumed = (
@@ -317,7 +321,7 @@ class _Tables(TableSet):
             [self.packet(form, number) for number in range(len(form.packets))],
         )
         directions = (("sent", form.telecommands), ("received", form.telemetry))
-        exchanges = self.exchanges(form)
+        exchanges = self.exchanges("exchanges", form.exchanges)
         rows = [
             self.array(
                 name,
@@ -400,10 +404,27 @@ class _Tables(TableSet):
             plain(packet.name),
         )
 
-    def exchanges(self, form: Stream) -> dict[Exchange | None, str]:
-        """Declare the exchanges, and return the expression that refers to each."""
+    def buses(self) -> str:
+        """Return the initialiser of the exchanges on each bus."""
         rows = []
-        for exchange in form.exchanges:
+        for bus in BUSES:
+            exchanges = self.facts_of_link.bus_exchanges.get(bus)
+            if exchanges is None:
+                rows.append("NULL")
+                continue
+            given = [exchanges.request, exchanges.command]
+            declared = [each for each in given if each]
+            names = self.exchanges(f"{bus}_exchanges", declared)
+            row = Row(", ".join(names.get(each, "NULL") for each in reversed(given)))
+            rows.append(self.add(f"on_{bus}", "icd_bus_exchanges_t", [row]))
+        return f"{{{', '.join(rows)}}}"
+
+    def exchanges(
+        self, name: str, exchanges: Sequence[Exchange]
+    ) -> dict[Exchange | None, str]:
+        """Declare exchanges, and return the expression that refers to each."""
+        rows = []
+        for exchange in exchanges:
             sources = self.shared(
                 "sources",
                 "icd_number_place_t",
@@ -423,11 +444,17 @@ class _Tables(TableSet):
             )
             is_request = boolean(len(declared) < len(exchange.responses))
             counts = f"{len(exchange.sources)}u, {exchange.in_header}u, {len(declared)}u, {is_request}"
-            rows.append(f"{{{sources}, {responses}, {counts}, {exchange.timeout}u}}")
-        self.array("exchanges", "icd_exchange_t", rows)
+            poll = "NULL"
+            if exchange.poll:
+                until = number_place(exchange.poll.until, ID_BYTES)
+                row = Row(f"{exchange.poll.telemetry}u, {until}")
+                poll = self.add("outcome_poll", "icd_outcome_poll_t", [row])
+            rows.append(
+                f"{{{sources}, {responses}, {counts}, {exchange.timeout}u, {poll}}}"
+            )
+        self.array(name, "icd_exchange_t", rows)
         return {
-            exchange: f"&exchanges[{number}]"
-            for number, exchange in enumerate(form.exchanges)
+            exchange: f"&{name}[{number}]" for number, exchange in enumerate(exchanges)
         }
 
     def response(self, response: Response) -> str:
@@ -456,10 +483,12 @@ class _Tables(TableSet):
             f"{source:#x}u, {verdict_name(response.verdict)}",
             f"{len(response.echoes)}u, {boolean(is_packet)}, {len(response.meanings)}u",
             f"{echoes}, {meanings}",
-            number_place(response.status, ID_BYTES),
-            number_place(response.reason, ID_BYTES),
         )
-        return f"{{{', '.join(numbers)}}}"
+        places = (
+            number_place(place, ID_BYTES)
+            for place in (response.status, response.reason, response.detail)
+        )
+        return f"{{{', '.join(numbers)},\n{STEP * 3}{', '.join(places)}}}"
 
     def log_mask(self) -> str:
         mask = self.facts_of_link.mask

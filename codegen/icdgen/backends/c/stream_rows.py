@@ -33,9 +33,14 @@ def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
             "Number of sequence counters that a decoder or a sender needs.",
         ),
         (
+            "CLIENT_BYTES",
+            form.longest + form.longest_request,
+            "Buffer size in bytes of a client with one slot.",
+        ),
+        (
             "REQUEST_BYTES",
             form.longest_request,
-            "Buffer size of a client per request in bytes, in addition to LONGEST.",
+            "Size in bytes that each further slot adds to CLIENT_BYTES.",
         ),
     ]
 

@@ -9,21 +9,23 @@ static void on_event(void *context, const icd_event_t *event)
     static const char *const reasons[] = {"", "none", "unknown_id", "length", "parameter", "checksum"};
     const icd_event_kind_t kind = event->kind;
     const bool outcome = kind >= ICD_EVENT_DONE && kind <= ICD_EVENT_TIMEOUT;
-    const icd_bus_t bus = ((const icd_client_t *)context)->bus;
+    (void)context;
     put_row(event_name(kind));
-    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE) || kind == ICD_EVENT_ARRIVED ||
-        (kind >= ICD_EVENT_LATE && !(kind == ICD_EVENT_STRAY && bus == ICD_BUS_I2C))) {
+    if (event->has_id && kind != ICD_EVENT_LOG) {
         put_number("id", event->id);
     }
     if (outcome) {
         put_number("attempts", event->attempts);
     }
-    if (kind == ICD_EVENT_DONE || (kind >= ICD_EVENT_ARRIVED && kind <= ICD_EVENT_STRAY)) {
-        put_octets("bytes", event->data, event->length);
+    if (kind == ICD_EVENT_DONE) { /* the acknowledge itself is not compared */
+        put_octets("bytes", event->data, event->direction == ICD_TELEMETRY ? event->length : 0u);
+    } else if (kind >= ICD_EVENT_ARRIVED && kind <= ICD_EVENT_STRAY) {
+        const size_t id_bytes = event->is_packet ? 1u : 0u;
+        put_octets("bytes", event->data + id_bytes, event->length - id_bytes);
     }
     if (kind == ICD_EVENT_REFUSED) {
-        put_known("code", event->code);
-        put_known("parameter", event->parameter);
+        put_known("code", event->has_code ? (int64_t)event->code : -1);
+        put_known("parameter", event->has_detail ? (int64_t)event->detail : -1);
         if (event->reason != ICD_REASON_UNKNOWN) {
             put_word("reason", reasons[event->reason]);
         }
@@ -37,14 +39,14 @@ static void start(icd_client_t *client, uint32_t now, icd_direction_t direction)
     icd_status_t status;
     memset(&request, 0, sizeof request);
     request.direction = direction;
-    request.id = next_byte();
+    request.id = next_number();
     if (direction == ICD_TELECOMMAND) {
         request.repeat = next_number() != 0u;
         octets = next_octets();
         request.data = octets.data;
         request.length = octets.length;
     }
-    status = icd_client_start(client, now, &request, on_event, client);
+    status = icd_client_start(client, now, &request);
     if (status == ICD_ERROR_LENGTH) {
         put_row("error");
         put_word("error", "length");
@@ -53,6 +55,26 @@ static void start(icd_client_t *client, uint32_t now, icd_direction_t direction)
     } else if (status != ICD_OK) {
         put_row("error");
         put_word("error", status == ICD_ERROR_BUSY ? "busy" : "unknown-id");
+    }
+}
+
+static void put_output(icd_client_t *client)
+{
+    uint8_t line[1024];
+    icd_can_packet_t packet;
+    const uint8_t *bytes;
+    size_t count, read;
+    while (icd_client_output(client, line, sizeof line, &count)) {
+        put_row("stream");
+        put_octets("bytes", line, count);
+    }
+    while (icd_client_next_packet(client, &packet)) {
+        put_packet("frame", &packet);
+    }
+    while (icd_client_transfer(client, &bytes, &count, &read)) {
+        put_row("transfer");
+        put_octets("write", bytes, count);
+        put_number("read", read);
     }
 }
 
@@ -80,36 +102,25 @@ static void happen(icd_client_t *client, uint32_t now, const char *what)
     }
 }
 
-static void put_output(icd_client_t *client)
-{
-    icd_can_packet_t packet;
-    const uint8_t *bytes;
-    size_t count, read;
-    while (icd_client_output(client, &bytes, &count)) {
-        put_row("stream");
-        put_octets("bytes", bytes, count);
-    }
-    while (icd_client_next_packet(client, &packet)) {
-        put_packet("frame", &packet);
-    }
-    while (icd_client_transfer(client, &bytes, &count, &read)) {
-        put_row("transfer");
-        put_octets("write", bytes, count);
-        put_number("read", read);
-    }
-}
+typedef struct {
+    icd_client_t client;
+    icd_uart_line_t uart;
+    icd_i2c_line_t i2c;
+    icd_can_line_t can;
+    icd_slot_t slot;
+} bus_client_t;
 
 static icd_status_t begin_client(
-    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t address, uint8_t *buffer, size_t size)
+    bus_client_t *on, const icd_link_t *link, icd_bus_t bus, uint8_t address, uint8_t *buffer, size_t size)
 {
     switch (bus) {
     case ICD_BUS_UART:
-        return icd_client_uart(client, link, buffer, size);
+        return icd_client_uart(&on->client, link, &on->uart, &on->slot, 1, buffer, size);
     case ICD_BUS_I2C:
-        return icd_client_i2c(client, link, buffer, size);
+        return icd_client_i2c(&on->client, link, &on->i2c, &on->slot, 1, buffer, size);
     case ICD_BUS_CAN:
     default:
-        return icd_client_can(client, link, address, buffer, size);
+        return icd_client_can(&on->client, link, &on->can, address, &on->slot, 1, buffer, size);
     }
 }
 
@@ -119,11 +130,12 @@ static void client_script(void)
     const icd_bus_t bus = next_bus();
     const bool checked = next_number() != 0u;
     const uint8_t address = next_byte();
-    const size_t size = icd_client_bytes(link);
-    icd_client_t *client = (icd_client_t *)memory(sizeof *client);
+    const size_t size = icd_client_bytes(link, 1);
+    bus_client_t *on = (bus_client_t *)memory(sizeof *on);
+    icd_client_t *client = &on->client;
     icd_client_settings_t *settings = &client->settings;
     uint32_t deadline;
-    if (!answers(begin_client(client, link, bus, address, (uint8_t *)memory(size), size))) {
+    if (!answers(begin_client(on, link, bus, address, (uint8_t *)memory(size), size))) {
         return;
     }
     settings->reply_timeout = next_or(settings->reply_timeout);
@@ -136,9 +148,18 @@ static void client_script(void)
     }
     while (has_words()) {
         const uint32_t now = next_number();
+        const char *what = next_word();
         put_row("step");
-        happen(client, now, next_word());
+        if (is_word(what, "received") || is_word(what, "packet")) {
+            /* What a time-out sends again is sent before this arrives. */
+            icd_client_tick(client, now, on_event, client);
+            put_output(client);
+        }
+        happen(client, now, what);
         put_output(client);
+        if (client->started != 0u && on->slot.state == ICD_SLOT_SENT) {
+            icd_client_tick(client, now, on_event, client);
+        }
         if (icd_client_deadline(client, &deadline)) {
             put_row("until");
             put_number("deadline", deadline);
@@ -205,49 +226,37 @@ static icd_status_t begin(icd_procedure_t *procedure, const testee_procedure_t *
     return status;
 }
 
-/* Passes an event to the procedure, of the client of its link where that has such an event. */
+/* Passes an event to the procedure. */
 static void take_event(icd_procedure_t *procedure, uint32_t now, const char *name)
 {
     static const struct {
         const char *name;
         icd_event_kind_t kind;
-        icd_stream_kind_t stream_kind;
-        bool is_of_bus;
     } rows[] = {
-        {"done", ICD_EVENT_DONE, ICD_STREAM_DONE, true},
-        {"arrived", ICD_EVENT_ARRIVED, ICD_STREAM_MESSAGE, true},
-        {"refused", ICD_EVENT_REFUSED, ICD_STREAM_REFUSED, true},
-        {"damaged", ICD_EVENT_REFUSED, ICD_STREAM_REFUSED, true},
-        {"timeout", ICD_EVENT_TIMEOUT, ICD_STREAM_TIMEOUT, true},
-        {"sent", ICD_EVENT_SENT, ICD_STREAM_SENT, true},
-        {"busy", ICD_EVENT_TIMEOUT, ICD_STREAM_BUSY, false},
+        {"done", ICD_EVENT_DONE},       {"arrived", ICD_EVENT_ARRIVED}, {"refused", ICD_EVENT_REFUSED},
+        {"damaged", ICD_EVENT_REFUSED}, {"timeout", ICD_EVENT_TIMEOUT}, {"sent", ICD_EVENT_SENT},
+        {"busy", ICD_EVENT_BUSY},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const bool has_data = i < 2u;
         const octets_t nothing = {NULL, 0};
-        uint32_t id = procedure->request.id;
+        icd_event_t event;
         octets_t octets;
         if (!is_word(name, rows[i].name)) {
             continue;
         }
-        id = rows[i].stream_kind == ICD_STREAM_MESSAGE ? next_number() : id;
-        octets = has_data ? next_octets() : nothing;
-        if (procedure->link->stream == NULL && rows[i].is_of_bus) {
-            icd_event_t event = icdgen_event(rows[i].kind, (uint8_t)id);
-            event.code = is_word(name, "damaged") ? 255 : -1;
-            event.data = octets.data;
-            event.length = octets.length;
-            icd_procedure_event(procedure, now, &event);
-        } else {
-            icd_stream_event_t event;
-            memset(&event, 0, sizeof event);
-            event.kind = rows[i].stream_kind;
-            event.direction = procedure->request.direction;
-            event.id = id;
-            event.data = octets.data;
-            event.length = octets.length;
-            icd_procedure_stream_event(procedure, now, &event);
+        memset(&event, 0, sizeof event);
+        event.kind = rows[i].kind;
+        event.has_id = true;
+        event.id = event.kind == ICD_EVENT_ARRIVED ? next_number() : procedure->request.id;
+        event.direction = procedure->request.direction;
+        octets = i < 2u ? next_octets() : nothing;
+        event.data = octets.data;
+        event.length = octets.length;
+        if (is_word(name, "damaged")) {
+            event.has_code = true;
+            event.code = 255;
         }
+        icd_procedure_event(procedure, now, &event);
     }
 }
 

@@ -143,38 +143,36 @@ static void stream_encode_packet(void)
     }
 }
 
-static void on_stream_event(void *context, const icd_stream_event_t *event)
+static void on_stream_event(void *context, const icd_event_t *event)
 {
-    static const char *const names[] = {"message", "gap",     "checksum", "length", "unknown_id", "overrun",
-                                        "framing", "done",    "timeout",  "sent",   "refused",    "busy",
-                                        "progress", "reply", "late",     "stray",  "request",    "packet"};
     const icd_link_t *link = context;
-    const icd_stream_kind_t kind = event->kind;
-    const bool has_code = kind == ICD_STREAM_REFUSED || kind == ICD_STREAM_BUSY;
-    put_row(names[kind]);
-    if (kind == ICD_STREAM_PACKET) {
+    const icd_event_kind_t kind = event->kind;
+    const bool has_code = kind == ICD_EVENT_REFUSED || kind == ICD_EVENT_BUSY;
+    const bool is_message = kind == ICD_EVENT_MESSAGE || kind == ICD_EVENT_ARRIVED;
+    put_row(kind == ICD_EVENT_ARRIVED ? "message" : event_name(kind));
+    if (kind == ICD_EVENT_PACKET) {
         put_number("packet", event->packet);
     }
     if (event->has_id) {
         put_number("id", event->id);
     }
-    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_TIMEOUT || kind == ICD_STREAM_SENT || has_code) {
+    if (kind == ICD_EVENT_DONE || kind == ICD_EVENT_TIMEOUT || kind == ICD_EVENT_SENT || has_code) {
         put_number("attempts", event->attempts);
     }
     if (has_code && event->has_code) {
         put_number("code", event->code);
     }
-    if ((kind == ICD_STREAM_DONE || kind == ICD_STREAM_REPLY) && event->has_reply) {
+    if ((kind == ICD_EVENT_DONE || kind == ICD_EVENT_REPLY) && event->has_reply) {
         put_number("reply", event->reply);
     }
-    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_MESSAGE ||
-        (kind >= ICD_STREAM_PROGRESS && kind != ICD_STREAM_REQUEST)) {
+    if (is_message || kind == ICD_EVENT_DONE || kind == ICD_EVENT_PROGRESS || kind == ICD_EVENT_REPLY ||
+        kind == ICD_EVENT_LATE || kind == ICD_EVENT_STRAY || kind == ICD_EVENT_PACKET) {
         put_octets("bytes", event->data, event->length);
     }
-    if (kind == ICD_STREAM_GAP) {
+    if (kind == ICD_EVENT_GAP) {
         put_number("missing", event->missing);
     }
-    if (kind == ICD_STREAM_MESSAGE || kind >= ICD_STREAM_REQUEST) {
+    if (is_message || kind == ICD_EVENT_REQUEST || kind == ICD_EVENT_PACKET) {
         const icd_packet_form_t *packet = &link->stream->packets[event->packet];
         for (size_t i = 0; i < packet->field_count; ++i) {
             const icd_envelope_role_t role = packet->fields[i].role;
@@ -221,21 +219,21 @@ static void stream_events(void)
 }
 
 /* Room for requests, with just the memory that they need. */
-static bool begin_stream_client(icd_stream_client_t *client, const icd_link_t *link, size_t requests)
+static bool begin_stream_client(icd_client_t *client, icd_stream_line_t *line, const icd_link_t *link, size_t requests)
 {
     const bool known = link != NULL && link->stream != NULL;
-    const size_t size = known ? icd_stream_client_bytes(link, requests) : 0u;
+    const size_t size = known ? icd_client_bytes(link, requests) : 0u;
     const size_t count = known ? 2u * (link->stream->row_counts[0] + link->stream->row_counts[1] + 1u) : 0u;
-    icd_stream_slot_t *slots = memory(requests * sizeof *slots);
+    icd_slot_t *slots = memory(requests * sizeof *slots);
     uint32_t *sequences = memory(count * sizeof *sequences);
     return answers(
         link == NULL ? ICD_ERROR_UNSUPPORTED
-                     : icd_stream_client_init(client, link, slots, requests, memory(size), size, sequences, count));
+                     : icd_client_stream(client, link, line, slots, requests, memory(size), size, sequences, count));
 }
 
-static void start_stream(icd_stream_client_t *client, uint32_t now, icd_direction_t direction)
+static void start_stream(icd_client_t *client, uint32_t now, icd_direction_t direction)
 {
-    icd_stream_request_t request;
+    icd_request_t request;
     memset(&request, 0, sizeof request);
     request.direction = direction;
     request.id = next_number();
@@ -247,11 +245,11 @@ static void start_stream(icd_stream_client_t *client, uint32_t now, icd_directio
         request.data = octets.data;
         request.length = octets.length;
     }
-    const icd_status_t status = icd_stream_client_start(client, now, &request);
+    const icd_status_t status = icd_client_start(client, now, &request);
     if (status == ICD_ERROR_LENGTH) {
         put_row("error");
         put_word("error", "length");
-        put_number("expected", nearest(client->sender.link, direction, request.id, request.length));
+        put_number("expected", nearest(client->link, direction, request.id, request.length));
         put_number("actual", request.length);
     } else if (status != ICD_OK) {
         put_row("error");
@@ -260,7 +258,7 @@ static void start_stream(icd_stream_client_t *client, uint32_t now, icd_directio
     }
 }
 
-static void happen_to_stream(icd_stream_client_t *client, uint32_t now, const char *what, void *context)
+static void happen_to_stream(icd_client_t *client, uint32_t now, const char *what, void *context)
 {
     if (is_word(what, "telecommand")) {
         start_stream(client, now, ICD_TELECOMMAND);
@@ -268,17 +266,17 @@ static void happen_to_stream(icd_stream_client_t *client, uint32_t now, const ch
         start_stream(client, now, ICD_TELEMETRY);
     } else if (is_word(what, "received")) {
         const octets_t octets = next_octets();
-        icd_stream_client_received(client, now, octets.data, octets.length, on_stream_event, context);
+        icd_client_received(client, now, octets.data, octets.length, on_stream_event, context);
     } else if (is_word(what, "cancel")) {
         const char *kind = next_word();
         if (is_word(kind, "all")) {
-            icd_stream_client_cancel(client);
+            icd_client_cancel(client);
         } else {
             const icd_direction_t direction = is_word(kind, "telemetry") ? ICD_TELEMETRY : ICD_TELECOMMAND;
-            icd_stream_client_cancel_request(client, direction, next_number());
+            icd_client_cancel_request(client, direction, next_number());
         }
     } else {
-        icd_stream_client_tick(client, now, on_stream_event, context);
+        icd_client_tick(client, now, on_stream_event, context);
     }
 }
 
@@ -289,9 +287,9 @@ static void stream_client(void)
         void *context;
     } to = {next_link()};
     const size_t requests = next_number();
-    icd_stream_client_t *client = (icd_stream_client_t *)memory(sizeof *client);
+    icd_client_t *client = (icd_client_t *)memory(sizeof *client);
     uint32_t deadline;
-    if (!begin_stream_client(client, to.link, requests)) {
+    if (!begin_stream_client(client, (icd_stream_line_t *)memory(sizeof(icd_stream_line_t)), to.link, requests)) {
         return;
     }
     icd_client_settings_t *settings = &client->settings;
@@ -305,16 +303,16 @@ static void stream_client(void)
     while (has_words()) {
         const uint32_t now = next_number();
         const bool takes = next_number() != 0u;
-        const size_t capacity = 2u * client->sender.link->longest + 8u;
+        const size_t capacity = 2u * client->link->longest + 8u;
         uint8_t *line = memory(capacity);
         size_t written = 0;
         put_row("step");
         happen_to_stream(client, now, next_word(), to.context);
-        while (takes && icd_stream_client_output(client, line, capacity, &written)) {
+        while (takes && icd_client_output(client, line, capacity, &written)) {
             put_row("stream");
             put_octets("bytes", line, written);
         }
-        if (icd_stream_client_deadline(client, &deadline)) {
+        if (icd_client_deadline(client, &deadline)) {
             put_row("until");
             put_number("deadline", deadline);
         }

@@ -16,10 +16,10 @@ icd_bus_t next_bus(void)
 const char *event_name(icd_event_kind_t kind)
 {
     static const char *const names[] = {
-        "message",    "unexpected_start", "protocol_error", "overrun",      "empty", "duplicate",
-        "incomplete", "malformed",        "busy",           "unknown_type", "done",  "sent",
-        "refused",    "timeout",          "arrived",        "log",          "late",  "stray",
-        "length",     "checksum",         "unchecked",
+        "message", "gap",  "checksum", "length",     "unknown_id", "overrun", "framing", "unexpected_start",
+        "protocol_error",  "empty",    "duplicate",  "incomplete", "malformed", "busy",  "unknown_type",
+        "unchecked",       "request",  "packet",     "done",       "sent",    "refused", "busy",
+        "timeout",         "progress", "reply",      "arrived",    "log",     "late",    "stray",
     };
     return names[kind];
 }

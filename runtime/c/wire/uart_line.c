@@ -1,0 +1,93 @@
+#ifndef ICDGEN_WIRE_UART_LINE_C
+#define ICDGEN_WIRE_UART_LINE_C
+
+#include "uart.c"
+#include "bus_line.c"
+
+static inline bool icdgen_uart_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    icd_uart_encoder_t *const encoder = &client->uart->encoder;
+    if (client->partial == NULL) {
+        icd_slot_t *const slot = capacity != 0u ? icdgen_next_to_send(client) : NULL;
+        if (slot == NULL) {
+            return false;
+        }
+        (void)icd_uart_encode_begin(encoder, client->link, slot->data, slot->length);
+        client->partial = slot->data;
+        icdgen_count_sent(client, slot);
+    }
+    *written = icd_uart_encode_some(encoder, buffer, capacity);
+    if (encoder->ended && encoder->pending == 0u) {
+        icdgen_output_ends(client);
+    }
+    return *written != 0u;
+}
+
+/* Process a message: id and data. */
+static inline void icdgen_uart_message(const icdgen_call_t *call, const uint8_t *message, size_t length)
+{
+    const icd_link_t *const link = call->client->link;
+    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
+    if (kind == ICD_UART_REPLY) {
+        icdgen_bus_telemetry(call, message[0], message + 1, length - 1u);
+    } else if (kind == ICD_UART_ACKNOWLEDGE) {
+        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, message, length);
+    } else if (kind == ICD_UART_OTHER) {
+        icdgen_bus_stray(call, message[0], message + 1, length - 1u);
+    } else {
+        icd_event_t event = icdgen_event_of(ICD_EVENT_LOG, message[0]);
+        event.data = message;
+        event.length = length;
+        if (kind == ICD_UART_ARRIVED) {
+            event.kind = ICD_EVENT_ARRIVED;
+            event.id = icdgen_unsolicited(link, message, length)->telemetry;
+            event.data = message + 1;
+            event.length = length - 1u;
+            event.link = link;
+            event.direction = ICD_TELEMETRY;
+        }
+        call->on_event(call->context, &event);
+    }
+}
+
+static inline void icdgen_on_uart(void *context, const icd_event_t *event)
+{
+    const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
+    if (event->kind == ICD_EVENT_MESSAGE) {
+        icdgen_uart_message(call, event->data, event->length);
+    } else {
+        call->on_event(call->context, event);
+    }
+}
+
+static inline void icdgen_uart_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
+{
+    icdgen_call_t copy = *call;
+    icd_uart_feed(&call->client->uart->decoder, bytes, count, icdgen_on_uart, &copy);
+}
+
+ICDGEN_API icd_status_t icd_client_uart(
+    icd_client_t *client,
+    const icd_link_t *link,
+    icd_uart_line_t *line,
+    icd_slot_t *slots,
+    size_t slot_count,
+    uint8_t *buffer,
+    size_t size)
+{
+    static const icd_line_t functions = {
+        false, ICD_BUS_UART, icdgen_bus_plan, icdgen_bus_store, icdgen_uart_output, icdgen_uart_received, NULL,
+    };
+    icd_status_t status = icdgen_bus_init(client, link, ICD_BUS_UART, slots, slot_count, buffer, size);
+    (void)memset(line, 0, sizeof *line);
+    if (status == ICD_OK) {
+        status = icd_uart_decoder_init(&line->decoder, link, buffer, ICDGEN_SIZE(link->longest));
+    }
+    if (status == ICD_OK) {
+        client->uart = line;
+        client->line = &functions;
+    }
+    return status;
+}
+
+#endif /* ICDGEN_WIRE_UART_LINE_C */
