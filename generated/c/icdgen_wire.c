@@ -50,6 +50,12 @@ ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_dir
     return NULL;
 }
 
+/* Return whether a set of buses contains a bus. */
+static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
+{
+    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
+}
+
 /* Read a number of several bytes in the byte order of the node. */
 static inline uint32_t icdgen_number(const icd_link_t *link, const uint8_t *bytes, size_t count)
 {
@@ -3538,11 +3544,6 @@ ICDGEN_API icd_status_t icd_client_stream(
 #define ICDGEN_ACKNOWLEDGE 0u /* indices of packets without a message */
 #define ICDGEN_REFUSAL 1u
 #define ICDGEN_REQUEST_REFUSAL 2u
-
-static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
-{
-    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
-}
 
 /* Initialize a client on a bus. */
 static inline icd_status_t icdgen_bus_init(

@@ -10,11 +10,6 @@
 #define ICDGEN_REFUSAL 1u
 #define ICDGEN_REQUEST_REFUSAL 2u
 
-static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
-{
-    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
-}
-
 /* Initialize a client on a bus. */
 static inline icd_status_t icdgen_bus_init(
     icd_client_t *client,

@@ -2,6 +2,7 @@
 #define ICDGEN_WIRE_STREAM_DECODE_C
 
 #include "envelope.h"
+#include "events.c"
 #include "stream_encode.c"
 
 /* Result of checking a frame: accepted; certainly a frame, but not usable; possibly not a frame. */
