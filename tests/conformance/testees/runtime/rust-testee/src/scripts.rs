@@ -5,7 +5,7 @@ use crate::nodes::LONGEST;
 use crate::stream::{chosen, SEQUENCES};
 use crate::wire::{bus, explained, packet, shown_packet};
 use icd::wire::{
-    can, i2c, stream, uart, ByteLine, Bus, Client, Direction, Error, Event, Line, Link, NodeEvent,
+    can, i2c, stream, uart, Bus, ByteLine, Client, Direction, Error, Event, Line, Link, NodeEvent,
     Reason, Request, Settings,
 };
 use std::fmt::Write;
@@ -40,13 +40,7 @@ impl<const R: usize> Tested for Client<(), uart::Line<LONGEST>, R> {
         sent_bytes(self)
     }
 
-    fn arrives(
-        &mut self,
-        now: u32,
-        _: &str,
-        words: &mut Words,
-        hear: Hear,
-    ) -> Result<(), Refusal> {
+    fn arrives(&mut self, now: u32, _: &str, words: &mut Words, hear: Hear) -> Result<(), Refusal> {
         self.received(now, &words.octets(), hear);
         Ok(())
     }
@@ -57,13 +51,7 @@ impl<const R: usize> Tested for Client<(), stream::Line<LONGEST, SEQUENCES>, R> 
         sent_bytes(self)
     }
 
-    fn arrives(
-        &mut self,
-        now: u32,
-        _: &str,
-        words: &mut Words,
-        hear: Hear,
-    ) -> Result<(), Refusal> {
+    fn arrives(&mut self, now: u32, _: &str, words: &mut Words, hear: Hear) -> Result<(), Refusal> {
         self.received(now, &words.octets(), hear);
         Ok(())
     }
@@ -78,13 +66,7 @@ impl<const R: usize> Tested for Client<(), can::Line<LONGEST>, R> {
         Ok(sent)
     }
 
-    fn arrives(
-        &mut self,
-        now: u32,
-        _: &str,
-        words: &mut Words,
-        hear: Hear,
-    ) -> Result<(), Refusal> {
+    fn arrives(&mut self, now: u32, _: &str, words: &mut Words, hear: Hear) -> Result<(), Refusal> {
         self.packet(now, &packet(words)?, hear);
         Ok(())
     }
@@ -128,17 +110,29 @@ pub fn client(link: &'static Link, words: &mut Words) -> Answer {
     match bus {
         Bus::Uart => {
             let client = Client::<(), uart::Line<LONGEST>, 1>::uart(link)?;
-            let client = if checked { client.with_checksums() } else { client };
+            let client = if checked {
+                client.with_checksums()
+            } else {
+                client
+            };
             on_bus(client.with_settings(settings), bus, words)
         }
         Bus::I2c => {
             let client = Client::<(), i2c::Line<LONGEST>, 1>::i2c(link)?;
-            let client = if checked { client.with_checksums() } else { client };
+            let client = if checked {
+                client.with_checksums()
+            } else {
+                client
+            };
             on_bus(client.with_settings(settings), bus, words)
         }
         Bus::Can => {
             let client = Client::<(), can::Line<LONGEST>, 1>::can(link, address)?;
-            let client = if checked { client.with_checksums() } else { client };
+            let client = if checked {
+                client.with_checksums()
+            } else {
+                client
+            };
             on_bus(client.with_settings(settings), bus, words)
         }
     }
@@ -278,7 +272,11 @@ fn shown(event: &Event<'_>, bus: Option<Bus>) -> String {
             ..
         } => {
             let is_acknowledge = bus.is_some() && direction == Direction::Telecommand;
-            let bytes = if is_acknowledge { String::new() } else { hex(data) };
+            let bytes = if is_acknowledge {
+                String::new()
+            } else {
+                hex(data)
+            };
             let is_named = bus.is_none() && packet.is_none();
             let reply = known("reply", Some(reply).filter(|_| is_named));
             format!(" done id={id} attempts={attempts}{reply} bytes={bytes}")

@@ -2,11 +2,8 @@
 
 use crate::line::{hex, Answer, Words};
 use crate::nodes::LONGEST;
-use crate::wire::explained;
 use icd::wire::link::Link;
-use icd::wire::stream::{
-    encode, encode_packet, encode_request, Decoder, Event, Values,
-};
+use icd::wire::stream::{encode, encode_packet, encode_request, Decoder, Event, Values};
 use icd::wire::{Direction, Error};
 use std::fmt::Write;
 
