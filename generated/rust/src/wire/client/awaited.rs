@@ -14,6 +14,17 @@ const SILENCE: &Exchange = &Exchange {
     poll: None,
 };
 
+/// Telemetry that was requested, or that the caller names as the reply.
+const REPLY: &Response = &Response {
+    kind: ResponseKind::Requested,
+    verdict: Verdict::Reply,
+    echoes: &[],
+    status: None,
+    meanings: &[],
+    reason: None,
+    detail: None,
+};
+
 /// Responses without which a request is not done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Needed {
@@ -116,27 +127,21 @@ impl Awaited {
         source < self.exchange.parts().0.len()
     }
 
-    fn responses(&self) -> impl Iterator<Item = Response> {
-        let named = self.reply.map(|id| Response {
-            kind: ResponseKind::Telemetry(id),
-            verdict: Verdict::Reply,
-            echoes: &[],
-            status: None,
-            meanings: &[],
-            reason: None,
-            detail: None,
+    fn responses(&self) -> impl Iterator<Item = &'static Response> {
+        let is_named = self.reply.is_some();
+        let others = self.exchange.responses.iter().filter(move |response| {
+            let is_requested = response.kind == ResponseKind::Requested;
+            !is_named || is_requested || !response.can_be(Verdict::Reply)
         });
-        let others = self.exchange.responses.iter();
-        let requested = self.reply;
-        let others = others.filter_map(move |response| match (requested, response.kind) {
-            (Some(id), ResponseKind::Requested) => Some(Response {
-                kind: ResponseKind::Telemetry(id),
-                ..*response
-            }),
-            (Some(_), _) if response.can_be(Verdict::Reply) => None,
-            _ => Some(*response),
-        });
-        others.chain(named)
+        others.chain(self.reply.map(|_| REPLY))
+    }
+
+    /// Return what a response is, with the id of the telemetry that was requested.
+    fn kind_of(&self, response: &Response) -> ResponseKind {
+        match (self.reply, response.kind) {
+            (Some(id), ResponseKind::Requested) => ResponseKind::Telemetry(id),
+            (_, kind) => kind,
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -152,11 +157,11 @@ impl Awaited {
     }
 
     /// Return the response that an arrival is; None if it is none of them.
-    pub(super) fn matching(&self, arrival: &Arrival<'_>) -> Option<Response> {
+    pub(super) fn matching(&self, arrival: &Arrival<'_>) -> Option<&'static Response> {
         let number = |place: NumberPlace| Some(place.get(arrival.head, arrival.data));
         self.responses().find(|response| {
             let mut echoes = response.echoes.iter();
-            response.kind == arrival.kind()
+            self.kind_of(response) == arrival.kind()
                 && echoes.all(|echo| number(echo.place) == self.source(echo.source))
         })
     }
@@ -171,9 +176,9 @@ impl Awaited {
             return true;
         }
         self.responses().any(|mine| {
-            other
-                .responses()
-                .any(|theirs| mine.kind == theirs.kind && !self.differs(&mine, other, &theirs))
+            other.responses().any(|theirs| {
+                self.kind_of(mine) == other.kind_of(theirs) && !self.differs(mine, other, theirs)
+            })
         })
     }
 

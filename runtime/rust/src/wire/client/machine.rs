@@ -432,7 +432,7 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
         let until = awaited.exchange.poll.map(|poll| poll.until);
         let is_unfinished = until.map_or(false, |until| until.get(arrival.head, arrival.data) == 0);
         match awaited.matching(arrival) {
-            Some(response) if !is_unfinished => self.responded(place, &response, arrival),
+            Some(response) if !is_unfinished => self.responded(place, response, arrival),
             _ => self.unanswered(place),
         }
     }
@@ -478,14 +478,14 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
         let response =
             slot.and_then(|(place, slot)| Some((place, slot.awaited.matching(arrival)?)));
         if let Some((place, response)) = response {
-            return self.responded(place, &response, arrival);
+            return self.responded(place, response, arrival);
         }
         for entry in &mut self.late {
             let response = entry
                 .as_ref()
                 .and_then(|late| late.awaited.matching(arrival));
             if let (Some(late), Some(response)) = (entry.as_mut(), response) {
-                late.owed.remove(arrival.verdict(&response));
+                late.owed.remove(arrival.verdict(response));
                 *entry = entry.filter(|late| late.owed != Owed::NONE);
                 return Some(arrival.late());
             }
