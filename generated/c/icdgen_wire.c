@@ -2529,7 +2529,7 @@ struct icd_line {
 static inline size_t icdgen_request_bytes(const icd_link_t *link)
 {
     const icd_stream_form_t *const form = link->stream;
-    size_t most = link->longest_telecommand;
+    size_t most = ICDGEN_SIZE(link->longest_telecommand);
     if (form != NULL) {
         most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
         for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
