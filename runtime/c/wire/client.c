@@ -38,21 +38,6 @@ struct icd_line {
     void (*expire)(const icdgen_call_t *call, uint32_t now); /* incomplete messages */
 };
 
-/* Return the largest number of bytes that a slot stores. */
-static inline size_t icdgen_request_bytes(const icd_link_t *link)
-{
-    const icd_stream_form_t *const form = link->stream;
-    size_t most = ICDGEN_SIZE(link->longest_telecommand);
-    if (form != NULL) {
-        most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
-        for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
-            const size_t bytes = form->rows[ICD_TELECOMMAND][i].most;
-            most = bytes > most ? bytes : most;
-        }
-    }
-    return most;
-}
-
 /* Return the buffer size of the decoder, or of the CAN joiner. */
 static inline size_t icdgen_receive_bytes(const icd_link_t *link)
 {
@@ -62,7 +47,7 @@ static inline size_t icdgen_receive_bytes(const icd_link_t *link)
 
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link, size_t requests)
 {
-    return icdgen_receive_bytes(link) + (requests * icdgen_request_bytes(link));
+    return icdgen_receive_bytes(link) + (requests * ICDGEN_SIZE(link->longest_telecommand));
 }
 
 /* Initialize what is the same on all lines. The first bytes of the buffer are for what is received. */
@@ -70,7 +55,7 @@ static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_slot_t *slots, size_t slot_count, uint8_t *buffer, size_t size)
 {
     const size_t first = icdgen_receive_bytes(link);
-    const size_t each = icdgen_request_bytes(link);
+    const size_t each = ICDGEN_SIZE(link->longest_telecommand);
     (void)memset(client, 0, sizeof *client);
     client->link = link;
     client->settings = link->client;
@@ -418,18 +403,6 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
     return earliest.exists;
 }
 
-/* Return whether telemetry is a possible reply in the ICD. */
-static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
-{
-    for (size_t i = 0; i < exchange->response_count; ++i) {
-        const icd_response_t *const response = &exchange->responses[i];
-        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Return whether there is memory for another request. */
 static inline bool icdgen_has_room(const icd_client_t *client)
 {
@@ -471,9 +444,9 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
     slot->state = ICD_SLOT_QUEUED;
     icd_awaited_t *const awaited = &slot->awaited;
     awaited->exchange = plan.exchange != NULL ? plan.exchange : &no_exchange;
-    awaited->has_reply = plan.has_reply && (asks || !icdgen_has_reply(awaited->exchange, plan.reply));
+    awaited->has_reply = plan.has_reply;
     awaited->reply = plan.reply;
-    awaited->is_nameless = awaited->has_reply && plan.is_nameless;
+    awaited->is_nameless = plan.is_nameless;
     awaited->is_in_order = plan.is_in_order;
     for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
         awaited->sources[i] = icdgen_stream_number(&awaited->exchange->sources[i], slot->sent_id, data, slot->length);

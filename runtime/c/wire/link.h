@@ -43,7 +43,7 @@ typedef struct {
     const icd_message_t *telecommands; /**< In ascending order of the ids. */
     const icd_message_t *telemetry;    /**< In ascending order of the ids. */
     uint16_t telecommand_count, telemetry_count;
-    uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum. */
+    uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum; on framed links only of the data. */
     uint32_t longest_reply;
     uint32_t longest;
     uint32_t longest_data; /**< Largest size in bytes, without id and checksum. */

@@ -22,6 +22,18 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
     return telemetry != NULL && (telemetry->flags & ICD_STREAM_REQUESTED) != 0u ? telemetry : NULL;
 }
 
+/* Return whether telemetry is a possible reply in the ICD. */
+static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
+{
+    for (size_t i = 0; exchange != NULL && i < exchange->response_count; ++i) {
+        const icd_response_t *const response = &exchange->responses[i];
+        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static inline icd_status_t icdgen_stream_plan(
     const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan)
 {
@@ -34,25 +46,19 @@ static inline icd_status_t icdgen_stream_plan(
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
     plan->asks_by_id = (row->flags & ICD_STREAM_REQUESTED) != 0u;
-    plan->has_reply = plan->asks_by_id || (request->has_reply && !asks);
-    plan->reply = plan->asks_by_id ? row->id : request->reply;
-    if (plan->has_reply) {
+    plan->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
+    plan->least = plan->asks_by_id ? form->packets[form->request->packet].reserved : row->least;
+    plan->most = plan->asks_by_id ? plan->least : row->most;
+    plan->sent_id = row->id;
+    plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
+    if (plan->asks_by_id || (request->has_reply && !asks)) {
+        plan->reply = plan->asks_by_id ? row->id : request->reply;
         const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, plan->reply);
         if (reply == NULL) {
             return ICD_ERROR_UNKNOWN_ID;
         }
-        plan->is_nameless = (reply->flags & ICD_STREAM_NAMELESS) != 0u;
-    }
-    plan->sent_id = row->id;
-    plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
-    if (plan->asks_by_id) {
-        plan->exchange = form->request->exchange;
-        plan->least = form->packets[form->request->packet].reserved;
-        plan->most = plan->least;
-    } else {
-        plan->exchange = row->exchange;
-        plan->least = row->least;
-        plan->most = row->most;
+        plan->has_reply = plan->asks_by_id || !icdgen_has_reply(plan->exchange, plan->reply);
+        plan->is_nameless = plan->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
     }
     return ICD_OK;
 }

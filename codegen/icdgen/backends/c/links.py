@@ -93,9 +93,10 @@ class _Tables(TableSet):
         link, facts = self.link, self.facts_of_link
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
         codes = link.error_codes
-        longest = (
-            f"{facts.longest_telecommand}u, {facts.longest_reply}u, {facts.longest}u"
+        telecommand = (
+            facts.stream.longest_request if facts.stream else facts.longest_telecommand
         )
+        longest = f"{telecommand}u, {facts.longest_reply}u, {facts.longest}u"
         settings = f"{{{self.values('client', facts.client)}}}"
         rows = [
             Row(
