@@ -107,7 +107,9 @@ EXPECTED += 2 * [*(4 * ["sent 0122 8"]), "timeout 290"]  # three retries
 
 RUST = """
 use icd::receiver::{self, NavigationClock, SetMessageRate};
-use icd::wire::{stream, Direction, Error};
+use icd::wire::{stream, Client, Direction, Error, Event, NodeEvent};
+
+type Line = stream::Line<{ receiver::LONGEST }, { receiver::SEQUENCES }>;
 
 fn answer(bias: i32) -> Vec<u8> {
     let link = &receiver::LINK;
@@ -119,12 +121,12 @@ fn answer(bias: i32) -> Vec<u8> {
     line[..size].to_vec()
 }
 
-fn told(event: stream::NodeEvent<'_, receiver::Node>) {
+fn told(event: NodeEvent<'_, receiver::Node>) {
     match (*event, event.message::<NavigationClock>()) {
-        (stream::Event::Timeout { id, .. }, _) => println!("timeout {id}"),
-        (stream::Event::Sent { id, .. }, _) => println!("sent {id}"),
-        (stream::Event::Done { id, .. }, Some(clock)) => println!("done {id} {}", clock.clock_bias),
-        (stream::Event::Late { id, .. }, Some(clock)) => println!("late {id} {}", clock.clock_bias),
+        (Event::Timeout { id, .. }, _) => println!("timeout {id}"),
+        (Event::Sent { id, .. }, _) => println!("sent {id}"),
+        (Event::Done { id, .. }, Some(clock)) => println!("done {id} {}", clock.clock_bias),
+        (Event::Late { id, .. }, Some(clock)) => println!("late {id} {}", clock.clock_bias),
         _ => println!("something else"),
     }
 }
