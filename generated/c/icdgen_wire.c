@@ -2501,16 +2501,12 @@ typedef struct {
 
 /* How a request is sent, and what responds to it. */
 typedef struct {
-    const icd_exchange_t *exchange; /* NULL: nothing responds, unless there is a reply */
-    uint32_t sent_id;               /* of icd_slot_t */
-    size_t least;                   /* bounds of the number of data bytes */
+    icd_awaited_t awaited; /* without numbers. `exchange` is NULL if nothing responds, unless there is a reply */
+    uint32_t sent_id;      /* this and `asks_by_id` are of icd_slot_t */
+    size_t least;          /* bounds of the number of data bytes */
     size_t most;
     bool asks_by_id;
     bool repeats;
-    bool has_reply; /* this and the following ones are of icd_awaited_t */
-    uint32_t reply;
-    bool is_nameless;
-    bool is_in_order;
 } icdgen_plan_t;
 
 /* What the client needs to know of a line. Functions that a line does not need are NULL. */
@@ -2730,6 +2726,12 @@ static inline bool icdgen_is_owed(const icd_awaited_t *awaited)
     return awaited->owed[ICD_VERDICT_ACK] != 0u || awaited->owed[ICD_VERDICT_REPLY] != 0u;
 }
 
+/* Return whether a response to a request may arrive, also to an earlier attempt. */
+static inline bool icdgen_is_awaited(const icd_slot_t *slot)
+{
+    return slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
+}
+
 /* Count a response. A refusal takes the place of all others to the same transmission. */
 static inline void icdgen_settle(icd_awaited_t *awaited, icd_verdict_t verdict)
 {
@@ -2930,11 +2932,8 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
     slot->repeat = request->repeat || asks || plan.repeats;
     slot->state = ICD_SLOT_QUEUED;
     icd_awaited_t *const awaited = &slot->awaited;
-    awaited->exchange = plan.exchange != NULL ? plan.exchange : &no_exchange;
-    awaited->has_reply = plan.has_reply;
-    awaited->reply = plan.reply;
-    awaited->is_nameless = plan.is_nameless;
-    awaited->is_in_order = plan.is_in_order;
+    *awaited = plan.awaited;
+    awaited->exchange = awaited->exchange != NULL ? awaited->exchange : &no_exchange;
     for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
         awaited->sources[i] = icdgen_stream_number(&awaited->exchange->sources[i], slot->sent_id, data, slot->length);
     }
@@ -3248,8 +3247,7 @@ static inline void icdgen_client_arrived(const icdgen_call_t *call, icd_event_t 
     event->direction = ICD_TELEMETRY;
     for (size_t i = 0; i < client->started; ++i) {
         const icd_slot_t *const slot = &client->slots[i];
-        const bool is_awaited = slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
-        const icd_response_t *const response = is_awaited ? icdgen_matching(&slot->awaited, event) : NULL;
+        const icd_response_t *const response = icdgen_is_awaited(slot) ? icdgen_matching(&slot->awaited, event) : NULL;
         if (response != NULL) {
             icdgen_responded(call, i, response, event);
             return;
@@ -3342,19 +3340,20 @@ static inline icd_status_t icdgen_stream_plan(
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
     plan->asks_by_id = (row->flags & ICD_STREAM_REQUESTED) != 0u;
-    plan->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
+    icd_awaited_t *const awaited = &plan->awaited;
+    awaited->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
     plan->least = plan->asks_by_id ? form->packets[form->request->packet].reserved : row->least;
     plan->most = plan->asks_by_id ? plan->least : row->most;
     plan->sent_id = row->id;
     plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
     if (plan->asks_by_id || (request->has_reply && !asks)) {
-        plan->reply = plan->asks_by_id ? row->id : request->reply;
-        const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, plan->reply);
+        awaited->reply = plan->asks_by_id ? row->id : request->reply;
+        const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, awaited->reply);
         if (reply == NULL) {
             return ICD_ERROR_UNKNOWN_ID;
         }
-        plan->has_reply = plan->asks_by_id || !icdgen_has_reply(plan->exchange, plan->reply);
-        plan->is_nameless = plan->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
+        awaited->has_reply = plan->asks_by_id || !icdgen_has_reply(awaited->exchange, awaited->reply);
+        awaited->is_nameless = awaited->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
     }
     return ICD_OK;
 }
@@ -3438,7 +3437,7 @@ static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_
     bool fits = false;
     for (size_t i = 0; !fits && i < client->started; ++i) {
         const icd_slot_t *const slot = &client->slots[i];
-        if (slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited)) {
+        if (icdgen_is_awaited(slot)) {
             fits = icdgen_names(form, &slot->awaited, length, &row, &other);
         }
     }
@@ -3560,15 +3559,15 @@ static inline icd_status_t icdgen_bus_plan(
         return ICD_ERROR_UNKNOWN_ID;
     }
     if (request->direction == ICD_TELEMETRY) {
-        plan->exchange = exchanges->request;
         plan->asks_by_id = true;
-        plan->has_reply = true;
-        plan->reply = request->id;
-        plan->is_in_order = client->line->has_results;
+        plan->awaited.exchange = exchanges->request;
+        plan->awaited.has_reply = true;
+        plan->awaited.reply = request->id;
+        plan->awaited.is_in_order = client->line->has_results;
     } else if (request->has_reply) {
         return ICD_ERROR_UNSUPPORTED;
     } else {
-        plan->exchange = (message->flags & ICD_ACKNOWLEDGED) != 0u ? exchanges->command : NULL;
+        plan->awaited.exchange = (message->flags & ICD_ACKNOWLEDGED) != 0u ? exchanges->command : NULL;
         plan->least = message->length;
         plan->most = message->length;
         plan->repeats = (message->flags & ICD_SETTING) != 0u;

@@ -103,7 +103,7 @@ class Layout(Container[Part]):
         for ancestor in reversed(chain):
             self._entries(ancestor, "EntryList", path, users[ancestor])
         # Trailers enclose the body like the headers: that of the most derived container
-        # comes first (CCSDS 876.0-B-1).
+        # comes first.
         for ancestor in chain:
             self._entries(ancestor, "TrailerEntryList", path, users[ancestor])
             for constraint in ancestor.iterfind("ConstraintSet/*"):

@@ -282,6 +282,15 @@ def _by_name(earlier: Any, later: Any) -> Any:
     return {**earlier, **later} if is_mapping else later
 
 
+def replaced_part(path: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the beginning of a path in the protocol section that a later section
+    replaces as a whole: a bus, another part of the link, or a section.
+    """
+    if path[:2] == ("link", "buses"):
+        return path[:3]
+    return path[:2] if path[0] == "link" else path[:1]
+
+
 def buses_of(protocol: Mapping[str, Any]) -> dict[str, Any]:
     """Return the sections of UART, I2C and CAN of a protocol section, by name."""
     link = protocol.get("link")

@@ -46,22 +46,24 @@ def bus_exchanges(
     """Return the exchanges on each bus of a node that is not on a framed link."""
     buses = {}
     if framing:
-        buses[UART] = _buses(_acknowledged(acknowledge, errors) if acknowledge else ())
+        buses[UART] = _exchanges(
+            _acknowledged(acknowledge, errors) if acknowledge else ()
+        )
     if i2c_address is not None:
         if polled:
             response, poll = _polled(node, polled, errors)
-            buses[I2C] = _buses((response,), poll=poll)
+            buses[I2C] = _exchanges((response,), poll=poll)
         else:
-            buses[I2C] = _buses(())
+            buses[I2C] = _exchanges(())
     if can:
-        buses[CAN] = _buses(
+        buses[CAN] = _exchanges(
             _packets(can, {"acknowledge": ACKNOWLEDGE, "refusal": REFUSAL}),
             _packets(can, {"request_refusal": REQUEST_REFUSAL}),
         )
     return buses
 
 
-def _buses(
+def _exchanges(
     to_command: tuple[Response, ...],
     to_request: tuple[Response, ...] = (),
     poll: Poll | None = None,

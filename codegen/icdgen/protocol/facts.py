@@ -72,9 +72,20 @@ class Facts:
     procedures: tuple[Procedure, ...]
     # UART: telemetry that the node sends unasked, by the id that heads it
     unsolicited: dict[int, int]
-    # Responses by bus: uart, i2c, can
-    bus_exchanges: dict[str, BusExchanges]
     assumptions: tuple[Assumption, ...]
+
+    @property
+    def bus_exchanges(self) -> dict[str, BusExchanges]:
+        """Responses on UART, I2C and CAN, by bus; empty on a framed link."""
+        return bus_exchanges(
+            self.node,
+            self.errors,
+            self.framing,
+            self.acknowledge,
+            self.i2c_address,
+            self.polled,
+            self.can,
+        )
 
     @property
     def parts(self) -> dict[str, object]:
@@ -162,16 +173,6 @@ def of(icd: Icd, node: Node) -> Facts:
     """Return the protocol facts of a node."""
     reader = Reader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
-    framing, acknowledge = (
-        reader.part("link.buses.uart.framing", Framing),
-        reader.acknowledge(),
-    )
-    i2c_address, polled, can = reader.i2c_address(), reader.polled(), reader.can()
-    errors = {
-        key: code
-        for key, code in reader.section("link", "reasons").items()
-        if isinstance(code, int)
-    }
     return Facts(
         node=node,
         little=node.byte_order == "little",
@@ -179,13 +180,17 @@ def of(icd: Icd, node: Node) -> Facts:
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
         client=reader.part("link.client", Settings) or Settings(),
-        framing=framing,
-        acknowledge=acknowledge,
-        polled=polled,
-        i2c_address=i2c_address,
+        framing=reader.part("link.buses.uart.framing", Framing),
+        acknowledge=reader.acknowledge(),
+        polled=reader.polled(),
+        i2c_address=reader.i2c_address(),
         i2c_repeated_start=reader.i2c_repeated_start(),
-        can=can,
-        errors=errors,
+        can=reader.can(),
+        errors={
+            key: code
+            for key, code in reader.section("link", "reasons").items()
+            if isinstance(code, int)
+        },
         checksum=reader.checksum(),
         crc16=reader.part("crc16", Crc),
         mask=reader.mask(),
@@ -199,8 +204,5 @@ def of(icd: Icd, node: Node) -> Facts:
         stream=reader.stream(),
         procedures=tuple(reader.procedures()),
         unsolicited=reader.unsolicited(),
-        bus_exchanges=bus_exchanges(
-            node, errors, framing, acknowledge, i2c_address, polled, can
-        ),
         assumptions=tuple(reader.assumptions()),
     )

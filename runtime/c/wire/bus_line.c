@@ -46,15 +46,15 @@ static inline icd_status_t icdgen_bus_plan(
         return ICD_ERROR_UNKNOWN_ID;
     }
     if (request->direction == ICD_TELEMETRY) {
-        plan->exchange = exchanges->request;
         plan->asks_by_id = true;
-        plan->has_reply = true;
-        plan->reply = request->id;
-        plan->is_in_order = client->line->has_results;
+        plan->awaited.exchange = exchanges->request;
+        plan->awaited.has_reply = true;
+        plan->awaited.reply = request->id;
+        plan->awaited.is_in_order = client->line->has_results;
     } else if (request->has_reply) {
         return ICD_ERROR_UNSUPPORTED;
     } else {
-        plan->exchange = (message->flags & ICD_ACKNOWLEDGED) != 0u ? exchanges->command : NULL;
+        plan->awaited.exchange = (message->flags & ICD_ACKNOWLEDGED) != 0u ? exchanges->command : NULL;
         plan->least = message->length;
         plan->most = message->length;
         plan->repeats = (message->flags & ICD_SETTING) != 0u;

@@ -46,19 +46,20 @@ static inline icd_status_t icdgen_stream_plan(
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
     plan->asks_by_id = (row->flags & ICD_STREAM_REQUESTED) != 0u;
-    plan->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
+    icd_awaited_t *const awaited = &plan->awaited;
+    awaited->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
     plan->least = plan->asks_by_id ? form->packets[form->request->packet].reserved : row->least;
     plan->most = plan->asks_by_id ? plan->least : row->most;
     plan->sent_id = row->id;
     plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
     if (plan->asks_by_id || (request->has_reply && !asks)) {
-        plan->reply = plan->asks_by_id ? row->id : request->reply;
-        const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, plan->reply);
+        awaited->reply = plan->asks_by_id ? row->id : request->reply;
+        const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, awaited->reply);
         if (reply == NULL) {
             return ICD_ERROR_UNKNOWN_ID;
         }
-        plan->has_reply = plan->asks_by_id || !icdgen_has_reply(plan->exchange, plan->reply);
-        plan->is_nameless = plan->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
+        awaited->has_reply = plan->asks_by_id || !icdgen_has_reply(awaited->exchange, awaited->reply);
+        awaited->is_nameless = awaited->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
     }
     return ICD_OK;
 }
@@ -142,7 +143,7 @@ static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_
     bool fits = false;
     for (size_t i = 0; !fits && i < client->started; ++i) {
         const icd_slot_t *const slot = &client->slots[i];
-        if (slot->state == ICD_SLOT_WAIT || icdgen_is_owed(&slot->awaited)) {
+        if (icdgen_is_awaited(slot)) {
             fits = icdgen_names(form, &slot->awaited, length, &row, &other);
         }
     }

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.texts import capitalized
 from icdgen.icd import schema
+from icdgen.icd.model import replaced_part
 from icdgen.protocol.declared import Fact, Kind, facts_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
@@ -100,9 +101,9 @@ def with_others(
             url = urls.get(value, "") if isinstance(value, str) else ""
             rows = [Row(_about(form, key), _value_text(form, key, value), "", url)]
         # Buses, and the other parts of a link, are sections of their own.
-        size = 3 if path[:2] == ("link", "buses") else 2 if path[0] == "link" else 1
-        part = _part(".".join(path[:size]), [])
-        before = "".join(f"{step.replace('_', ' ')}: " for step in path[size:])
+        own = replaced_part(path)
+        part = _part(".".join(own), [])
+        before = "".join(f"{step.replace('_', ' ')}: " for step in path[len(own) :])
         parts_by_anchor.setdefault(part.anchor, part).rows.extend(
             r._replace(about=capitalized(before + r.about)) for r in rows
         )

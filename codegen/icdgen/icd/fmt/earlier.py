@@ -10,10 +10,42 @@ from collections.abc import Iterator, Mapping
 from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.icd.fmt.scalars import name
 
+# Parts of the protocol section that are in `link`, with their present keys
+_PARTS = {"client": "client", "message_id": "ids", "errors": "reasons"}
+_BUSES = {key: key for key in ("uart", "i2c", "can")}
+_LINE = {key: key for key in ("baud_rate", "data_bits", "parity", "stop_bits")}
+_FRAMING = {
+    "start_of_message": "start",
+    "end_of_message": "end",
+    "escaped_data": "data",
+}
+_PATHS = {
+    **{
+        f"protocol.{key}": f"protocol.link.{present}" for key, present in _PARTS.items()
+    },
+    **{f"protocol.uart.{key}": f"protocol.link.buses.uart.line.{key}" for key in _LINE},
+    **{f"protocol.{bus}": f"protocol.link.buses.{bus}" for bus in _BUSES},
+}
+
+
+def _text(word: str) -> Text:
+    return Text(word, word)
+
+
+def _entries(value: object) -> list[Child]:
+    """Return the entries of a mapping; none of anything else."""
+    return value.children if isinstance(value, Branch) and value.mapping else []
+
+
+def _entry(value: object, key: str) -> Child | None:
+    """Return the entry of a key; None without one."""
+    return next((each for each in _entries(value) if name(each.key) == key), None)
+
 
 def convert(root: Branch) -> bool:
-    """Change the tree of an ICD or of errata to the present keys. Return whether there was something
-    to change.
+    """Change the tree of an ICD or of errata to the present keys.
+
+    Return whether there was something to change.
     """
     if _entry(root, "errata"):
         return _convert_errata(root)
@@ -142,38 +174,6 @@ def _move_covers(link: Branch) -> None:
         if covers := declared.get(named.value.spelling):
             field.children.append(copy.deepcopy(covers))
             covers.before, covers.trailing = [], []  # only the first gets the comments
-
-
-# Parts of the protocol section that are in `link`, with their present keys
-_PARTS = {"client": "client", "message_id": "ids", "errors": "reasons"}
-_BUSES = {key: key for key in ("uart", "i2c", "can")}
-_LINE = {key: key for key in ("baud_rate", "data_bits", "parity", "stop_bits")}
-_FRAMING = {
-    "start_of_message": "start",
-    "end_of_message": "end",
-    "escaped_data": "data",
-}
-_PATHS = {
-    **{
-        f"protocol.{key}": f"protocol.link.{present}" for key, present in _PARTS.items()
-    },
-    **{f"protocol.uart.{key}": f"protocol.link.buses.uart.line.{key}" for key in _LINE},
-    **{f"protocol.{bus}": f"protocol.link.buses.{bus}" for bus in _BUSES},
-}
-
-
-def _text(word: str) -> Text:
-    return Text(word, word)
-
-
-def _entries(value: object) -> list[Child]:
-    """Return the entries of a mapping; none of anything else."""
-    return value.children if isinstance(value, Branch) and value.mapping else []
-
-
-def _entry(value: object, key: str) -> Child | None:
-    """Return the entry of a key; None without one."""
-    return next((each for each in _entries(value) if name(each.key) == key), None)
 
 
 def _value(value: object, key: str) -> object:

@@ -10,7 +10,14 @@ from math import ceil
 from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, Node
+from icdgen.icd.model import (
+    CAN_DATA_BYTES,
+    CAN_PACKETS,
+    KEYS_OF_IDS,
+    Message,
+    Node,
+    replaced_part,
+)
 from icdgen.icd.rules.context import BUSES, Context, own_fact, section_of
 from icdgen.icd.rules.protocol_sizes import of_one_number
 from icdgen.icd.rules.rule import rule
@@ -27,10 +34,8 @@ def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
     """Return the mapping at a path of the protocol section in effect for a node: its
     own, or that of an included node.
     """
-    # A bus, or another part of a link, replaces the included one.
-    size = 3 if path[:2] == BUSES else 2 if path[0] == "link" else 1
     for owner in reversed(ctx.scope(node)):
-        if section_of(owner, *path[:size]) is not None:
+        if section_of(owner, *replaced_part(path)) is not None:
             return section_of(owner, *path)
     return None
 

@@ -63,6 +63,7 @@ impl Messages {
                 sent: Sent::Request(request.id),
                 lengths: (0, 0),
                 repeats: true,
+                is_checked: false,
                 awaited: Awaited::new(exchange, Some(request.id), request.id),
             });
         }
@@ -76,6 +77,7 @@ impl Messages {
             sent: Sent::Telecommand(request.id),
             lengths: (form.length, form.length),
             repeats: form.repeatable,
+            is_checked: self.checks_telecommands,
             awaited: Awaited::new(exchange, None, request.id),
         })
     }
@@ -116,14 +118,7 @@ impl Messages {
         } else {
             data
         };
-        Ok(Arrival {
-            id,
-            packet: None,
-            head: &[],
-            data: frame,
-            values: &Values::NONE,
-            is_response: true,
-        })
+        Ok(Arrival::of_telemetry(id, frame))
     }
 }
 

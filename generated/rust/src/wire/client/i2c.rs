@@ -8,7 +8,6 @@ use super::Client;
 use crate::wire::bits::head;
 use crate::wire::link::{Bus, MOST_AWAITED};
 use crate::wire::message::octet;
-use crate::wire::stream::Values;
 use crate::wire::{i2c, Error, Event, Linked, NodeEvent, Request};
 #[cfg(feature = "embedded-hal")]
 use embedded_hal::i2c::I2c;
@@ -206,14 +205,7 @@ impl<const N: usize> Line<N> {
             ..
         } = self.messages;
         match i2c::reply(link, octet(id), bytes, checks_telemetry) {
-            Ok(data) => Ok(Arrival {
-                id,
-                packet: None,
-                head: &[],
-                data,
-                values: &Values::NONE,
-                is_response: true,
-            }),
+            Ok(data) => Ok(Arrival::of_telemetry(id, data)),
             Err(Error::Checksum { .. }) => Err(Event::Checksum { id }),
             Err(_) => Err(Event::Length { id: Some(id) }),
         }
@@ -227,9 +219,5 @@ impl<const N: usize> Transport for Line<N> {
 
     fn plan(&self, request: &Request<'_>) -> Result<Plan, Error> {
         self.messages.plan(request)
-    }
-
-    fn checks_telecommands(&self) -> bool {
-        self.messages.checks_telecommands
     }
 }

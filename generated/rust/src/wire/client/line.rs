@@ -41,11 +41,6 @@ pub trait Transport {
     /// Return how a request is sent, and the responses to it.
     fn plan(&self, request: &Request<'_>) -> Result<Plan, Error>;
 
-    /// Return whether telecommands have a checksum that the device can find wrong.
-    fn checks_telecommands(&self) -> bool {
-        false
-    }
-
     /// Discard incomplete messages whose time is up.
     fn expire(&mut self, _now: u32, _on_event: &mut dyn FnMut(Event<'_>)) {}
 }
@@ -90,6 +85,8 @@ pub struct Plan {
     pub lengths: (usize, usize),
     /// Whether it may be sent again after a time-out.
     pub repeats: bool,
+    /// Whether it has a checksum that the device can find wrong.
+    pub is_checked: bool,
     /// Its responses. The numbers of the data are missing.
     pub awaited: Awaited,
 }
@@ -112,6 +109,18 @@ pub struct Arrival<'a> {
 }
 
 impl<'a> Arrival<'a> {
+    /// Return telemetry on UART, I2C or CAN, which the device sends only if it is requested.
+    pub(super) const fn of_telemetry(id: u32, data: &'a [u8]) -> Self {
+        Self {
+            id,
+            packet: None,
+            head: &[],
+            data,
+            values: &Values::NONE,
+            is_response: true,
+        }
+    }
+
     pub(super) fn kind(&self) -> ResponseKind {
         self.packet
             .map_or(ResponseKind::Telemetry(self.id), ResponseKind::Packet)

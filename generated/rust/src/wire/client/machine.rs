@@ -31,7 +31,8 @@ struct Slot<B> {
     sent: Sent,
     data: B,
     length: usize,
-    repeats: bool, // whether it may be sent again after a time-out
+    repeats: bool,    // whether it may be sent again after a time-out
+    is_checked: bool, // whether it has a checksum that the device can find wrong
     awaited: Awaited,
     timeout: u32,
     attempts: u16,
@@ -55,6 +56,7 @@ impl<B: Buffer> Slot<B> {
         data: B::EMPTY,
         length: 0,
         repeats: false,
+        is_checked: false,
         awaited: Awaited::NOTHING,
         timeout: 0,
         attempts: 0,
@@ -107,8 +109,6 @@ pub struct Machine<B, const R: usize> {
     pub(super) link: &'static Link,
     /// Whether each transmission has a result.
     pub(super) has_results: bool,
-    /// Whether the device can find a wrong checksum in telecommands.
-    pub(super) has_checks: bool,
     requests: [Slot<B>; R],
     late: [Option<Late>; MOST_AWAITED],
     begun: u32,                           // number of requests
@@ -124,7 +124,6 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
             settings: link.client,
             link,
             has_results,
-            has_checks: false,
             requests: [Slot::EMPTY; R],
             late: [None; MOST_AWAITED],
             begun: 0,
@@ -186,6 +185,7 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
             sent: plan.sent,
             length,
             repeats: asks || request.repeat || plan.repeats,
+            is_checked: plan.is_checked,
             awaited,
             timeout: match timeout {
                 0 => self.settings.reply_timeout_ms,
@@ -471,9 +471,21 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
         first.into_iter().chain(late)
     }
 
+    /// Return the event of what a line has received: that of an arrival, or an event that belongs to
+    /// no request.
+    pub(super) fn processed<'a>(
+        &mut self,
+        received: Result<Arrival<'a>, Event<'a>>,
+    ) -> Option<Event<'a>> {
+        match received {
+            Ok(arrival) => self.arrived(&arrival),
+            Err(event) => Some(event),
+        }
+    }
+
     /// Return what arrived: a response to a request, late, stray or unsolicited. None if its request
     /// is sent again.
-    pub(super) fn arrived<'a>(&mut self, arrival: &Arrival<'a>) -> Option<Event<'a>> {
+    fn arrived<'a>(&mut self, arrival: &Arrival<'a>) -> Option<Event<'a>> {
         let is_response = |slot: &Slot<B>| slot.awaited.matching(arrival).is_some();
         let place = self.oldest(|slot| slot.is_awaited() && is_response(slot));
         let slot = place.and_then(|place| Some((place, self.requests.get(place)?)));
@@ -509,7 +521,7 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
             values,
             ..
         } = *arrival;
-        let (now, settings, has_checks) = (self.now, self.settings, self.has_checks);
+        let (now, settings) = (self.now, self.settings);
         let slot = self.requests.get_mut(place)?;
         let verdict = arrival.verdict(response);
         let number = |place: NumberPlace| place.get(arrival.head, data);
@@ -529,7 +541,7 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
                 slot.until = now.wrapping_add(settings.busy_pause_ms);
             }
             // The device did not receive it as it was sent.
-            Verdict::Again if is_left && has_checks => {
+            Verdict::Again if is_left && slot.is_checked => {
                 slot.state = State::Queued;
                 slot.is_polled = false;
                 self.drop_output(place);

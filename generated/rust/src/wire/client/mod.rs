@@ -142,7 +142,6 @@ impl<T, L: Line, const R: usize> Client<T, L, R> {
     /// names a reply on another link.
     pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
         let plan = self.line.plan(request)?;
-        self.machine.has_checks = self.line.checks_telecommands();
         self.machine.start(now, request, plan)
     }
 

@@ -61,6 +61,7 @@ impl Messages {
                 sent: Sent::Request(request.id),
                 lengths: (0, 0),
                 repeats: true,
+                is_checked: false,
                 awaited: Awaited::new(exchange, Some(request.id), request.id),
             });
         }
@@ -74,6 +75,7 @@ impl Messages {
             sent: Sent::Telecommand(request.id),
             lengths: (form.length, form.length),
             repeats: form.repeatable,
+            is_checked: self.checks_telecommands,
             awaited: Awaited::new(exchange, None, request.id),
         })
     }
@@ -114,14 +116,7 @@ impl Messages {
         } else {
             data
         };
-        Ok(Arrival {
-            id,
-            packet: None,
-            head: &[],
-            data: frame,
-            values: &Values::NONE,
-            is_response: true,
-        })
+        Ok(Arrival::of_telemetry(id, frame))
     }
 }
 

@@ -70,10 +70,7 @@ impl<T, const N: usize, const R: usize> Client<T, Line<N>, R> {
             let event = match found {
                 can::Event::Message(message) => {
                     head = [octet(message.id)];
-                    match arrival(messages, node, &message, &head) {
-                        Ok(arrival) => machine.arrived(&arrival),
-                        Err(event) => Some(event),
-                    }
+                    machine.processed(arrival(messages, node, &message, &head))
                 }
                 other => Some(fault(&other)),
             };
@@ -127,10 +124,6 @@ impl<const N: usize> Transport for Line<N> {
             self.packets(plan.sent, self.messages.size(plan.sent, size))?; // does it fit?
         }
         Ok(plan)
-    }
-
-    fn checks_telecommands(&self) -> bool {
-        self.messages.checks_telecommands
     }
 
     fn expire(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

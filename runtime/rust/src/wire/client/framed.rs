@@ -86,6 +86,7 @@ impl<const N: usize, const S: usize> Transport for Line<N, S> {
             sent,
             lengths,
             repeats: row.repeats,
+            is_checked: false,
             awaited,
         })
     }
@@ -114,11 +115,8 @@ impl<const N: usize, const S: usize> ByteTransport for Line<N, S> {
     ) {
         let form = self.form;
         self.decoder.feed(bytes, |found| {
-            let event = match arrival(form, machine, &found) {
-                Ok(arrival) => machine.arrived(&arrival),
-                Err(event) => Some(event),
-            };
-            if let Some(event) = event {
+            let arrival = arrival(form, machine, &found);
+            if let Some(event) = machine.processed(arrival) {
                 on_event(event);
             }
         });

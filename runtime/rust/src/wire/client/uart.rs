@@ -49,10 +49,6 @@ impl<const N: usize> Transport for Line<N> {
     fn plan(&self, request: &Request<'_>) -> Result<Plan, Error> {
         self.messages.plan(request)
     }
-
-    fn checks_telecommands(&self) -> bool {
-        self.messages.checks_telecommands
-    }
 }
 
 impl<const N: usize> ByteTransport for Line<N> {
@@ -79,10 +75,7 @@ impl<const N: usize> ByteTransport for Line<N> {
         let messages = &self.messages;
         self.decoder.feed(bytes, |found| {
             let event = match found {
-                uart::Event::Message(message) => match arrival(messages, message) {
-                    Ok(arrival) => machine.arrived(&arrival),
-                    Err(event) => Some(event),
-                },
+                uart::Event::Message(message) => machine.processed(arrival(messages, message)),
                 uart::Event::UnexpectedStart => Some(Event::UnexpectedStart),
                 uart::Event::ProtocolError => Some(Event::ProtocolError),
                 uart::Event::Overrun => Some(Event::Overrun),
