@@ -113,7 +113,8 @@ def test_there_is_no_file_without_a_protocol(tmp_path):
 def test_a_node_that_would_take_the_files_name_is_found(tmp_path):
     text = (
         "icdgen: 1\nnode: {name: protocol, title: P, byte_order: little, bit_order: lsb0}\n"
-        "protocol: {uart: {baud_rate: 9600}}\nmessages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
+        "protocol: {link: {buses: {uart: {line: {baud_rate: 9600}}}}}\n"
+        "messages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
     )
     path = tmp_path / "protocol.yaml"
     path.write_text(text, encoding="utf-8")
@@ -156,7 +157,7 @@ def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
 def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_path):
     text = (
         "icdgen: 1\nnode: {name: demo, title: D, byte_order: big, bit_order: msb0}\n"
-        "protocol:\n  uart: {baud_rate: 9600}\n"
+        "protocol:\n  link: {buses: {uart: {line: {baud_rate: 9600}}}}\n"
         "messages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
     )
     (tmp_path / "demo.yaml").write_text(text, encoding="utf-8")

@@ -115,7 +115,9 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
 def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     """Return the settings of each bus."""
     settings_by_bus = []
-    buses = {title: section.get(key, {}) for key, title in texts.BUSES.items()}
+    buses = {
+        title: buses_of(section).get(key, {}) for key, title in texts.BUSES.items()
+    }
     line = {"Serial line": section.get("link", {}).get("line", {})}
     for title, settings in (line | buses).items():
         rows = list(_settings(settings, ""))
@@ -136,6 +138,8 @@ def _settings(section: dict[str, Any], prefix: str) -> Iterator[Row]:
             yield Row(label, " or ".join(value))
         elif key in ("write", "read") and isinstance(value, dict):
             yield from _settings(value, f"{key}, ")
+        elif key == "line":
+            yield from _settings(value, "")
 
 
 def _framing(node_facts: Facts) -> list[Box]:
