@@ -59,6 +59,8 @@ elsewhere("reading", "ICD001", "ICD002", "ICD003", "ICD004", "ICD010")
 # Reported by `icdgen.icd.errata`, while an overlay is applied.
 elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")
 ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
+# The sort is stable: rules that depend on the findings of others run after all others,
+# and the rest in the order of their codes.
 _RUN = sorted(ALL.values(), key=lambda rule: rule.runs_last)
 
 
@@ -107,6 +109,7 @@ def explain(code: str) -> str:
         raise UnknownRule(
             f"there is no rule {code}" + (f"; did you mean {close}?" if close else "")
         )
+    # Pages are Markdown files, and no other command needs them.
     from icdgen.icd.rules import pages
 
     return pages.text(rule.code, rule.severity, rule.page)

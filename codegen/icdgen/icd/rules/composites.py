@@ -19,6 +19,8 @@ from icdgen.icd.trees import mappings
 from icdgen.icd.wire_ids import number
 from icdgen.wording import listing, quote
 
+# Attributes that must be equal. A finding points to the first one that differs. Names
+# and summaries may differ, because manuals abbreviate them in lists of frames.
 _KEYS = ("bits", "type", "enum", "unit", "formula", "points", "outside")
 _IDS = ("id", "set_id", "get_id")
 
@@ -33,6 +35,7 @@ def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
                 (row.get("message"), row.get("at"), row)
                 for row in mappings(message.source["contains"])
             ]
+            # The model has only valid parts, without the line that declares them.
             rows = {
                 (name, at): row
                 for name, at, row in entries
@@ -52,12 +55,14 @@ def repeated_frames_exist_and_fit(ctx: Context) -> Iterator[Fault]:
                 help, fix = suggestion(part.message, frames, VERBATIM)
                 text = f"there is no message {quote(part.message)}"
                 yield Fault.of_place(message.source, row.at("message"), text, help, fix)
+        # A cycle has no end when the frame is expanded, and no length.
         elif message.name in _repeated(frame, frames):
             text = f"{quote(message.name)} contains itself"
             if frame is not message:
                 text = f"{text}, in {quote(frame.name)}"
             yield Fault(message.source, row.at("message"), text, "name another frame")
         elif (
+            # ICD122 reports a repeated frame of variable length.
             not frame.layout.sequence
             and part.at + frame.length * 8 > message.length * 8
         ):
@@ -103,6 +108,7 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
         missing = {part.at + field.at: field for field in _fields_with_bits(frame)}
         reported = set()
         for field in fields:
+            # Not in the repeated frame, not even with one bit.
             if field.at >= end or field.at + field.bits <= start:
                 continue
             source = field.scalar.source
@@ -218,6 +224,7 @@ def list_tables_match_detail_tables(ctx: Context) -> Iterator[Fault]:
             continue
         for key, value in listed.items():
             own = message.source.get(key)
+            # A list table can print an id as a number, and the detail table as bytes.
             if own != value and not (
                 key in _IDS and own is not None and number(own) == number(value)
             ):

@@ -14,6 +14,7 @@ from icdgen.icd.trees import mappings
 from icdgen.wording import quote
 
 # Keys of fields that cannot be optional, with words for messages.
+# Only the first that applies is reported.
 _NEVER = (
     ("count", "an array"),
     ("size", "of variable length"),
@@ -103,6 +104,8 @@ def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
                     f"{absent}, which the links in `protocol` do not support",
                     help,
                 )
+    # ICD047 pairs the fields of a composite message and of its parts by position.
+    # Optional fields can share a position, so there would be no pairs.
     for message, node in ctx.messages if optional else ():
         names = {
             other.name

@@ -95,6 +95,9 @@ class Context:
         self._lines = {file: Lines(text) for file, text in (texts or {}).items()}
         self.languages = languages  # whose names the rules about names check
         self.applied = tuple(applied)
+        # By identity: mappings with the same content are equal, and they have no hash.
+        # The file that a rule looks at and the target of an erratum are the same
+        # object.
         self._accepted = {
             (code, id(owner))
             for overlay in self.applied
@@ -125,9 +128,10 @@ class Context:
         derived: list[tuple[Scalar, Line]] = []
         for owner, icd_node in self.owners:
             for node in owner.layout.nodes:
-                line, scalar = Line(node, owner, icd_node), (
-                    node if type(node) is Scalar else scalar_of(node)
-                )
+                line = Line(node, owner, icd_node)
+                # Most nodes are scalars, and large ICDs have 100,000 of them: the test
+                # saves a call for each.
+                scalar = node if type(node) is Scalar else scalar_of(node)
                 if isinstance(node, Derived):
                     derived.append((node.scalar, line))
                     continue
@@ -140,6 +144,8 @@ class Context:
         for key in ("unit", "display"):
             self.fields_with[key] += (row for row in derived if key in row[0].source)
         # id() of a layout -> its struct and the node that declares it.
+        # All uses of a struct share its layout object, so that the object leads back to
+        # the declaration.
         self.struct_of: dict[int, tuple[Struct, Node]] = {
             id(struct.layout): (struct, node) for struct, node in self.structs
         }
@@ -162,6 +168,9 @@ class Context:
         scope = self._scopes.get(id(node))
         if scope is None:
             included = reversed(self.icd.included(node))
+            # Two files can declare a node of the same name (ICD057 reports it). The
+            # first of them is the one that is included, which the reversed order
+            # achieves: later entries of a dict replace earlier ones.
             by_name = {
                 other.name: other for other in included if other.name != node.name
             }
@@ -222,6 +231,8 @@ class Context:
             for item in mappings(owner.source.get("messages"))
         )
         names = {name for item in entries if isinstance(name := item.get("name"), str)}
+        # `icdgen.icd.build` leaves invalid messages out of the model. A reference to
+        # one of them must not be reported as a reference to nothing.
         return names - {message.name for message in self.messages_of(node)}
 
     def protocol_of(self, node: Node) -> dict[str, Any]:

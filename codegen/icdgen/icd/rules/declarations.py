@@ -75,11 +75,13 @@ def _left_out(ctx: Context) -> set[int]:
     duplicates = {
         id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES
     }
+    # Reversed, so that the first node of a name remains.
     first = {node.name: node for node in reversed(ctx.icd.nodes)}
     left_out = {
         id(node.source) for node in ctx.icd.nodes if first[node.name] is not node
     }
     for owner, icd_node in ctx.owners:
+        # Derived values are among the nodes, because accessors are named after them.
         fields = {id(node.source) for node in owner.layout.nodes}
         if id(owner.source) in duplicates or first[icd_node.name] is not icd_node:
             left_out |= {id(owner.source), *fields}

@@ -47,6 +47,7 @@ def _faults(message: Message) -> Iterator[Fault]:
             derivation = derived.parse(
                 text, {*(node.name for node in nodes), *later, *failed}
             )
+            # One finding for the value that has an error, none for those that use it.
             if failed.isdisjoint(derivation.fields):
                 check_operands(derivation, nodes)
         except FormulaError as error:

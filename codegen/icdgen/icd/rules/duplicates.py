@@ -93,6 +93,8 @@ def field_names_are_unique(ctx: Context) -> Iterator[Fault]:
         # A name can also equal the name of an element, such as `Satellites[0].GNSS`, or
         # of a counter.
         is_path = any("[" in name or "." in name for name in names)
+        # Fast path for most messages: the names of the lines are distinct, and none can
+        # equal the name of an element or a counter.
         if len(names) == len(nodes) and not owner.layout.sequence and not is_path:
             continue
         fields: list[NodePlace] = []
@@ -141,6 +143,8 @@ def _members_with_common_values(enum: Enum) -> Iterator[tuple[Member, Member]]:
     """
     order = {id(member): index for index, member in enumerate(enum.members)}
     # Of the members with smaller values, the one with the largest last value.
+    # A member can be a range. It meets an earlier one exactly if it begins before the
+    # largest end so far, so one pass in the order of values is enough.
     furthest: Member | None = None
     pairs = []
     for member in sorted(enum.members, key=lambda member: member.value):
@@ -158,7 +162,10 @@ def _members_with_common_values(enum: Enum) -> Iterator[tuple[Member, Member]]:
 def member_names_are_unique(ctx: Context) -> Iterator[Fault]:
     for enum in ctx.enums:
         for first, second in _twice(
-            enum.members, lambda member: (member.name, member.identifier)
+            # Manuals print a name twice, such as `Reserved`. Different identifiers make
+            # that acceptable.
+            enum.members,
+            lambda member: (member.name, member.identifier),
         ):
             value = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
             message = f"{quote(second.name)} is already the name of {value}"
@@ -179,6 +186,8 @@ def aliases_are_unambiguous(ctx: Context) -> Iterator[Fault]:
             messages += declaring.messages
             enums += declaring.enums
             structs += declaring.structs
+        # No command accepts a message and a type in the same place, so they can share
+        # an alias.
         for items in (messages, enums + structs):
             for fault in _ambiguous_aliases(items, node.vocabulary):
                 # A node that includes another node has the same aliases.
@@ -206,6 +215,7 @@ def _ambiguous_aliases(
         """Return the form in which a search compares names."""
         return "".join(naming.words(text, vocabulary)) or text.casefold()
 
+    # Reversed, so that the first item of a name remains.
     names = {
         words(text): item
         for item in reversed(items)

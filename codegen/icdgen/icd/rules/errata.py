@@ -22,6 +22,7 @@ def accepted_findings_exist(ctx: Context) -> Iterator[Fault]:
             # ICD085 reports codes that are not registered.
             if code in REGISTERED and (code, id(owner)) not in raised:
                 unmatched.setdefault((code, place), []).append(owner.place)
+    # One entry of an erratum can have several targets; one finding for all of them.
     for (code, place), targets in unmatched.items():
         more = (
             f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""

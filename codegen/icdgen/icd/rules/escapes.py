@@ -47,9 +47,13 @@ def _first_bytes(ctx: Context, link: Link, framing: Map) -> Iterator[Fault]:
     """Yield the faults of packets whose first byte has another meaning after the escape
     byte.
     """
+    # A packet begins after the escape byte. There the receiver takes these bytes as an
+    # escaped data byte or as the end of a packet, and not as its first byte.
     reserved = [framing.get(key) for key in ("escape", "end", "data")]
     for packet in link.packets:
         place = link.place(packet)
+        # Each id and each constant can give another first byte, so all of them are
+        # tried.
         for direction, id, name in _contents(ctx, link, packet):
             byte = _first_byte(link, packet, direction, id)
             if byte is None:
@@ -86,25 +90,21 @@ def _contents(
 def _first_byte(link: Link, packet: LinkPacket, direction: str, id: int) -> int | None:
     """Return the first byte of a packet; None if it is not only ids and constants."""
     shifts = (shift for _, shift in id_shifts([row for _, row in packet.rows]))
-    order, byte, known = link.node.bit_order, 0, 0
+    order, byte, determined = link.node.bit_order, 0, 0
     for part, row in packet.rows:
+        row_order: str = row.get("byte_order", link.node.byte_order)
         if row["role"] == "id":
+            # An id can have several parts, the most significant bits first.
             value = id >> next(shifts)
         elif row["role"] in FIXED:
-            value = value_of(row, direction, _is_little(link, row))
+            value = value_of(row, direction, row_order == "little")
         else:
             continue
-        places = bits_of(
-            row["at"], row["bits"], row.get("byte_order", link.node.byte_order), order
-        )
+        places = bits_of(row["at"], row["bits"], row_order, order)
         for bit, place in enumerate(places):
             if part == "header" and place < 8:
                 shift = place if order == "lsb0" else 7 - place
+                # `places` counts bits in the bit order of the node.
                 byte |= (value >> bit & 1) << shift
-                known |= 1 << shift
-    return byte if known == 0xFF else None
-
-
-def _is_little(link: Link, row: Map) -> bool:
-    order: str = row.get("byte_order", link.node.byte_order)
-    return order == "little"
+                determined |= 1 << shift
+    return byte if determined == 0xFF else None

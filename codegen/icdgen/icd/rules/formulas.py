@@ -108,6 +108,8 @@ def raw_values_reach_the_table(ctx: Context) -> Iterator[Fault]:
         ):
             continue
         first, last = table.points[0][0], table.points[-1][0]
+        # No raw value lies between two points. Usually the table is for another width
+        # or sign.
         if last < field.raw_min or field.raw_max < first:
             what = (
                 "the same physical value"
@@ -146,6 +148,7 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
     """Yield the faults of `formula_for` of the ICD, which applies to all messages of a
     kind.
     """
+    # A field with `formula_for` of its own has its own finding.
     for kind, stated_for in stated.items():
         messages = (message for message in node.messages if message.kind == kind)
         contrary = [
@@ -191,6 +194,8 @@ def formulas_are_computable(ctx: Context) -> Iterator[Fault]:
     for field, _ in (*ctx.fields_with["formula"], *ctx.fields_with["points"]):
         scale, own = field.scale, field.curve
         if (
+            # A table or polynomial is computed in binary64 (IEEE 754), whose largest
+            # finite number is about 1.8e308.
             own is not None
             and field.type != "float"
             and not curve.is_finite(own, field.raw_min, field.raw_max)
@@ -224,6 +229,7 @@ def sent_formulas_are_invertible(ctx: Context) -> Iterator[Fault]:
             continue
         if field.type == "float":
             why = "for a float, only a linear formula can be inverted"
+        # Only a test of all raw values shows whether these curves have an inverse.
         elif field.bits > curve.MOST_BITS:
             what = (
                 "table"

@@ -61,6 +61,9 @@ class _Clashes:
         Only the first text per language is stored.
         """
         identifiers = (identifier, other) if other else (identifier,)
+        # Sorted, because two languages can list the same two lines in different order.
+        # Names that come from no line, such as those of the runtime, are identified by
+        # their owner.
         key = tuple(
             sorted(
                 id(each.source) if each.source is not None else hash(each.owner)
@@ -68,6 +71,8 @@ class _Clashes:
             )
         )
         texts = self.entries.setdefault(key, (identifier, other, {}))[2]
+        # One line gives many identifiers per language, such as getter, setter and
+        # constant. If one clashes, usually all of them do.
         if not any(language in languages for languages in texts.values()):
             texts.setdefault(identifier.text, []).append(language)
 
@@ -108,9 +113,14 @@ def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
         ):
             first = seen.setdefault((identifier.scope, identifier.text), identifier)
             if first is identifier or (
-                first.source is None and identifier.source is None
+                # Two names of the generator itself, which no change of the ICD can
+                # separate.
+                first.source is None
+                and identifier.source is None
             ):
                 continue
+            # Lines with equal names have a finding of their own, which explains the
+            # clash.
             if not (reported and reported & {id(first.source), id(identifier.source)}):
                 clashes.add(names.language, identifier, first)
     for identifier, other, texts in clashes:

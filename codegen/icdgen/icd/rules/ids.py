@@ -78,6 +78,9 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
             for first in before:
                 if not is_linked and _are_distinguishable(first, use):
                     continue
+                # The clash belongs to the node that has both. A node with a link can
+                # include a node without one, where the two messages are permitted: then
+                # it belongs to the node with the link.
                 if brings_together(ctx, node, first.node, use.node) or (
                     is_linked and not ctx.is_linked(use.node)
                 ):
@@ -95,6 +98,8 @@ def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
     differ in length or in a constant. Therefore a difference does not show that the id
     is shared on purpose.
     """
+    # ICD055 reports any two messages with the same id, if links identify a message by
+    # its id alone.
     for node in filter(lambda node: not ctx.is_linked(node), ctx.icd.nodes):
         seen: dict[tuple[str, int], Use] = {}
         for use in (
@@ -139,6 +144,8 @@ def confirmed_ids_are_shared(ctx: Context) -> Iterator[Fault]:
     """Report `shares_id` of a message whose id no other message has: the key would
     later confirm an id that was copied.
     """
+    # A message can share its id with one of a node that includes this one, so all nodes
+    # are considered before any finding.
     shared: set[int] = set()
     for node in ctx.icd.nodes:
         users: dict[tuple[str, int], list[Use]] = {}
@@ -197,6 +204,8 @@ def ids_are_in_range(ctx: Context) -> Iterator[Fault]:
         ranges = _ranges(ctx, node)
         for use in _uses_in_scope(ctx, node):
             first, last = ranges.get(use.direction, (0, (1 << node.id_bits) - 1))
+            # ICD111 reports an id with the wrong number of bytes, whose value has no
+            # meaning.
             if not first <= use.id <= last and _has_its_bytes(use):
                 help = _remedy(ctx, node, use, ranges)
                 message = f"{_id(ctx, use)} is outside the range of {use.direction} ids, {_range_text(ctx, node, use, ranges)}"
@@ -285,6 +294,8 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
         if ctx.fact(node, *BUSES, "uart", "framing") is None or len(declared) == 2:
             continue
         uses = [use for use in _uses_in_scope(ctx, node) if use.message is not None]
+        # Without declared ranges the generated client takes the span of the telemetry
+        # ids. `max` of nothing is -1, so that the range is empty.
         ids = [use.id for use in uses if use.direction == TELEMETRY]
         first, last = declared.get(
             TELEMETRY, (min(ids, default=0), max(ids, default=-1))

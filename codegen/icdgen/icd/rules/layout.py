@@ -28,18 +28,22 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
 from icdgen.wording import count, quote
 
+# 64 bits are the widest integer that all languages have.
 _INTEGER = (frozenset(range(1, 65)), "1 to 64 bits")
 WIDTHS = {
     "uint": _INTEGER,
     "int": _INTEGER,
     "enum": _INTEGER,
     "bool": (frozenset({1}), "1 bit"),
+    # binary32 and binary64 of IEEE 754, which are `float` and `double` in C, f32 and
+    # f64 in Rust.
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
 _OVERLAPPING = "correct `at` or `bits`"
 _ALTERNATIVES = (
     "let them depend on different values of the same field, or correct `at` or `bits`"
 )
+# Units of types that have no byte order.
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
@@ -62,6 +66,8 @@ def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
             is_array, size_key = isinstance(node, Array), (
                 "struct" if struct_layout_of(node) else "bits"
             )
+            # Point to the key that is most likely wrong: `at` if the field begins
+            # behind the end, otherwise what makes it too long.
             key = "at" if node.at >= room else "count" if is_array else size_key
             has = f"{quote(owner.name)} has {count(room, 'bit')} ({count(owner.length, 'byte')})"
             length = line_of(owner.source.at("length"), source.at(key))
@@ -169,6 +175,8 @@ def _overlaps_among(
     Fields that are never present in the same frame can have the same bits.
     """
     before: list[tuple[NodePlace, int]] = []
+    # Comparing each pair of fields would take quadratic time, and arrays have thousands
+    # of elements. Only fields with a common byte are compared.
     indices_by_byte: defaultdict[int, list[int]] = defaultdict(list)  # of `before`
     for field in fields:
         if field.at + field.bits > owner.length * 8:
@@ -176,6 +184,8 @@ def _overlaps_among(
         mask = _mask(field.at, field.bits, field.orders_in_effect(icd_node.orders).bit)
         field_bytes = range(field.at // 8, (field.at + field.bits + 7) // 8)
         near = {index for byte in field_bytes for index in indices_by_byte[byte]}
+        # One overlap per field is enough: the correction of `at` or `bits` removes the
+        # others, too.
         for other, other_mask in (before[index] for index in sorted(near)):
             shared = mask & other_mask
             if shared and not are_exclusive(other.conditions, field.conditions):
@@ -190,6 +200,7 @@ def _bits_of(mask: int) -> str:
     """Return the bits of a mask in words: ``2 bits of byte 1``."""
     low = (mask & -mask).bit_length() - 1
     size = count(mask.bit_count(), "bit")
+    # Below 256, all bits are in the byte of the lowest one.
     return f"{size} of byte {low // 8}" if mask >> low // 8 * 8 < 256 else size
 
 
@@ -324,6 +335,7 @@ def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
             )
         if id(message) not in always_owned:
             always_owned[id(message)] = _always_owned(message, icd_node)
+        # Bits that no field has are never set: an encoder sends them as 0.
         free = _mask(node.at, field.bits, line.orders.bit) & ~always_owned[id(message)]
         if free and is_read(message):
             always = "always " if message.has_conditions else ""

@@ -18,6 +18,8 @@ from icdgen.wording import quote
 LIMITS = ("min", "above", "max", "below")
 
 
+# Exact numbers: with floats, `max: 0.3` would exclude the raw value 3 of the formula
+# `raw*0.1`, because 3 * 0.1 is greater than 0.3 in binary64.
 class Bounds(NamedTuple):
     """An interval of physical values."""
 
@@ -149,6 +151,7 @@ def _raw_values(field: Scalar, within: Bounds) -> range:
         # A negative factor exchanges the lower and the upper limit.
         if field.scale.factor < 0:
             low, high, above, below = high, low, below, above
+    # The smallest integer above an open limit, or at or above a closed one.
     first = (
         field.raw_min
         if low is None

@@ -35,6 +35,7 @@ def _id_key(message: Message) -> str:
 def loggable_frames_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         frames = _telemetry(ctx, node)
+        # Frames that the manual lists in the table but does not describe.
         missing = {
             entry.id
             for owner in ctx.scope(node)

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 FOLDER = Path(__file__).parent
 
+# The headings and labels are the same in all themes, so that a test can run each
+# example: the wrong one must have exactly this finding.
 _SECTION = re.compile(r"^## ([A-Z]{3}[0-9]{3}): (.+)\n", re.MULTILINE)
 _EXAMPLES = re.compile(
     r"(?P<why>.+?)\n\n(?:Wrong|Before):\n\n```yaml\n(?P<wrong>.*?)```\n\n"
@@ -36,6 +38,7 @@ def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
     Raises `ValueError` if a page does not have the usual form.
     """
     pages = {}
+    # The text before the first heading, then code, title and text in turn.
     _, *parts = _SECTION.split((folder / f"{theme}.md").read_text(encoding="utf-8"))
     for code, title, text in zip(parts[0::3], parts[1::3], parts[2::3], strict=True):
         match = _EXAMPLES.match(text.strip("\n") + "\n")

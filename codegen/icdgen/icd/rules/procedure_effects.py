@@ -126,6 +126,7 @@ def _fields(
 ) -> Iterator[Fault]:
     """Yield the faults of fields that describe an object."""
     fields = effect.get("fields")
+    # An object is described by the telemetry that the procedure requests last.
     requested = [
         step[kind]
         for step in nested_steps(procedure.get("steps"))
@@ -134,6 +135,8 @@ def _fields(
     ]
     message = named(messages, requested[-1]) if requested else None
     kind = next((effect[verb] for verb in EFFECTS if verb in effect), None)
+    # Also the inputs of procedures that read or write objects of this kind: `list` and
+    # `describe` return the values to give to them.
     numbers = {*NUMBERS, *keys.get(str(kind), ()), *effect.get("key", ())}
     if not isinstance(fields, Map):
         return

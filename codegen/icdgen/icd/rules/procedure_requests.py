@@ -24,6 +24,8 @@ def telemetry_of_steps_can_be_requested(ctx: Context) -> Iterator[Fault]:
         messages = {message.name: message for message in ctx.messages_of(link.node)}
         telecommands = ids_of(ctx, link.node, TELECOMMAND)
         commands = link.section.get("commands")
+        # Telemetry that responds to a telecommand comes when the telecommand is sent,
+        # so nothing else needs to request it.
         replies = {
             row.get("message")
             for _, message in telecommands
@@ -51,5 +53,7 @@ def _requests(ctx: Context, link: Link) -> Iterator[tuple[Map, object, Place]]:
                 if kind in ("get", "poll"):
                     yield step, step[kind], step.at(kind)
                 listed = step.get("messages")
+                # The map of missing packets can take several messages. All of them are
+                # requested.
                 if step.get("map") == "get" and isinstance(listed, Seq):
                     yield from ((step, name, place) for name, place in listed.placed())

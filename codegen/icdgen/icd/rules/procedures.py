@@ -27,7 +27,9 @@ from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings, named
 from icdgen.wording import count, listing, quote
 
-MOST_REGISTERS = 24  # numbers that a procedure keeps
+# Numbers that a procedure keeps. The engines of C and Rust allocate no memory;
+# that of Rust has an array of this size (`procedure/tables.rs`).
+MOST_REGISTERS = 24
 
 # What a step does -> keys that it needs, and keys that it can have.
 STEPS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -100,12 +102,14 @@ def steps_in(rows: object, outer: Placed | None = None) -> Iterator[Placed]:
         content = step.get(kind)
         if kind == "repeat":
             yield from steps_in(content, placed._replace(inside=(*inside, _REPEAT)))
+        # The schema check reports a value of another type.
         if not isinstance(content, Map):
             continue
         if kind == "blocks":
             within = placed._replace(inside=(*inside, _BLOCKS), blocks=content)
             yield from steps_in(content.get("steps"), within)
         if kind == "missing":
+            # `each` runs for one missing packet, `steps` for one round of all of them.
             for key, loop in (("each", _EACH), ("steps", _ROUND)):
                 within = placed._replace(inside=(*inside, loop), missing=content)
                 yield from steps_in(content.get(key), within)
@@ -365,6 +369,7 @@ def _value(names: Names, placed: Placed, owner: Map, key: str) -> Iterator[Fault
     if value == PACKET_DATA:
         yield from _packet_data(names, placed, owner, key)
         return
+    # Numbers of the block and of the packet, which the engine counts.
     own_names = [".".join(name) for name in FIXED_NAMES]
     if value in own_names:
         loop = _BLOCKS if value.startswith(BLOCK) else _EACH
@@ -439,6 +444,8 @@ def _last_frame(names: Names, placed: Placed) -> Iterator[Fault]:
 
 def _inputs(names: Names, steps: list[Placed]) -> Iterator[Fault]:
     """Yield the faults of inputs that no step uses, or that lack their size."""
+    # Values of the step itself, and of mappings in it such as `with`, `verify` and
+    # `blocks`.
     used = {
         value
         for placed in steps
@@ -490,6 +497,7 @@ def _limits(limits: Map, steps: list[Placed]) -> Iterator[Fault]:
         for placed in steps
     )
     collects = any(placed.kind == "collect" for placed in steps)
+    # Both bound the memory of a client, whatever the device sends.
     for key, is_needed, what in (
         ("bytes", receives, "receives bytes"),
         ("entries", collects, "collects entries"),
@@ -531,6 +539,7 @@ def _rounds(step: Map, missing: Map) -> Iterator[Fault]:
         for placed in steps_in(missing.get("steps"))
         if placed.kind == "map"
     }
+    # Without `steps` each packet is sent once, and nothing is repeated.
     if "each" in missing and "steps" in missing and "get" not in maps:
         text = "no step tells which packets are still missing after a round"
         yield Fault.at_key(missing, "steps", text, "add a step with `map: get`")
@@ -609,6 +618,7 @@ def _sizes(names: Names, placed: Placed) -> Iterator[Fault]:
         yield from _numbers_of_block(names, message, placed, size)
     if not isinstance(packet, int):
         return
+    # Rounded up: the last packet of a block need not be full.
     packets = -(-size // packet)
     if kind == "map" and isinstance(step.get("messages"), Seq):
         field = field_of(message, step.get("field"))
@@ -655,6 +665,7 @@ def _numbers_of_block(
     packets = -(-size // packet)
     largest = {
         "block.length": size,
+        # The last block and the last packet begin at most at the last byte.
         "block.offset": total - 1,
         "packet.offset": total - 1,
         "packet.number": int(placed.missing.get("first", 0)) + packets - 1,

@@ -31,6 +31,7 @@ def enumerations_exist(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(
                 source, "type", message, "add `enum:`, the name of an enumeration"
             )
+        # If parts of the file were left out, the enumeration may be one of them.
         elif field.enum is None and ctx.complete:
             yield Fault.at(
                 source,
@@ -99,6 +100,7 @@ def enumerations_are_used(ctx: Context) -> Iterator[Fault]:
             if (
                 id(enum) not in used
                 and (id(node), enum.name) not in named
+                # ICD052 reports names that occur twice.
                 and names.count(enum.name) == 1
             ):
                 text = f"no field uses the enumeration {quote(enum.name)}"

@@ -39,6 +39,8 @@ class Rule(NamedTuple):
         return self.page.title
 
 
+# Filled while the theme modules are imported, so it is complete once `icdgen.icd.rules`
+# is.
 REGISTERED: dict[str, Rule] = {}
 
 

@@ -50,6 +50,7 @@ def _uses(ctx: Context) -> Iterator[tuple[Map, Map, Node]]:
 
 @rule("ICD140")
 def structs_exist(ctx: Context) -> Iterator[Fault]:
+    # If parts of the file were left out, the struct may be one of them.
     for row, _, node in _uses(ctx) if ctx.complete else ():
         if all(
             struct.name != row["struct"]
@@ -92,6 +93,7 @@ def _shortest_path(
     """Return the structs from ``first`` to ``last``, each of which contains the next;
     None if there is no path.
     """
+    # Breadth first, so that the first path that arrives is the shortest.
     paths, seen = [[first]], {first}
     while paths:
         path = paths.pop(0)
@@ -210,6 +212,8 @@ def structs_are_used(ctx: Context) -> Iterator[Fault]:
             str(owner.get("name")) if id(owner) in structs else "", set()
         ).add(name)
     used: set[str] = set()
+    # A struct that only an unused struct uses is unused, too. So follow the uses from
+    # the messages.
     queue = [""]
     while queue:
         new = used_by.get(queue.pop(), set()) - used
@@ -231,6 +235,9 @@ def split_fields_have_the_same_orders(ctx: Context) -> Iterator[Fault]:
         for split in mappings(struct.source.get("fields")):
             if not isinstance(split.get("name"), str) or not division.parts_of(split):
                 continue
+            # A struct takes the orders of the message that it stands in. The positions
+            # of the parts of a split field were checked with the orders of the node
+            # that declares it.
             if "byte_order" not in split or "bit_order" not in split:
                 line_of_split = line_of(split.at("bitfields"), node.source.place)
                 bits = f"the bits of the split field {quote(split['name'])} ({line_of_split}) would be in other places"

@@ -22,6 +22,8 @@ NUMBERS = ("uint", "int", "enum")
 
 @rule("ICD030")
 def members_fit_their_fields(ctx: Context) -> Iterator[Fault]:
+    # Large enumerations are used by many fields: compare the member that needs the most
+    # bits, and look at the others only if it does not fit.
     widest = {id(enum): enum.widest for enum in ctx.enums}
     for field, _ in ctx.fields_with["enum"]:
         top = widest.get(id(field.enum)) if field.enum else None
@@ -141,6 +143,7 @@ def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
         return what, "only uint, int and enum fields have it"
     if value is None or field.raw_min <= value <= field.raw_max:
         return None
+    # Integers of YAML have no limit, and nobody reads a number of hundreds of digits.
     shown = str(value) if abs(value) < 1 << 64 else f"of {value.bit_length()} bits"
     what = f"{shown} does not fit {quote(field.name)}"
     limits = f"{count(field.bits, 'bit')} of `{field.type}` hold {field.raw_min} to {field.raw_max}"

@@ -137,6 +137,8 @@ def _reason_against_early_end(message: Message, is_linked: bool) -> str:
     """
     if variable_length.variable_fields(message.source):
         return "has a variable-length field, and the zeros at the end of a frame belong to it"
+    # MAVLink 2 truncates zeros in this way, and never truncates the first byte of the
+    # payload.
     if message.length < 2:
         return f"has {count(message.length, 'byte')}, and the first byte is always sent"
     if is_linked:
