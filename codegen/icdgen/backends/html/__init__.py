@@ -31,6 +31,7 @@ class HtmlBackend:
     name = "html"
     title = "the documentation site"
     reserved: frozenset[str] = frozenset()
+    # Pages contain names of these languages, so loading computes them.
     named_in = ("c", "python", "rust")
 
     def __init__(self, previous: Side | None = None) -> None:

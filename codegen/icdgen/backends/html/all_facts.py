@@ -17,8 +17,8 @@ from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
 
 _IN_HEXADECIMAL = ("address_7bit", "check", "printed_constant")
-# Place in the manual, reasons (in a separate table), prose
-_BESIDES = ("source", "assumptions", "summary")
+# Not shown as facts: the place in the manual, reasons (in a table of their own), prose.
+_NOT_SHOWN = ("source", "assumptions", "summary")
 
 
 class Row(NamedTuple):
@@ -42,7 +42,7 @@ class Part:
     rows: list[Row]
 
 
-def of_code(relations: Relations, facts: Facts) -> list[Part]:
+def facts_of_code(facts: Facts) -> list[Part]:
     """Return each fact that generated code uses, defaults included, by section of the
     ICD.
     """
@@ -87,6 +87,7 @@ def with_others(
         for path, thing in facts.parts.items()
         for fact in facts_of(thing)
     }
+    # The page has a table of its own for each CRC.
     read |= {
         f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)
     }
@@ -118,7 +119,7 @@ def _keys_with_values(
     """
     for key, value in section.items():
         inside = schema.inside(form, key)
-        if key in _BESIDES:
+        if key in _NOT_SHOWN:
             continue
         if isinstance(value, Mapping):
             yield from _keys_with_values(inside, value, (*path, key))
@@ -127,6 +128,8 @@ def _keys_with_values(
 
 
 def _about(form: dict[str, Any], key: str) -> str:
+    # Meanings in the schema are written for authors of an ICD. The value on the page is
+    # a link to the message, so that the remark has no use.
     meaning = schema.meaning(form).removesuffix(" (name of a message)")
     return capitalized(
         key.replace("_", " ")
@@ -164,6 +167,7 @@ def value_text(fact: Fact, value: object) -> str:
         return f"{value:,} ms"
     if fact.kind in (Kind.OCTET, Kind.CODE) and isinstance(value, int):
         return f"0x{value:02X}"
+    # A pair of first byte and number of bytes.
     if fact.kind is Kind.SPAN and isinstance(value, tuple):
         return f"bytes {value[0]} to {value[0] + value[1] - 1}"
     return as_text(value)

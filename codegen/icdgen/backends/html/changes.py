@@ -15,6 +15,7 @@ from icdgen.icd.model import Enum, Message, Node
 def values(relations: Relations, previous: Side) -> dict[str, object]:
     """Return the values of the page."""
     comparison_report = report.make(previous, Side("this release", relations.icd))
+    # `after` is the object of this release: pages exist only for this one.
     sections = [
         (group, _url(relations, group.owner.after))
         for group in groups(comparison_report.changes)

@@ -121,6 +121,7 @@ class _Canvas:
         self.owner = self._owners()
         self.grid, self.rows = self._grid()
         # Higher rows leave room for names in two lines.
+        # More fields than two per byte: names need a second line.
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
         self.row = (46 if narrow else 34) if self.across < 4 else 30
 
@@ -132,6 +133,7 @@ class _Canvas:
         optional = [field for field in self.fields if field.place.conditions]
         masks = [frame_bits.mask(field.place, self.node) for field in optional]
         for shown, own_mask in zip(optional, masks, strict=True):
+            # At most three alternatives: more do not fit into a box.
             alternatives = (
                 other.place.name
                 for other, mask in zip(optional, masks, strict=True)
@@ -152,11 +154,15 @@ class _Canvas:
             # none.
             if place.is_read_only or place.is_count:
                 continue
+            # Byte strings have no bit order, and can have thousands of bits: fill their
+            # range at once.
             if place.is_bytes:
                 bits = range(max(place.at, begin), min(place.at + place.bits, end))
                 owner[bits.start - begin : bits.stop - begin] = [shown.key] * len(bits)
                 continue
             for piece in frame_bits.pieces(place, self.node):
+                # Columns count from the left: bit w of byte b (0 is the least
+                # significant) is in column 8 * b + 7 - w.
                 right = 8 * piece.byte + 8 - piece.shift
                 for bit in range(right - piece.bits, right):
                     # The first one of alternative fields
@@ -246,6 +252,7 @@ class _Canvas:
                 x, width = self._x(start), self._x(end) - self._x(start)
                 boxes = rectangles[owner]
                 above = lowest.get((owner, x, width))
+                # The rectangle ends where this row begins.
                 if above is not None and boxes[above][1] + boxes[above][3] == top:
                     _, y, _, height = boxes[above]
                     boxes[above] = (x, y, width, height + self.row)
@@ -268,6 +275,8 @@ class _Canvas:
                 if start
             )
             path.append(f"M{LEFT} {y}v{self.row}M{self._x(len(owners))} {y}v{self.row}")
+            # A horizontal line only where a bit has another owner than the bit above
+            # it, so that no line crosses a field.
             differs = _runs(
                 owner != owner_above
                 for owner, owner_above in zip_longest(owners, above)

@@ -127,12 +127,11 @@ def script_facts(
         "packets": [_packet(packet) for packet in form.packets],
     }
     if form.escaping:
-        known = {
+        script_data["escaping"] = {
             key: value
             for key, value in asdict(form.escaping).items()
             if value is not None
         }
-        script_data["escaping"] = known
     if size := pair_bytes(form):
         script_data["id_pairs"] = size
     for direction in DIRECTIONS:
@@ -176,6 +175,7 @@ def _packet(packet: PacketFormat) -> dict[str, object]:
 
 
 def _field(field: EnvelopeField) -> dict[str, object]:
+    # Left out if they have no effect: the index of frames is loaded by every page.
     defaults = {"id_shift": 0, "unit": 1, "plus": 0}
     own = {name: getattr(field, name) for name in defaults}
     more = {name: value for name, value in own.items() if value != defaults[name]}
@@ -237,6 +237,7 @@ def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str
     the data.
     """
     data = [("data", "", 3.0, "")]
+    # Such packets carry no message, only zeros if they have data at all.
     if form.content in (REQUEST, NOTHING):
         size = count(form.reserved, "byte")
         data = [("reserved", size, 3.0, "")] if form.reserved else []
@@ -397,6 +398,7 @@ def packet(
 ) -> list[Part]:
     """Return the parts of a message in its packet format, before byte stuffing."""
     sent = stream_encode(_unstuffed(link), id, data, direction)
+    # An id has one row per direction.
     (row,) = (row for row in form.rows(direction) if row.id == id)
     return _parts(form.packets[row.packet], sent)
 
@@ -421,6 +423,7 @@ def _unstuffed(link: Link) -> Link:
 
 
 def _parts(packet: PacketFormat, sent: bytes) -> list[Part]:
+    # Kinds are classes of the style sheet.
     head, end = packet.header_bytes, len(sent) - packet.trailer_bytes
     before, behind = (
         ", ".join(f.role for f in packet.fields if f.in_trailer == where)

@@ -71,6 +71,8 @@ def _entry(relations: Relations, erratum: Erratum) -> Entry:
         erratum,
         places[:_FEW],
         places[_FEW:],
+        # Places of fields and members are `message: field`. The filter of the page is
+        # for messages, each once and in order.
         list(dict.fromkeys(place.text.split(": ")[0] for place in places)),
     )
 

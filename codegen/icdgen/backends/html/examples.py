@@ -14,6 +14,7 @@ from icdgen.icd.places import NodePlace, scalar_count
 from icdgen.tables import clean
 from icdgen.vectors import patterns
 
+# Limits of the size of a page.
 _MOST = 60  # maximum number of fields of a message whose values are shown
 _MOST_BYTES = 1 << 16  # maximum length of all frames of a page together
 
@@ -76,6 +77,8 @@ def examples(message: Message, node: Node) -> list[Example]:
         return []
     # Random bits show each field; a frame of ones shows the extreme values.
     rows = [
+        # The seed of the first random frame of the vectors, so that the page shows a
+        # frame that the tests of all languages use.
         ("random 0", patterns.random_frame(message, "vector 0")),
         ("all ones", b"\xff" * message.length),
     ]
@@ -96,6 +99,7 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
     if raw is None:
         return Cell("", "not there")
     if isinstance(raw, bytes):
+        # 47 characters are the 16 bytes that are shown, with spaces between them.
         shown = raw.hex(" ").upper()
         content = codec.text(raw) if field.type == "text" else ""
         return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(content))

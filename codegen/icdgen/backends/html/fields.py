@@ -71,6 +71,7 @@ def rows(message: Message, links: Links) -> list[FieldRow]:
         for field in repeats.fields
         if not field.place.is_count
     ]
+    # `key` 0 marks reserved bits; keys of fields begin with 1.
     field_rows += [FieldRow(0, gap.at, gap.bits) for gap in repeats.gaps]
     return sorted(field_rows, key=lambda row: row.at)
 
@@ -83,6 +84,8 @@ def split(
     reserved = [(row.at, index) for index, row in enumerate(field_rows) if not row.key]
     rows_by_section = []
     for section in sections:
+        # Reserved bits have no key, so sections list fields only: find the bits by
+        # position.
         begin = bisect_left(reserved, (8 * section.first, 0))
         end = bisect_left(reserved, (8 * section.end, 0))
         indices = [index for _, index in reserved[begin:end]]

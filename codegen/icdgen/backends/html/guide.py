@@ -89,6 +89,8 @@ def topics_of(index: str) -> dict[str, tuple[str, ...]]:
     """Return the pages of the index in order, with the topics after each link:
     ``[Link](link.md): SLIP, COBS; ...``.
     """
+    # Topics end at a semicolon, at the next item of the list, at the next link, at an
+    # empty line, or at the end of the file.
     links = re.findall(
         r"\[([^\]]+)\]\(([^)#:]+)\.md\)(?::\s([^;\[\]]*?)(?=;|,?\s*\n-|,\s*\[|\n\n|\Z))?",
         index,
@@ -134,6 +136,7 @@ def anchor_of(title: str) -> str:
 
 
 def _anchors(title: str) -> Iterator[str]:
+    # Forges number the second heading of a text `-1`.
     yield anchor_of(title)
     yield from (f"{anchor_of(title)}-{number}" for number in count(1))
 
@@ -159,6 +162,7 @@ def _page(path: Path, name: str = "") -> Page:
             page.sections.append(Section(title, anchor, int(token.tag[1:])))
         elif token.type == "inline":
             _mend_links(token, path)
+            # The text of a heading is already its title.
             if page.sections and tokens[number - 1].type != "heading_open":
                 page.sections[-1].text += f" {_plain(token)}"
         elif token.type in ("fence", "code_block"):
@@ -192,6 +196,7 @@ def _folded(html: str) -> str:
     """Return a long page with folded sections."""
     if len(html) < _LONG:
         return html
+    # The look-ahead keeps the heading at the start of each section.
     first, *sections = re.split(r"(?=<h2 )", html)
     folded_sections = [
         re.sub(r"\A(<h2 .*?</h2>)", r"<summary>\1</summary>", section, flags=re.DOTALL)

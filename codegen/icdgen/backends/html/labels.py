@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 _SIZES = (13, 11)  # font sizes in order of preference, in units of the view box
 _ADVANCE = 0.54  # average width of a letter, relative to the font size
-_LEADING = 1.18
+_LEADING = 1.18  # distance of lines, relative to the font size
 
 
 class Label(NamedTuple):
@@ -33,15 +33,18 @@ def fit(boxes: list[Box], name: str, number: int) -> list[Label]:
     if labels or not boxes:
         return labels
     x, y, width, height = max(boxes, key=lambda box: (box[2] * box[3], -box[1]))
+    # The baseline of 11 units is 4 below the middle.
     return [Label(x + width // 2, round(y + height / 2 + 4, 1), 11, str(number), True)]
 
 
 def _in_box(box: Box, name: str) -> list[Label]:
     x, y, width, height = box
     for size in _SIZES:
+        # Margins: 3 units above and below, 4 on either side.
         most = max(int((height - 6) / (size * _LEADING)), 1)
         lines = _wrap(name, int((width - 8) / (size * _ADVANCE)), most)
         if lines:
+            # The baseline is 0.36 of the font size below the middle of capital letters.
             top = y + height / 2 - (len(lines) - 1) * size * _LEADING / 2 + size * 0.36
             return [
                 Label(

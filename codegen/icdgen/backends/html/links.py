@@ -19,7 +19,8 @@ from icdgen.icd.units import Unit
 from icdgen.naming import snake, words
 
 _LONGEST = 80
-# File names reserved by file systems or used by the site itself.
+# Names of the site's own files, and device names, which Windows reserves with any
+# suffix: `con.html` cannot be created there.
 _TAKEN = {"index", "protocol", "con", "prn", "aux", "nul"}
 _TAKEN.update(f"{port}{number}" for port in ("com", "lpt") for number in range(10))
 

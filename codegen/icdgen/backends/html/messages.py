@@ -56,6 +56,8 @@ def values(
         "keyed": any(picture.keyed for picture in drawings),
         "rows": rows,
         "columns": fields.columns_of(rows),
+        # Without parts, `pictures` has the drawing of the complete message, which
+        # belongs to no band.
         "bands": list(zip(parts, rows_by_share, pictures, strict=False)),
         "shares": list(zip(shares, rows_by_share, strict=True)),
         "buses": wire.buses(message, relations.wire(message), data),
@@ -91,7 +93,7 @@ def _facts(
             ),
             "",
         ),
-        *_open_parts(message),
+        *_variable_parts(message),
         ("End", "trailing zeros may be omitted" if message.may_end_early else "", ""),
         (
             "Reserved",
@@ -129,7 +131,7 @@ def _facts(
     return [(label, text, url) for label, text, url in facts if text]
 
 
-def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
+def _variable_parts(message: Message) -> Iterator[tuple[str, str, str]]:
     """Yield the limits of each variable-length part."""
     parts = message.layout.parts
     for part in parts:

@@ -112,6 +112,7 @@ def _facts(node: Node) -> list[tuple[str, str]]:
 
 def values(relations: Relations, node: Node) -> dict[str, object]:
     """Return the values of the page of a node, and of the page with all its messages."""
+    # Own messages first. The sort is stable, so each group keeps its order.
     used_messages = sorted(
         relations.icd.messages_of(node), key=lambda m: m.node != node.name
     )

@@ -109,6 +109,7 @@ def _contents(
     """Return the sender of a packet, and what it carries."""
     messages = relations.icd.messages_of(node)
     contents = [Content("Sent by", _SENDERS[packet.section["from"]], [])]
+    # A packet without message responds to telecommands or to requests.
     if form.content == NOTHING:
         section = _section(relations, node)
         refused = _responded_to(section.get("commands", {}), messages, packet.name)
@@ -125,6 +126,7 @@ def _contents(
         if form.content != REQUEST and packet in _packets_of(packets, message)
     ]
     if carried:
+        # The receiver knows from its request which telemetry this is.
         is_nameless = form.content == REQUESTED
         text = "the requested telemetry, without its id" if is_nameless else ""
         contents.append(Content("Carries", text, carried))

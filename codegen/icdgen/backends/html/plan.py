@@ -28,6 +28,8 @@ def message_plan(
     of them. ``represented``: names of the arrays that the page represents by one
     element.
     """
+    # Conditions, counters and derived values name other fields. Fields have the index
+    # that they have in the expanded list.
     in_frame = places_in(message.layout)
     places = dict(_indices(in_frame, 0, _needed_names(message.layout)))
     fields = _Fields(message, node, places, represented).items(in_frame, "")
@@ -137,6 +139,8 @@ class _Fields:
         """Return the data of fields and arrays, with names without ``prefix``."""
         items: list[dict[str, object]] = []
         for place in places:
+            # Elements of an array that are not whole bytes begin at different bits of a
+            # byte, so each has pieces of its own.
             if place.count > 1 and place.bits % 8 == 0:
                 items.append(self._array(place, prefix))
                 continue
@@ -252,6 +256,7 @@ class _Fields:
             and field.scalar.length is not None
             and field.node is variable[-1].node,
         }
+        # 0 stays: it is a value, such as a constant or the first byte.
         return {
             key: value
             for key, value in plan.items()

@@ -50,7 +50,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     """Return the values of the page."""
     node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
     checks, sums = _checks(node_facts, section), envelopes.sums(section, node_facts)
-    parts = all_facts.of_code(relations, node_facts)
+    parts = all_facts.facts_of_code(node_facts)
     computed = [(name, crc) for name, crc, _ in checks] + [
         (checksum.name, checksum.crc) for checksum in sums if checksum.crc
     ]
@@ -180,6 +180,7 @@ def _framed(relations: Relations, node: Node, node_facts: Facts) -> dict[str, ob
 
 def _row(pieces: list[tuple[str, str, float, str]]) -> list[Box]:
     """Return adjacent boxes with widths in proportion to their shares."""
+    # 1 unit on either side is for the outline.
     total, x, boxes = sum(share for _, _, share, _ in pieces), 0.0, []
     for text, about, share, above in pieces:
         width = (_WIDTH - 2) * share / total
@@ -195,6 +196,8 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
         row.get("role", row["name"]): row["name"]
         for row in buses_of(section)["can"]["identifier"]
     }
+    # The most significant bit of a CAN identifier is sent first (ISO 11898-1), so it is
+    # on the left.
     ordered: list[tuple[str, CanPart]] = sorted(
         node_facts.can.parts.items(), key=lambda item: -item[1].shift
     )
@@ -325,6 +328,7 @@ def entries(
         (True, "timeout time-out retries interval wait", "Time-outs", "times"),
         (True, "assumptions assumed reasons", "Assumptions", "assumptions"),
     ]
+    # A section without content is not on the page, so it has no anchor.
     for is_there, words, title, anchor in sections:
         if is_there:
             yield words, title, Place(node.title, f"{url}#{anchor}")

@@ -92,6 +92,7 @@ def numbers_of(
         for id, variants in ids.items()
     }
     return {
+        # Most ids have one message: its number alone keeps the index small.
         str(id): messages if len(messages) > 1 else messages[0][0]
         for id, messages in candidates.items()
     }

@@ -47,6 +47,7 @@ class Relations:
         self.packages = packages or Packages()
         # The prefix changes names in C only, so it is a second ICD.
         self._in_c = with_prefix(icd, self.packages.c_prefix)
+        # Nodes that use the messages of a node: itself, and those that include it.
         self.speakers: dict[str, list[Node]] = {
             owner.name: [
                 node
@@ -58,6 +59,8 @@ class Relations:
         # Fields of an enumeration type
         self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.units: dict[str, tuple[Unit, list[Place]]] = {}  # unit with its fields
+        # Places of an erratum by its id and title: files of different nodes can use the
+        # same id.
         self.places: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.contains: dict[tuple[str, str], list[Contained]] = defaultdict(list)
@@ -98,6 +101,7 @@ class Relations:
                         1
                     ].append(place)
             for part in message.contains:
+                # ICD046 reports unknown names; an erratum can accept that.
                 other = used_messages.get(part.message)
                 if other is not None:
                     inner = Contained(self.place(other), part.at, other.length)

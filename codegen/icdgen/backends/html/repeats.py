@@ -100,6 +100,8 @@ class Repeats:
             if is_represented:
                 self._add_array(place, owner + place.node.name)
             elements = (place.first_element,) if is_represented else place.elements()
+            # Elements that the page does not show keep their numbers: keys are the same
+            # in the drawing, the table and the decoder.
             size = place.scalar_count // (place.count or 1)
             for index, element in enumerate(elements):
                 text = element.steps[-1].text(place.node.name)

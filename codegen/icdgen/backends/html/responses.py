@@ -93,6 +93,7 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
     rows = [
         _telecommand(relations, node, message)
         for message in _telecommands(relations, node)
+        # Other telecommands have the general responses.
         if message.response is not None or message.repeat
     ]
     if not commands and not rows and not requests:

@@ -85,6 +85,7 @@ def entries(relations: Relations) -> Iterator[Entry]:
             )
         for message in node.messages:
             yield from _of_message(relations, node, message)
+        # The members of these enumerations are also found by `error 5`.
         codes = _error_codes(relations, node)
         for enum in node.enums:
             yield from _of_enum(relations, node, enum, enum.name in codes)
@@ -103,9 +104,9 @@ def entries(relations: Relations) -> Iterator[Entry]:
                 links.erratum(erratum),
             )
     for page in guide.pages():
-        for section in page.sections[
-            : 1 if page.name == guide.INDEX else None
-        ]:  # sections of the index are lists of pages
+        # Sections of the index are lists of pages.
+        sections = page.sections[:1] if page.name == guide.INDEX else page.sections
+        for section in sections:
             url = page.url if section.level == 1 else f"{page.url}#{section.anchor}"
             context = "guide" if section.level == 1 else f"guide · {page.title}"
             topics = page.topics if section.level == 1 else ()

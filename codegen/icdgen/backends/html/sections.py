@@ -75,6 +75,7 @@ def _messages(
     end = 0
     for part in parts:
         first = part.at // 8
+        # A drawing has whole bytes, and a byte belongs to one section.
         if part.at % 8 or first < end or first + part.length > message.length:
             return []
         found_sections += _between(message, repeats, end, first)
@@ -104,6 +105,7 @@ def _arrays(message: Message, repeats: Repeats) -> list[Section]:
         return []
     section_list = list(_around(message, repeats, list(repeats.arrays), 0, None))
     shown = {key for section in section_list for key in section.keys}
+    # Derived values are placed at the end of the message, which no array includes.
     remaining_keys = [
         field.key
         for field in repeats.fields
@@ -160,6 +162,7 @@ def shares(message: Message, repeats: Repeats) -> list[Section]:
     for start in range(0, len(keys), size):
         section_keys = keys[start : start + size]
         places = [field.place for field in fields[start : start + size]]
+        # A section of derived values only is placed at the last field that has bits.
         places = [place for place in places if _has_bits(place)] or with_bits[-1:]
         first, end = min(place.at for place in places) // 8, -(
             -max(place.at + place.bits for place in places) // 8

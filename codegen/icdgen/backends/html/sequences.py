@@ -207,6 +207,7 @@ def _steps(
     relations: Relations, node_facts: Facts, procedure: Procedure
 ) -> Iterator[Arrow]:
     """Yield the arrows of the steps. The first arrow of a loop says what it repeats."""
+    # Loops and tests have no arrow. Their words wait for the next step that has one.
     when: list[str] = []
     blocks = procedure.blocks
     for step in procedure.steps:

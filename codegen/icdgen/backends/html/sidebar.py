@@ -44,6 +44,7 @@ def of_node(
         protocol=protocol.has_page(relations, node),
         contents=contents(node),
     )
+    # Rendered once per node, not once per page: a node can have thousands of messages.
     group_texts = [
         [
             render("sidebar-group.html.j2", group=group, number=number, open=is_open)

@@ -123,6 +123,7 @@ def files(
             messages.values(relations, node, message, render)
             for message in node.messages
         ]
+        # Each page links to the page before and after it.
         for before, values, after in zip(
             [None, *shown], shown, [*shown[1:], None], strict=False
         ):

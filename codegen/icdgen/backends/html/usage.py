@@ -61,6 +61,7 @@ def snippets(
 def _values(message: MessageDescription, packages: Packages) -> dict[str, object]:
     field = worth_showing(message)
     enum = field.enum if field else None
+    # The first member is often 0, which looks like the initial value.
     member = enum.members[-1] if enum and enum.members else None
     return {
         "m": message,

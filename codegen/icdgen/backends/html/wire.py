@@ -254,10 +254,11 @@ def _framed(
     link: Link, id: int, data: bytes, checked: Speaker | None = None
 ) -> list[Chunk]:
     """Return the transmitted bytes, split at the borders of id, data and checksum."""
+    # On the UART, a message has the bytes of an I2C write between the framing bytes.
     body = i2c_write(checked.link if checked else link, id, data, checked is not None)
     line = uart_encode(link, body)
-    # A part begins at the position of the end of message if only the preceding parts
-    # were sent.
+    # Byte stuffing moves the borders. A part ends where the end of message would begin if
+    # only the parts up to it were sent. Start and end of message have 2 bytes each.
     ends = [
         2,
         *(
@@ -294,6 +295,8 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
     address = wire.facts.i2c_address
     if address is None:
         return None
+    # The first byte has the 7-bit address and, as lowest bit, the direction: 0 to
+    # write, 1 to read (UM10204, 3.1.10).
     write = Chunk("frame", f"{address << 1:02X}", "address, write")
     lines = []
     if message.telecommand_id is not None:
