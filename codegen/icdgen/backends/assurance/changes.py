@@ -100,6 +100,8 @@ def of_line(
     yield from _of_conditions(node, layout)
     size, bits, source = 8 * layout.length, stride(node), node.source
     count = node.size if isinstance(node, Array) and isinstance(node.size, int) else 1
+    # One bit is an error within a byte, eight bits an error in counting bytes. Structs
+    # and byte strings begin at a byte.
     for step in (-8, 8) if scalar is None or scalar.is_bytes else (-8, -1, 1, 8):
         # A field outside of the frame would be reported by `icdgen check`.
         if 0 <= node.at + step <= size - bits * count:
@@ -171,14 +173,17 @@ def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, Layou
     if scalar is not None and scalar.is_bytes:
         return
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
+        # An order that a line inherits is changed in the line that declares it.
+        if key not in node.source:
+            continue
         order = getattr(own, name)
         other = replace(own, **{name: _OTHER_ORDER[order]})
-        # Different orders can result in the same bits, for example of a single byte.
-        places = (
+        own_bits, other_bits = (
             pieces_at(node.at, stride(node), orders.byte, orders.bit)
             for orders in (own, other)
         )
-        if key in node.source and next(places) != next(places):
+        # Different orders can result in the same bits, for example of a single byte.
+        if own_bits != other_bits:
             change = Change(
                 key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order]
             )
@@ -228,6 +233,7 @@ def _tables(
     if outside and (
         scalar.type == "float" or not old.covers(scalar.raw_min, scalar.raw_max)
     ):
+        # Without raw values outside of the points, the key has no effect.
         words = (word for word in OUTSIDE if word != outside)
         variants += [
             (Change("outside", source, "outside", outside, word), printed, word)
@@ -245,6 +251,7 @@ def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
     for index, (place, step) in product(range(len(points)), product((0, 1), (-1, 1))):
         number = points[index][place]
         point = list(points[index])
+        # `1e-3` is text in an ICD; only `1.0e-3` is a number.
         point[place] = (float(number) if isinstance(number, str) else number) + step
         yield [*points[:index], point, *points[index + 1 :]]
 
@@ -366,6 +373,8 @@ def formulas(text: str) -> Iterator[str]:
     """
     for match in re.finditer(r"[0-9]+(?:\.[0-9]+)?", text):
         number = Decimal(match.group())
+        # One in the last printed digit: 0.01 for 1.25. A Decimal keeps trailing zeros,
+        # which a float does not.
         last = Decimal(1).scaleb(int(number.as_tuple().exponent))
         for other in (number - last, number + last, number * 10, number / 10):
             yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
@@ -397,6 +406,7 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
     """Return whether a scalar of this width, with the other keys of its line, can have
     a type.
     """
+    # Special values of a float can be NaN or fractions, which integers lack.
     if scalar.type == "float" and scalar.special:
         return False
     if kind in ("uint", "int"):
@@ -407,6 +417,7 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
         return scalar.bits == 1
     if kind == "float":
         return scalar.bits in (32, 64)
+    # Byte strings begin and end at a byte.
     return not isinstance(node, Array) and scalar.bits % 8 == node.at % 8 == 0
 
 

@@ -113,6 +113,7 @@ def _folded(row: list[Cell]) -> list[Cell]:
 
 def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list[Cell]]:
     """Yield a row for each erratum, in the order of the overlays."""
+    # By identity: equal errata of two nodes are different decisions.
     touched: dict[int, list[str]] = {}
     for element in elements:
         for erratum in element.errata:

@@ -126,6 +126,7 @@ def _data(path: Path) -> dict[str, Any]:
     for key, kind in _KEYS.items():
         if type(data.get(key)) is not kind:
             raise UserError(f"{path}: `{key}` is missing or not of its kind", _AGAIN)
+    # JSON comes from other programs, so each part is checked before a page shows it.
     if any(type(fact) is not list or len(fact) != 2 for fact in data["facts"]):
         raise UserError(f"{path}: `facts` is missing or not of its kind", _AGAIN)
     width = len(data["columns"])

@@ -28,6 +28,7 @@ from icdgen.vectors.make import MessageVectors, Raw, Row, ascii_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
 from icdgen.vectors.write import raw_json
 
+# A value that no call returns: None is a result of some.
 _REFUSED = object()
 
 
@@ -58,6 +59,7 @@ class MessageWatch:
     def layout(self, now: Message) -> list[int]:
         """Return the lines that detect another layout of the message."""
         olds, news = scalars_in(self.message.layout), scalars_in(now.layout)
+        # Another number of elements, for example: the fields have no counterparts.
         if [old.name for old in olds] != [new.name for new in news]:
             return self.places(now, self.node)
         pairs = enumerate(zip(olds, news, strict=True))
@@ -179,6 +181,8 @@ class MessageWatch:
         ] or old.limits != now.limits:
             return True
         unfit = self.vectors.unfit.get(old.name, ())
+        # The message, and not the field, refuses a count that fits its bits but not the
+        # frame.
         if any(part.counter == old.name for part in self.message.layout.counted_parts):
             unfit = [
                 value for value in unfit if not old.raw_min <= value <= old.raw_max
@@ -187,14 +191,17 @@ class MessageWatch:
             _attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit
         ):
             return True
+        # The vectors call the setter of a physical value, or that of a text.
         assignments = self.vectors.settings.get(old.name, [])
         if not assignments or old.type == "text":
             return any(
                 _attempt(codec.raw_from_text, now, text) != _expected(raw)
                 for text, raw in assignments
             )
+        # Without an inverse there is no setter, which the vectors call.
         if not (now.has_formula and now.is_invertible):
             return True
+        # Of floats, `assignments` include these values, because a float can have them.
         attempts = [
             *assignments,
             *((bits, None) for bits in NEVER if old.type != "float"),
@@ -318,6 +325,7 @@ def _notices(
             not now.is_invertible or _set_back(now, read) != _set_back(old, raw)
         ):
             return True  # a non-invertible calibration has no setter
+    # The other fields keep their bits, so that the frame is the union of both.
     return (_number(frame) | other_bits) & long.sent != _number(long.encoded)
 
 
@@ -355,6 +363,7 @@ def _expected(raw: object) -> object:
 
 
 def _number(frame: bytes) -> int:
+    # Bit w of byte b is bit 8 * b + w, for any length of the frame.
     return int.from_bytes(frame, "little")
 
 
@@ -377,6 +386,7 @@ def _physical(field: NodePlace, raw: Any) -> object:
     if field.type == "text":
         return (ascii_text(raw),)
     double = codec.physical_double(field, raw)
+    # As bits: NaN is not equal to itself, and -0.0 equals 0.0.
     return None if double is None else bits_of(double)
 
 

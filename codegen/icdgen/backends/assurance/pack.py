@@ -43,6 +43,8 @@ def files(
     of_errata = (
         erratum.source.place.file for node in icd.nodes for erratum in node.errata
     )
+    # Paths in the package must not depend on the machine, so all files that it names
+    # are collected first.
     read = Files(
         file for file in (*(node.file for node in icd.nodes), *of_errata) if file
     )

@@ -62,6 +62,7 @@ class SharedIds:
         noticed: dict[str, list[int]] = {}
         for name, rows in self._rows.items():
             for number, row, messages in rows:
+                # A row expects a message, or that its length is refused.
                 expected = row.message if row.expected is None else row.expected
                 if (
                     concerns(messages)

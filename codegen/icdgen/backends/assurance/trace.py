@@ -107,6 +107,7 @@ class Trace:
         yield Element("node", node, None, node, None, tuple(self._of_node(node)))
         for enum in node.enums:
             traced = list(self._of_enum(enum))
+            # An enumeration has no numbers of its own; its members do.
             yield Element("enumeration", node, None, enum, None, ())
             for row, member in enumerate(enum.members, 1):
                 # Changes of an enumeration are computed for all members at once.
@@ -198,6 +199,8 @@ class Trace:
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
+            # The line of the enumeration lists values and names, so each change of a
+            # member fails there.
             results = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
             results += (
                 _noticed(watch.node, watch.enum(enum, now))
