@@ -134,6 +134,7 @@ def _folder(
             ctx.exit()
 
     help = f"Show the folder of {what}, and exit."
+    # Eager: it is evaluated before arguments that would be errors.
     return click.option(
         name, is_flag=True, expose_value=False, is_eager=True, callback=show, help=help
     )
@@ -188,7 +189,7 @@ def main(arguments: list[str], run: str = "") -> None:
         _complain("interrupted")
         status = 130  # 128 + SIGINT, as shells report it
     except BrokenPipeError:
-        status = 141
+        status = 141  # 128 + SIGPIPE
     except OSError as error:
         place = error.filename or "the output cannot be written"
         status = _complain(
@@ -213,12 +214,15 @@ def _show_anything() -> None:
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
+            # A name from an ICD such as `I²C` must not end a command on a terminal in
+            # ASCII.
             stream.reconfigure(errors="backslashreplace")
 
 
 def _run(arguments: list[str], run: str) -> int:
     """Run a command line; return its exit status."""
     try:
+        # Otherwise click prints errors in a form of its own and exits.
         status = icdgen.main(
             arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run}
         )

@@ -72,6 +72,8 @@ def known_languages() -> str:
     named = ", ".join(backends.names())
     plug_in_names = []
     for name, points in backends.plug_ins().items():
+        # Several packages can provide a language of the same name, which is an error
+        # only if it is used.
         packages = dict.fromkeys(point.dist.name for point in points if point.dist)
         plug_in_names.append(f"{name} ({', '.join(packages)})")
     return (
@@ -177,6 +179,7 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
     if configuration is None or not isinstance(error, NotFound):
         return error
     if not configuration.icds:
+        # Only the help of an unknown node that resembles no other lists the nodes.
         if not error.help.startswith("nodes: "):
             return error
         return NotFound(
@@ -283,6 +286,7 @@ def _where_named(
     placed_findings = []
     for finding in findings:
         name = finding.place.file
+        # A file with a text was read: its findings have places in it.
         if name in places and name not in texts:
             finding = finding._replace(
                 message=f"`{name}`: {finding.message}", place=places[name]

@@ -117,6 +117,7 @@ def _split_arguments(
             node = only.name
         elif not _is_frame(words):
             node = only.name if only else find_node(icd, words.pop(0)).name
+    # The last word can be a message, whose frame was forgotten.
     if node is not None and len(words) == 1 and not _is_bytes(words[0]):
         _refuse_lack(icd, node, words, kind)
     if node is not None and len(words) > 1:
@@ -178,6 +179,8 @@ def _is_id(words: list[str]) -> bool:
     """
     first, *following_words = words
     may_be_id = first.isdecimal() and len(first) <= _LONGEST_ID
+    # Words of equal length, or of one to three digits, are the bytes of one dump: `10
+    # 12 255`.
     return may_be_id and any(
         len(word) not in (len(first), *_OF_BYTE) for word in following_words
     )
@@ -233,6 +236,7 @@ def _is_bytes(text: str) -> bool:
 
 def _is_file(name: str) -> bool:
     try:
+        # A long frame is no valid path: its name is too long.
         return Path(name).is_file()
     except (OSError, ValueError):
         return False
@@ -271,6 +275,7 @@ def _print_json(readings: Sequence[Reading]) -> None:
 def _print_csv(readings: Sequence[Reading]) -> None:
     """Print one line per field; a frame without fields has one line."""
     out = io.StringIO()
+    # RFC 4180 has CRLF, but tools on a pipe expect lines that end with LF.
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(_CSV)
     for number, reading in enumerate(readings):

@@ -129,6 +129,8 @@ def _acceptances(path: Path | None) -> list[Acceptance]:
     file = path or accepted.find_file(Path.cwd())
     if file is None:
         return []
+    # A file that was found is named relative to the current folder, a given one as the
+    # user wrote it.
     name = os.path.relpath(file) if path is None else str(file)
     try:
         return accepted.read_file(file, name)[0]

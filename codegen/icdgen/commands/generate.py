@@ -120,6 +120,7 @@ def generate(
     note = "" if quiet else _summary(job, outcome)
     if note:
         say(note)
+    # The next run of the same command line then ends before it imports the generator.
     if not check or not outcome.changes:
         remember(
             (obj or {}).get("run", ""),

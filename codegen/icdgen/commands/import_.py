@@ -46,6 +46,7 @@ class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of cl
 
 
 PAGES = _Pages()
+# Findings about a whole file, such as one that is no PDF: they have no line to quote.
 ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 
 
@@ -249,6 +250,7 @@ def _definitions(
                 )
             inside = [(path, reader)]
         for definition in inside:
+            # A file can be given by itself and be in a given folder, too.
             definitions.setdefault(definition[0].resolve(), definition)
     return list(definitions.values())
 
@@ -306,6 +308,7 @@ def _workbench(
 
     path = Path(words or "profile.yaml")
     try:
+        # A profile that does not exist yet begins with the built-in words.
         vocabulary = profile.load(path if path.exists() else None)
         with progress.pages("reading") as show:
             document, tables = sources.read(manual, vocabulary, show, jobs, pages)

@@ -91,7 +91,7 @@ def log(
         with progress.bytes_of(file.name, recording.steps(None)) as done:
             text = recording.listing(tables.width_of(sys.stdout), done)
         click.echo(text, nl=False)
-        sys.exit(recording.is_damaged(None))
+        sys.exit(recording.is_damaged(None))  # a bool: status 1 if it is damaged
     with progress.bytes_of(file.name, recording.steps(head)) as done:
         for note in recording.prepare(head, done):
             click.echo(f"icdgen: {file}: {note}", err=True)
@@ -156,6 +156,7 @@ def _convert(
         return
     with (
         _written_completely(out) as partial,
+        # Writers end lines themselves; a large buffer saves calls for millions of rows.
         open(partial, "w", encoding="utf-8", newline="", buffering=1 << 20) as stream,
     ):
         convert(recording.names, recording.rows(head, done), stream)
@@ -166,6 +167,7 @@ def _written_completely(out: Path) -> Iterator[Path]:
     """Context with a temporary file, which replaces ``out`` when it is complete and is
     deleted on an error.
     """
+    # In the same folder: a file can only be replaced at once within a file system.
     partial = out.with_name(f".{out.name}.partial")
     try:
         yield partial

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from icdgen.link.live import Monitor
     from icdgen.link.screen import Screen
 
+# With `--every 0`, a lost connection would otherwise be reopened without any pause.
 _SHORTEST_PAUSE = 0.1  # seconds between two attempts to reopen a lost connection
 
 
@@ -72,6 +73,7 @@ def monitor(
     if watched.hint:
         say(f"icdgen: {watched.hint}", err=True)
     rounds = _Rounds(watched, 1 if once else count, every, form)
+    # A table that stays in place needs a terminal, and more than one round.
     live = (
         form == "text"
         and sys.stdout is not None
@@ -133,8 +135,11 @@ class _Rounds:
                 message, session.start(Request("telemetry", message.telemetry_id))
             )
             screen.show()
+        # A monitor that requests has all responses now. One that listens collects
+        # messages until the end of the round.
         if not self.watched.listens:
             self._print(screen)
+        # After the last round there is nothing to wait for.
         while (self.watched.listens or not self.over) and time.monotonic() < end:
             if session.wait(end * 1000):
                 screen.show()

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-# Seconds before progress is shown: most commands end earlier, and need not import rich
+# Seconds before progress is shown. Importing rich takes longer than most commands, so it
+# is imported only then, and never without a terminal.
 DELAY = 1.0
 LEAST_BYTES = 10_000_000  # of a log whose conversion takes longer than that
 
 T = TypeVar("T")
-# Commands without a terminal never import rich, which takes longer than most commands.
 
 
 @contextmanager
@@ -104,6 +104,7 @@ class _Bar:
             kinds[column]() if column in kinds else progress.TextColumn(column)
             for column in self._columns
         ]
+        # Names of files can contain brackets, which rich would read as markup.
         name = progress.TextColumn("{task.description}", markup=False)
         shown = progress.Progress(
             name, *columns, console=Console(stderr=True), transient=True
@@ -123,7 +124,7 @@ def _bar(name: str, *columns: str, is_shown: bool = True) -> Iterator[_Bar]:
     if not is_shown or sys.stderr is None or not sys.stderr.isatty():
         yield bar
         return
-    # Importing rich in a thread avoids its cost for short commands.
+    # A thread, so that the command goes on while rich is imported.
     timer = Timer(DELAY, bar.start)
     timer.daemon = True
     timer.start()
@@ -131,5 +132,7 @@ def _bar(name: str, *columns: str, is_shown: bool = True) -> Iterator[_Bar]:
         yield bar
     finally:
         timer.cancel()
+        # The timer may just be running: a bar that it starts later would never be
+        # stopped.
         timer.join()
         bar.stop()

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from icdgen.protocol.facts import Facts
     from icdgen.values.frame import Frame
 
-# Exit status of each outcome. 2 is wrong usage, as of all commands.
+# Exit status of each outcome. 2 is wrong usage, as of all commands. The classes are
+# named, because importing the runtime takes time that `--help` does not need.
 _STATUSES = {"Done": 0, "Sent": 0, "Refused": 1, "Timeout": 3, "Busy": 4}
 
 
@@ -181,6 +182,7 @@ def _outcome_text(
         return "acknowledged"
     if not message.expects_reset:
         return "sent; it is never acknowledged"
+    # With another magic number than the ICD states, the device can ignore the command.
     if wrong := frame.wrong_constants:
         return f"sent; the device need not restart, for {wrong[0].field.name} {wrong[0].remarks[0]}"
     return "sent; the device restarts instead of acknowledging"

@@ -191,6 +191,7 @@ def sim(
     loss = options.pop("loss")
     if loss is not None:
         options["faults"] = (*options["faults"], f"drop={loss}@packet,upload")
+    # The other options have the names of the attributes of `Options`.
     icd, settings = load_or_exit(icds).icd, run.Options(**options)
     run.run(icd, name, ways, settings, _print, _warn)
 
