@@ -40,9 +40,8 @@ class Config:
     name: str = ""  # of the project
     # By section of `PACKAGES`, if given.
     packages: dict[str, str] = field(default_factory=dict)
-    looked_at: dict[Path, str] = field(
-        default_factory=dict
-    )  # fingerprints of the file, and of all paths tried before it
+    # Fingerprints of the file, and of all paths tried before it.
+    looked_at: dict[Path, str] = field(default_factory=dict)
 
     def place_of(self, icd: Path) -> Place:
         """Return the place of one of ``icds`` in the file."""

@@ -28,9 +28,8 @@ from icdgen.icd.located import Map, Seq
 
 UNUSED = "IMP085"
 _LONGEST_NAME = 60
-_TEXT: Any = Element.__dict__[
-    "text"
-]  # descriptor of the C class, which `AccountedElement` overrides
+# Descriptor of the C class, which `AccountedElement` overrides.
+_TEXT: Any = Element.__dict__["text"]
 
 
 @dataclass

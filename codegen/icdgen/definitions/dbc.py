@@ -327,9 +327,8 @@ def _without_line(text: str, error: str, to: Definitions) -> str | None:
         return None
     lines = text.split("\n")
     number, column = int(match[1]) - 1, int(match[2])
-    if (
-        number >= len(lines) or not "".join(lines[number:]).strip()
-    ):  # the parser reached the end of the file
+    # The parser reached the end of the file.
+    if number >= len(lines) or not "".join(lines[number:]).strip():
         number, column = (
             max((at for at, line in enumerate(lines) if line.strip()), default=0),
             0,

@@ -18,10 +18,9 @@ _SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
 MOST_STEPS = 200_000  # containers that interfaces carry, with their base containers
 _DEEPEST = 20  # interfaces that are based on each other
 _APID_MASK = (1 << packets.APID_BITS) - 1
-_TOPIC_BITS, _GLOBAL = (
-    8,
-    0x60,
-)  # topic ids as application process ids in the EDS library of cFS, for the first processor
+# Topic ids as application process ids in the EDS library of cFS, for the first
+# processor.
+_TOPIC_BITS, _GLOBAL = 8, 0x60
 _TOPICS = {
     packets.TELECOMMAND: ("TELECOMMAND", "GLOBAL_CMD"),
     packets.TELEMETRY: ("TELEMETRY", "GLOBAL_TLM"),

@@ -31,9 +31,8 @@ from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 UNCHECKED = "IMP082"
 _DEEPEST = 30  # levels of inheritance, nesting, and arrays of arrays
 _FIELDS = ("Entry", "FixedValueEntry", "LengthEntry", "ErrorControlEntry")
-_PACKET = Line(
-    Fraction(1), Fraction(7)
-)  # packet data length of CCSDS 133.0-B: bytes after the 6-byte header, minus 1
+# Packet data length of CCSDS 133.0-B: bytes after the 6-byte header, minus 1.
+_PACKET = Line(Fraction(1), Fraction(7))
 
 
 @dataclass
@@ -149,9 +148,8 @@ class Layout(Container[Part]):
             before, at = len(self.parts), self.at
             try:
                 self._add_entry(entry, path, within)
-            except (
-                TooMuch
-            ):  # the limit applies to the file, so the rest cannot become bytes
+            except TooMuch:
+                # The limit applies to the file, so the rest cannot become bytes.
                 raise
             except NotSupported as why:
                 name = line(entry.get("name"), 100) or f"unnamed {at}"

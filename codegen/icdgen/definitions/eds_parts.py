@@ -50,9 +50,8 @@ def only(piece: Piece, raw: int, name: str) -> None:
     """
     item = piece.item
     containers.check_only_value(item, raw, name)
-    kind = (
-        {"type": "uint"} if item["type"] == "bool" else {}
-    )  # the ICD has no constants of type `bool`
+    # The ICD has no constants of type `bool`.
+    kind = {"type": "uint"} if item["type"] == "bool" else {}
     remaining = {
         key: value
         for key, value in item.items()

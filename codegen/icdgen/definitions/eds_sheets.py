@@ -45,14 +45,12 @@ class Sheets:
         self._within = set(root.iter())
         self.all: list[Element] = []  # packages
         self._found: dict[tuple[str, str], Element] = {}
-        self._scopes: dict[Element, tuple[str, str]] = (
-            {}
-        )  # package and component of an element
+        # Package and component of an element.
+        self._scopes: dict[Element, tuple[str, str]] = {}
         self._files: dict[str, str] = {}  # by package
         self._defines: dict[str, tuple[str, str, str]] = {}  # value, package and file
-        self._duplicates: dict[str, str] = (
-            {}
-        )  # second file of duplicate packages and parameters
+        # Second file of duplicate packages and parameters.
+        self._duplicates: dict[str, str] = {}
         self._values: dict[tuple[str, str], str] = {}
         self._index(to.file, root)
         self.own = list(self.all)

@@ -35,9 +35,8 @@ _META = re.compile(
     r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE
 )
 _BODY = re.compile(r"^(?:seq|types|instances|enums|doc):", re.MULTILINE)
-_NAMED = frozenset(
-    {"types", "instances", "enums"}
-)  # keys whose children are user-defined names
+# Keys whose children are user-defined names.
+_NAMED = frozenset({"types", "instances", "enums"})
 # Keys for collections of formats and for the compiler, without effect on the layout.
 _WITHOUT_EFFECT = frozenset(
     f"meta.{key}"
@@ -55,10 +54,8 @@ _WITHOUT_EFFECT = frozenset(
 # Characters; identifiers of the generated code that contain a longer name may be too
 # long.
 _LONGEST_NAME = 40
-_ID, _ID_BITS = (
-    1,
-    8,
-)  # placeholder: a format of Kaitai Struct has no message id outside its data
+# Placeholder: a format of Kaitai Struct has no message id outside its data.
+_ID, _ID_BITS = 1, 8
 
 
 class Kaitai:
@@ -227,9 +224,8 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif part.mask == (1 << part.bits) - 1:
             is_negative = item["type"] == "int" and part.value >> part.bits - 1
             value = part.value - (1 << part.bits) if is_negative else part.value
-            kind = (
-                {"type": "uint"} if item["type"] == "bool" else {}
-            )  # a field of type `bool` cannot have a constant
+            # A field of type `bool` cannot have a constant.
+            kind = {"type": "uint"} if item["type"] == "bool" else {}
             keys = {
                 **_position(part, part.at, part.bits, order),
                 "name": name,

@@ -28,9 +28,8 @@ _WHOLE_DIVISION = re.compile(r"/(?!\s*[0-9]+(?:\.[0-9]+|[eE]))")
 _LONGEST = 400
 
 
-Members = Callable[
-    [str], dict[int, str]
-]  # from the name of an enumeration to its members, by value
+# From the name of an enumeration to its members, by value.
+Members = Callable[[str], dict[int, str]]
 
 
 class Masked(NamedTuple):

@@ -60,9 +60,8 @@ class Layout(Container[Part]):
     decided: dict[Key, int | None]
     is_struct: bool = False
     labels: list[Label] = field(default_factory=list)
-    ends: list[int] = field(
-        default_factory=list
-    )  # bit behind each enclosing part that states its `size`
+    # Bit behind each enclosing part that states its `size`.
+    ends: list[int] = field(default_factory=list)
 
     @property
     def is_open(self) -> bool:

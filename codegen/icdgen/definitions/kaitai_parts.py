@@ -14,9 +14,8 @@ from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
-Key = tuple[
-    tuple[str, ...], int, tuple[int, ...]
-]  # path of a field, mask of its bits, and the values that have branches
+# Path of a field, mask of its bits, and the values that have branches.
+Key = tuple[tuple[str, ...], int, tuple[int, ...]]
 
 
 class Undecided(Exception):

@@ -161,9 +161,8 @@ class MavLink2:
                 settle(child)
             if tag == "field":
                 (more if is_more else base).append(_field(child))
-        base.sort(
-            key=lambda field: -_BITS[field.type]
-        )  # wire order; the sort is stable for fields of equal width, as MAVLink requires
+        # Wire order; the sort is stable for fields of equal width, as MAVLink requires.
+        base.sort(key=lambda field: -_BITS[field.type])
         item: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
         if self.has_extensions:
             item["may_end_early"] = "zeros"
@@ -176,9 +175,8 @@ class MavLink2:
             at += field.bits
         item["length"] = at // 8
         if at <= 8:
-            item.pop(
-                "may_end_early", None
-            )  # MAVLink 2 never truncates the first byte of the payload
+            # MAVLink 2 never truncates the first byte of the payload.
+            item.pop("may_end_early", None)
         return _crc_extra(name, base), {**item, "fields": fields} if fields else item
 
     def envelope(self) -> Item:
@@ -188,11 +186,8 @@ class MavLink2:
         (1, 1).
         """
         flags: list[Item] = [
-            {
-                "bits": 8,
-                "role": "constant",
-                "value": 0,
-            },  # incompatibility flags: no signature
+            # Incompatibility flags: no signature.
+            {"bits": 8, "role": "constant", "value": 0},
             {"bits": 8, "role": "flags"},
         ]
         header: list[Item] = [

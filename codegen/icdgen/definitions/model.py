@@ -21,9 +21,8 @@ WITHOUT_FIELD = "IMP091"
 RAW_ONLY = "IMP078"
 SAME_NAME = "IMP092"
 
-Item = dict[
-    str, Any
-]  # message, field, enumeration, member or struct with the keys of the ICD
+# Message, field, enumeration, member or struct with the keys of the ICD.
+Item = dict[str, Any]
 
 
 class NotSupported(Exception):
@@ -51,9 +50,8 @@ class Network:
     enums: list[Item] = field(default_factory=list)
     structs: list[Item] = field(default_factory=list)
     protocol: Item | None = None
-    seeds: dict[str, int] = field(
-        default_factory=dict
-    )  # checksum seeds of ``protocol`` by message name
+    # Checksum seeds of ``protocol`` by message name.
+    seeds: dict[str, int] = field(default_factory=dict)
 
     @property
     def fields(self) -> Iterator[Item]:

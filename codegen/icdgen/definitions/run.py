@@ -14,9 +14,8 @@ from icdgen.definitions import kinds
 from icdgen.definitions.model import Definitions, Item, Network, Reader, unreadable
 from icdgen.definitions.settle import settle
 
-TOLD = frozenset(
-    {"special", "min", "max", "shares_id"}
-)  # keys that manuals usually lack, and definitions contain
+# Keys that manuals usually lack, and definitions contain.
+TOLD = frozenset({"special", "min", "max", "shares_id"})
 
 
 @dataclass
@@ -26,9 +25,8 @@ class Read:
     definitions: Definitions
     kind: str
     trees: dict[str, Item]
-    identifiers: list[str] = field(
-        default_factory=list
-    )  # names with their generated identifiers, as text
+    # Names with their generated identifiers, as text.
+    identifiers: list[str] = field(default_factory=list)
 
     @property
     def imported(self) -> int:

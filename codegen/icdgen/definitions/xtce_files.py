@@ -23,9 +23,8 @@ _REFERENCES = (
 def sets(roots: Mapping[str, Element]) -> list[dict[str, Element]]:
     """Return the databases, each with its files in the order of ``roots``."""
     named = {file: _names(root) for file, root in roots.items()}
-    owner = {
-        file: file for file in roots
-    }  # union-find: a file leads to the first file of its set
+    # Union-find: a file leads to the first file of its set.
+    owner = {file: file for file in roots}
 
     def first_of(file: str) -> str:
         while owner[file] != file:

@@ -56,9 +56,8 @@ class Piece(containers.Piece):
     # added to that parameter; None if it does not count bytes or elements
     plus: int | None = None
     values: dict[str, int] = field(default_factory=dict)  # by label
-    members: list[tuple[str, Element]] = field(
-        default_factory=list
-    )  # names and types of the members of an aggregate, which has no field of its own
+    # Names and types of the members of an aggregate, which has no field of its own.
+    members: list[tuple[str, Element]] = field(default_factory=list)
     # whether only the raw bits are imported, without their meaning
     is_raw: bool = False
 
@@ -616,9 +615,8 @@ def _unit(chain: list[Element]) -> dict[str, str]:
     """Return the unit of the first type that has one: `m` and `s` to the power of -2
     are `m/s^2`.
     """
-    sets = [
-        element for type_ in chain for element in type_.iterfind("UnitSet")
-    ]  # many are empty
+    # Many are empty.
+    sets = [element for type_ in chain for element in type_.iterfind("UnitSet")]
     units = next(
         (matches for unit_set in sets if (matches := unit_set.findall("Unit"))), []
     )

@@ -32,9 +32,8 @@ class ContainedDescription(NamedTuple):
     """Message that a composite message contains, once or several times."""
 
     message: MessageDescription
-    positions: tuple[
-        int, ...
-    ]  # its first bit in the composite, each time, in the order of the ICD
+    # Its first bit in the composite, each time, in the order of the ICD.
+    positions: tuple[int, ...]
 
     def copies(
         self, composite: MessageDescription, begin: int

@@ -117,9 +117,8 @@ def number_text(field: FrameField | NodePlace, value: float | Fraction) -> str:
         # of JavaScript do.
         context.prec, context.rounding = _PRECISION, ROUND_HALF_UP
         exact = Decimal(number)
-        if (
-            digits.decimals is not None and abs(number) >= _LARGE
-        ):  # a double has no further digits
+        # A double has no further digits.
+        if digits.decimals is not None and abs(number) >= _LARGE:
             return _plain(repr(number))
         if digits.decimals is not None:
             text = f"{exact.quantize(Decimal(1).scaleb(-digits.decimals)):f}"

@@ -12,9 +12,8 @@ from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.places import places_in
 from icdgen.once import cached_property
 
-Users = dict[
-    str, list[str]
-]  # name of a field -> names of the messages and structs that have it
+# Name of a field -> names of the messages and structs that have it.
+Users = dict[str, list[str]]
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:

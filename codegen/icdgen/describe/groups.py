@@ -166,9 +166,8 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
-        is_next = (
-            is_next and field.holder == first.holder
-        )  # in memory, padding can follow a struct
+        # In memory, padding can follow a struct.
+        is_next = is_next and field.holder == first.holder
         if not (
             is_next and field.is_plain_word and field.byte_order == first.byte_order
         ):
@@ -219,9 +218,8 @@ class FrameBytes:
 
     def __init__(self, length: int) -> None:
         self._length = length
-        self._whole: dict[int, tuple[int, str]] = (
-            {}
-        )  # first byte -> number of bytes, statement
+        # First byte -> number of bytes, statement.
+        self._whole: dict[int, tuple[int, str]] = {}
         self._parts: dict[int, list[tuple[int, str]]] = {}  # byte -> bit of it, term
 
     def add_whole(self, byte: int, length: int, statement: str) -> None:

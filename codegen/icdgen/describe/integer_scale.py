@@ -26,9 +26,8 @@ _PREFIXABLE = frozenset(
     """deg rad m s g n a v w j wh ah ohm t k c pa bar rpm n_m nms deg_per_s rad_per_s m_per_s deg_per_s2 rad_per_s2
     m_per_s2 a_m2""".split()
 )
-_IN_WORDS = frozenset(
-    ("deg", "c", "rpm", "deg_per_s", "deg_per_s2")
-)  # symbols that are not written with a prefix
+# Symbols that are not written with a prefix.
+_IN_WORDS = frozenset(("deg", "c", "rpm", "deg_per_s", "deg_per_s2"))
 
 
 class IntegerScale(NamedTuple):

@@ -19,9 +19,10 @@ from icdgen.protocol import facts as protocol
 # Keys that describe the manual, not the device
 WORDS = frozenset(("source", "summary", "printed_constant"))
 NAMES = ("name", "role", "value")  # keys that identify the rows of a list
+# Keys whose addition or removal changes the packet format.
 PART = re.compile(
     r"protocol\.link(\.packets(\.[^.]+)?)?(\.(header|trailer)(\.[^.]+)?)?"
-)  # keys whose addition or removal changes the packet format
+)
 AROUND = re.compile(r"protocol\.link\.(framing|header|trailer|packets|checksums)\b.*")
 
 # To telecommands and requests of telemetry

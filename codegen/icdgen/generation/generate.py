@@ -34,9 +34,8 @@ class Job:
     check: bool = False
     measured: Path | None = None  # folder of measurements for the verification package
     packages: Packages = field(default_factory=Packages)
-    configs: dict[Path, str] = field(
-        default_factory=dict
-    )  # fingerprints of configuration files that exist or were absent
+    # Fingerprints of configuration files that exist or were absent.
+    configs: dict[Path, str] = field(default_factory=dict)
     # Passes generated files on, for example to show the progress.
     watch: Callable[[Files], Files] = iter
 

@@ -139,9 +139,8 @@ class SourceTable:
         of their slots.
         """
         grid: list[list[Slot]] = []
-        reaching: dict[int, tuple[int, Cell, int]] = (
-            {}
-        )  # column -> rows that a cell above goes on, the cell, its first column
+        # Column -> rows that a cell above goes on, the cell, its first column.
+        reaching: dict[int, tuple[int, Cell, int]] = {}
         for row in self.rows:
             slots: dict[int, Slot] = {}
             for column, (left, cell, first) in list(reaching.items()):

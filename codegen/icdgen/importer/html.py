@@ -147,9 +147,8 @@ class _Pictures:
 
             try:
                 self.file = pypdfium2.PdfDocument(self.result.document.file)
-            except (
-                pypdfium2.PdfiumError
-            ):  # it is stricter with broken files than the reader of text
+            except pypdfium2.PdfiumError:
+                # PDFium is stricter with broken files than the reader of text.
                 self.file = None
         return self
 

@@ -29,9 +29,8 @@ class ReadField:
     spot: SourcePlace
     count: int = 0  # elements of an array
     enum: str = ""
-    facts: dict[str, Any] = field(
-        default_factory=dict
-    )  # further keys of the field in the ICD
+    # Further keys of the field in the ICD.
+    facts: dict[str, Any] = field(default_factory=dict)
 
     @property
     def end(self) -> int:

@@ -41,9 +41,8 @@ class Profile:
     """A profile, ready for use."""
 
     data: dict[str, Any]
-    own: dict[str, Any] = field(
-        default_factory=dict
-    )  # what was laid over the profile that comes with icdgen
+    # What was laid over the profile that comes with icdgen.
+    own: dict[str, Any] = field(default_factory=dict)
     rules: list[Rule] = field(default_factory=list)
 
     @cached_property

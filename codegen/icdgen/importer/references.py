@@ -131,9 +131,7 @@ def _meant(
     ]
     # Parts of a manual that number their tables from 1 have several tables with this
     # number.
-    of_number.sort(
-        key=lambda enum: enum.table.run != message.table.run
-    )  # where numbers start anew, several have it
+    of_number.sort(key=lambda enum: enum.table.run != message.table.run)
     of_table = [enum for enum in of_number if enum.table is of_number[0].table]
     titled = _by_title(described.enum_title, everything, node)
     is_ambiguous = len(of_table) > 1 and titled not in of_table

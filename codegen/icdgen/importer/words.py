@@ -20,9 +20,10 @@ _PLAIN = {**str.maketrans({**_LIGATURES, **_BLANKS}), **HYPHENS}
 _WORD = re.compile(r"[A-Za-z0-9%]+")
 SUPERSCRIPTS = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
+# Behind a caption.
 CONTINUED = re.compile(
     r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I
-)  # behind a caption
+)
 _NUMBER = re.compile(r"[-+]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)\Z")
 
 

@@ -57,9 +57,8 @@ class Monitor:
                 )
             self.messages.append(self.facts.identification.message)
         self.last: dict[str, bytes] = {}
-        self.received_at: dict[str, float] = (
-            {}
-        )  # time of reception, by time.monotonic()
+        # Time of reception, by time.monotonic().
+        self.received_at: dict[str, float] = {}
         self.awaited: set[str] = set()  # messages not yet received in this round
         self.silent: set[str] = set()  # messages not received in the last round
         self.faults: dict[int, str] = {}  # last error of a message, by id

@@ -28,9 +28,8 @@ CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
 MOST_OF_A_PACKET = 1400  # bytes of a stream in one datagram
 MOST_OF_A_DATAGRAM = 65507
-_BARE_ADDRESS = re.compile(
-    r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}"
-)  # host and port without tcp:// or udp://
+# Host and port without tcp:// or udp://.
+_BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")
 FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
 
 
@@ -88,9 +87,8 @@ class Socket:
 
     def read(self, timeout: float) -> bytes:
         try:
-            self.socket.settimeout(
-                max(timeout, 1e-6)
-            )  # 0 would make the socket non-blocking
+            # 0 would make the socket non-blocking.
+            self.socket.settimeout(max(timeout, 1e-6))
             data = self.socket.recv(65536)
         except (TimeoutError, BlockingIOError):
             return b""

@@ -91,9 +91,8 @@ class Screen:
         if len(lines) < console.size.height:
             self.top, footer = 0, ""
         else:
-            self.page = max(
-                1, console.size.height - 3
-            )  # the titles, the footer, and the line of the cursor
+            # The titles, the footer, and the line of the cursor.
+            self.page = max(1, console.size.height - 3)
             if not self.keyboard.is_open:
                 pages = -(-len(body) // self.page)
                 self.top = (

@@ -97,9 +97,8 @@ class LogSurvey:
         self.time_end = max(at + size for at, size in (plan.seconds, plan.milliseconds))
         self.step = 0.0  # usual milliseconds from an entry to the next
         self.limit = float(MINUTE)  # a longer step is checked for damage
-        self.other_times: list[int] = (
-            []
-        )  # offsets in an entry at which its data also contain the time
+        # Offsets in an entry at which its data also contain the time.
+        self.other_times: list[int] = []
 
     def run(self, most: int | None = None) -> Integrity:
         """Read the file up to ``most`` complete entries.
@@ -375,9 +374,8 @@ class LogSurvey:
         )
         if resume is not None:
             return broken - size, resume
-        is_clock = bool(here or next_) and self._is_clock(
-            broken
-        )  # zeros are erased or lost memory
+        # Zeros are erased or lost memory.
+        is_clock = bool(here or next_) and self._is_clock(broken)
         # A clock that stands still is memory with one content.
         if is_clock and (here != next_ or next_ != second):
             return broken, broken

@@ -109,9 +109,8 @@ def _float(column: Column) -> Callable[[bytes], Value]:
         value = struct.unpack(form, struct.pack(integer_form, raw(entry)))[0]
         if curve is not None:
             return curve.double(value)
-        return (
-            float(floats.text_of(value, bits)) if math.isfinite(value) else value
-        )  # 0.1, not 0.10000000149011612
+        # 0.1, not 0.10000000149011612.
+        return float(floats.text_of(value, bits)) if math.isfinite(value) else value
 
     return read
 

@@ -115,9 +115,8 @@ def _of_endpoint(
         for event in joiner.feed(0, packet):
             reading = _reading(endpoint, event.message) if event.message else None
             if reading is not None:
-                result.append(
-                    replace(reading, time=time)
-                )  # time of the packet that completes the message
+                # Time of the packet that completes the message.
+                result.append(replace(reading, time=time))
     return result
 
 

@@ -69,9 +69,8 @@ class _RecordingDecoder(StreamDecoder):
     def _front(self, at: int, events: list[StreamEvent]) -> int | None:
         self._at, before = at, len(events)
         count = super()._front(at, events)
-        if (
-            len(events) > before and len(events) - 1 not in self.packets
-        ):  # the length field is invalid
+        # The length field is invalid.
+        if len(events) > before and len(events) - 1 not in self.packets:
             longest = max(packet.form.header_bytes for packet in self._packets)
             header = self._buffer[at : at + longest]
             self.packets[len(events) - 1] = Span(at, at + 1), bytes(header)

@@ -25,9 +25,8 @@ class DeviceLine:
     def __init__(self, computer: Computer, faults: Faults) -> None:
         self.computer, self.faults = computer, faults
         self.warn: Callable[[str], object] = lambda text: None
-        self._due: list[tuple[int, int, bytes]] = (
-            []
-        )  # heap of time, order of creation and bytes
+        # Heap of time, order of creation and bytes.
+        self._due: list[tuple[int, int, bytes]] = []
         self._sent = 0
 
     def fault(self, text: str) -> Fault:

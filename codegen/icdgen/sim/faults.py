@@ -80,9 +80,8 @@ class Faults:
         if self.hits("drop", on):
             return []
         out = bytearray(data)
-        if out and self.hits(
-            "corrupt", on
-        ):  # XOR with 1 to 255 always changes the byte
+        # XOR with 1 to 255 always changes the byte.
+        if out and self.hits("corrupt", on):
             out[self.random.randrange(len(out))] ^= self.random.randrange(1, 256)
         if out and self.hits("cut", on):
             del out[self.random.randrange(len(out))]

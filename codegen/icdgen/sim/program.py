@@ -56,12 +56,8 @@ class Program:
         storage.provide_index(self.link, next(kinds, None))
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
-        self.last = (
-            0,
-            True,
-            0,
-            0,
-        )  # id, processed, code and parameter of the last telecommand
+        # Id, processed, code and parameter of the last telecommand.
+        self.last = (0, True, 0, 0)
         self.free_at = now  # end of processing of the last telecommand
         self.log_at: int | None = None
         self._identify()

@@ -178,9 +178,8 @@ async def _listen(server: serve.Server, report: Callable[[str], None]) -> None:
     loop = asyncio.get_running_loop()
     lines: asyncio.Queue[str | None] = asyncio.Queue()
 
-    def read() -> (
-        None
-    ):  # in a thread: asyncio cannot wait for files or terminals on all systems
+    # In a thread: asyncio cannot wait for files or terminals on all systems.
+    def read() -> None:
         for line in sys.stdin or ():
             loop.call_soon_threadsafe(lines.put_nowait, line)
         loop.call_soon_threadsafe(lines.put_nowait, None)

@@ -73,9 +73,8 @@ class Server:
                 else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
             )
             try:
-                async with asyncio.timeout(
-                    wait
-                ):  # `wait_for` can lose an interrupt that arrives with data
+                # `wait_for` can lose an interrupt that arrives with data.
+                async with asyncio.timeout(wait):
                     await self.wake.wait()
             except TimeoutError:
                 continue
@@ -191,9 +190,8 @@ async def pty(server: Server) -> tuple[str, object]:
     import tty
 
     master, slave = os.openpty()
-    tty.setraw(
-        slave
-    )  # stays open, so that the device remains when a client closes its end
+    # `slave` stays open, so that the device remains when a client closes its end.
+    tty.setraw(slave)
     os.set_blocking(master, False)
     loop, waiting = asyncio.get_running_loop(), bytearray()
 
@@ -211,9 +209,8 @@ async def pty(server: Server) -> tuple[str, object]:
             loop.remove_writer(master)
 
     def send(data: bytes) -> None:
-        if (
-            len(waiting) < 1 << 22
-        ):  # without a reader, bytes are lost, as on a real line
+        # Without a reader, bytes are lost, as on a real line.
+        if len(waiting) < 1 << 22:
             waiting.extend(data)
             loop.add_writer(master, write)
 

@@ -20,6 +20,5 @@ class Settings:
     # period of unsolicited messages with header and trailer; 0: none; None: that of the
     # ICD, otherwise 1 s
     every_ms: int | None = None
-    values: dict[str, dict[str, int | bytes]] = field(
-        default_factory=dict
-    )  # set at each start
+    # Set at each start.
+    values: dict[str, dict[str, int | bytes]] = field(default_factory=dict)

@@ -64,9 +64,8 @@ class CBackend:
         )
 
     def _files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        from icdgen.describe.links import (
-            links_of,
-        )  # imported late: rules on names do not need it
+        # Imported late: rules on names do not need it.
+        from icdgen.describe.links import links_of
 
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + assembled("icdgen.h", render)

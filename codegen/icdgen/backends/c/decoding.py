@@ -270,9 +270,8 @@ def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    within = (
-        "" if frame == "buffer" else f"{frame}_"
-    )  # in a loop the variable must not hide one of the function
+    # In a loop the variable must not hide one of the function.
+    within = "" if frame == "buffer" else f"{frame}_"
     local = f"{within}bits_{field.model.at}"
     first, *further = read.terms
     joined = [

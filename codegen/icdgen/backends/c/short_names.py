@@ -18,9 +18,8 @@ from icdgen.backends import Identifier
 SIGNIFICANT = 63
 _DIGITS = 8
 _LONG = re.compile(rf"\b[A-Za-z_]\w{{{SIGNIFICANT - 1},}}")
-_LONG_OR_INCLUDE = re.compile(
-    rf"#include[^\n]*|{_LONG.pattern}"
-)  # file names are not identifiers
+# File names are not identifiers.
+_LONG_OR_INCLUDE = re.compile(rf"#include[^\n]*|{_LONG.pattern}")
 
 
 def short_names(identifiers: Iterable[Identifier]) -> dict[str, str]:

@@ -48,11 +48,8 @@ class PythonBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List the files of the project, then of the package, then of each node."""
-        from icdgen.backends.python import (
-            literals,
-            nodes,
-            procedures,
-        )  # imported late: rules on names do not need them
+        # Imported late: rules on names do not need them.
+        from icdgen.backends.python import literals, nodes, procedures
         from icdgen.describe.links import links_of
         from icdgen.link_calls import link_call
 

@@ -75,9 +75,8 @@ class PythonNames(NamingPolicy):
 
     def composite(self, composite: Composite[Any]) -> Symbols:
         yield self._class(composite, composite.node.name)
-        if not isinstance(
-            composite.model, Message
-        ):  # messages have files in every language
+        # Messages have files in every language.
+        if not isinstance(composite.model, Message):
             yield composite.identifier(
                 self._files(composite.node.name), names.module_name(composite)
             )

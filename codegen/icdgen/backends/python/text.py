@@ -9,9 +9,8 @@ from icdgen.backends.lines import wrapped
 
 WIDTH = 88
 
-_PLAIN = re.compile(
-    r"[ -!#-\[\]-~]*\Z"
-)  # printable ASCII without double quote and backslash
+# Printable ASCII without double quote and backslash.
+_PLAIN = re.compile(r"[ -!#-\[\]-~]*\Z")
 # In both a backslash takes the meaning from what follows: of inline markup, and of what
 # begins a list, a directive, a field.
 _MARKUP = re.compile(

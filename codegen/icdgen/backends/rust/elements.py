@@ -74,9 +74,8 @@ def _of_numbers(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
         )
         value = f"{pad}[\n{rows}{pad}]"
     else:
-        value = bits.reading(
-            members[0], set(), DEPTH - 1
-        )  # a block is the body of the function
+        # A block is the body of the function.
+        value = bits.reading(members[0], set(), DEPTH - 1)
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
     writings = [line for element in members for line in bits.writing(element, "")]
     return {

@@ -160,9 +160,8 @@ def _river(
     near = [w for w in words if w.x1 > low and w.x0 < high]
     starts, ends = sorted(w.x0 for w in near), sorted(w.x1 for w in near)
     points = sorted({low, high, *(x for x in starts + ends if low < x < high)})
-    pieces: list[list[float]] = (
-        []
-    )  # [from, to, crossings], neighbours with the same count put together
+    # [from, to, crossings], neighbours with the same count put together.
+    pieces: list[list[float]] = []
     for a, b in itertools.pairwise(points):
         crossings = bisect_left(starts, (a + b) / 2) - bisect_right(ends, (a + b) / 2)
         if pieces and pieces[-1][2] == crossings:
@@ -175,9 +174,8 @@ def _river(
         empty = not _any_between(middles, before, middle) or not _any_between(
             middles, middle, beyond
         )
-        begin = bisect_left(begins, b + 1) - bisect_right(
-            begins, b - 1
-        )  # words with this left side, as in a column
+        # Words with this left side, as in a column.
+        begin = bisect_left(begins, b + 1) - bisect_right(begins, b - 1)
         headed = abs(b - heading) < 1.5
         narrow = bool(words) and b - a < 0.5 * words[0].size
         this = (count, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))

@@ -144,9 +144,8 @@ class _Shift(NamedTuple):
 def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
     """Return a character in the form from which pdfplumber assembles words."""
     x0, top, x1, bottom = shift.box(thing)
-    if thing.upright and _slanted(
-        thing
-    ):  # the box of a slanted character overlaps the next one
+    # The box of a slanted character overlaps the next one.
+    if thing.upright and _slanted(thing):
         x0 = thing.matrix[4] + shift.x
         x1 = x0 + thing.adv * thing.matrix[0]
     return {"text": thing.get_text(), "x0": x0, "x1": x1, "top": top, "bottom": bottom, "doctop": top,

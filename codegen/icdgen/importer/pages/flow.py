@@ -60,9 +60,8 @@ class Mark:
     size: float
     number: str = ""
     strong: bool = False  # looks like a heading without a number
-    cells: list[tuple[float, str]] = field(
-        default_factory=list
-    )  # left side and text of each run of words
+    # Left side and text of each run of words.
+    cells: list[tuple[float, str]] = field(default_factory=list)
 
 
 Item = Piece | Mark
@@ -101,9 +100,8 @@ def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
         label.what and label.value for label in labels.parse(line.text, profile)[:1]
     ):
         return True
-    parts = folded(
-        line.text
-    )  # it may be one of several lines of headings, which are close together
+    # It may be one of several lines of headings, which are close together.
+    parts = folded(line.text)
     tight = any(
         max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size
         for other in near
@@ -374,9 +372,8 @@ class _Flow:
             len(following),
         )
         bottom = following[-1].bottom + 8
-        if start < end < len(following) and self.begins_anew(
-            following, end
-        ):  # exclude the upper rule of the next table
+        # Exclude the upper rule of the next table.
+        if start < end < len(following) and self.begins_anew(following, end):
             bottom = (following[end - 1].bottom + following[end].top) / 2
         limit = _lowest_rule(page, following, start, header, bottom)
         below = (

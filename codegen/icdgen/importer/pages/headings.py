@@ -47,9 +47,8 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
         if not has_offsets and not loose:
             continue
         score = header.known - 0.6 * unknown
-        score -= (
-            0 if has_offsets else 0.7
-        )  # prefer another kind of table that matches as well
+        # Prefer another kind of table that matches as well.
+        score -= 0 if has_offsets else 0.7
         if header.known > unknown and score > most:
             best, most = header, score
     return best

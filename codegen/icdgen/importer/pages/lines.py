@@ -44,9 +44,9 @@ def lines(words: Iterable[Word]) -> list[Line]:
 
     Words of a line overlap vertically by more than half the height of the lower one.
     """
-    groups: list[list[Any]] = (
-        []
-    )  # [top, bottom, words] of the tall words first, so that raised marks find their line
+    # [top, bottom, words] of the tall words first, so that raised marks find their
+    # line.
+    groups: list[list[Any]] = []
     for word in sorted(words, key=lambda w: (w.top, w.x0)):
         best, most = None, 0.5
         for group in groups[-8:]:

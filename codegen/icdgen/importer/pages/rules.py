@@ -43,11 +43,8 @@ class Region:
         for y, length in _lengths(self.across):
             if length >= WIDE * (self.x1 - self.x0):
                 heights.append(y)
-        for (
-            rule
-        ) in (
-            self.down
-        ):  # a vertical rule that ends within the region ends at a row with other cells
+        # A vertical rule that ends within the region ends at a row with other cells.
+        for rule in self.down:
             if self.x0 + 3 < rule.at < self.x1 - 3:
                 heights += [rule.start, rule.end]
         return distinct([y for y in heights if self.top <= y <= self.bottom], 3.0)
@@ -243,9 +240,8 @@ def _sides(
     sizes = Counter(root(i) for i in range(len(parent)))
     floating = {i for i in range(first, len(parent)) if sizes[root(i)] == 1}
     places = [rule.at for rule in down]
-    near: dict[int, list[int]] = (
-        {}
-    )  # rules by the height of their start, so that only neighbours are compared
+    # Rules by the height of their start, so that only neighbours are compared.
+    near: dict[int, list[int]] = {}
     for i, side in enumerate(down, first):
         cell = int(side.start // REACH)
         for j in sorted(j for c in (cell - 1, cell, cell + 1) for j in near.get(c, ())):

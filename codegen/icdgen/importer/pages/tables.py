@@ -25,9 +25,8 @@ class Builder:
     document_words: frozenset[str]
     is_part: bool = False  # whether only some pages of the document are read
     out: list[Draft | Mark] = field(default_factory=list)
-    loose_pieces: dict[int, list[Piece]] = field(
-        default_factory=dict
-    )  # id of a draft -> its pieces without vertical rules
+    # Id of a draft -> its pieces without vertical rules.
+    loose_pieces: dict[int, list[Piece]] = field(default_factory=dict)
 
     def run(self, items: list[Item]) -> list[Block]:
         """Return headings, text and tables with their captions."""
@@ -180,9 +179,8 @@ class Builder:
             )
             if header:
                 return header
-        split = (
-            self.split(piece.bands[0]) if piece.bands else None
-        )  # no rule separates headings and rows
+        # No rule separates headings and rows.
+        split = self.split(piece.bands[0]) if piece.bands else None
         return split[1] if split else None
 
     # Tables with vertical rules.
@@ -345,16 +343,14 @@ class Builder:
         header = draft.header
         if len(band.edges) < len(draft.edges):
             plain = Band(band.page, draft.edges, band.words)
-            if bands.has_keys(
-                plain, header
-            ):  # vertical rules separate only the headings
+            # Vertical rules separate only the headings.
+            if bands.has_keys(plain, header):
                 band = plain
         rows = bands.rows(
             bands.aligned(band, draft.edges), header, self.document_words, torn
         )
-        if (
-            len(rows) == 1
-        ):  # keep its own cells, instead of those aligned with the headings
+        # Keep its own cells, instead of those aligned with the headings.
+        if len(rows) == 1:
             rows = [band.printed(self.document_words)]
         draft.rows += rows
 

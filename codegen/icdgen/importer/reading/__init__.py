@@ -11,9 +11,8 @@ from icdgen.importer.document import Document
 from icdgen.importer.profile import Profile
 
 MAX_BYTES = 300_000_000
-Progress = Callable[
-    [int, int, int], None
-]  # pages done, pages altogether, captions seen
+# Pages done, pages altogether, captions seen.
+Progress = Callable[[int, int, int], None]
 
 
 def read(

@@ -87,9 +87,8 @@ class CText:
             ranges.append((match.start(), end))
             at = end
         texts, last = [], 0
-        self.beginnings: list[tuple[int, str]] = (
-            []
-        )  # line of each declaration, and the code up to its end
+        # Line of each declaration, and the code up to its end.
+        self.beginnings: list[tuple[int, str]] = []
         for start, end in sorted(ranges):
             if start < last:
                 continue

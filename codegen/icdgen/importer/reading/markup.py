@@ -28,9 +28,8 @@ from icdgen.importer.reading.utf8 import utf8_text
 from icdgen.importer.words import CONTINUED, plain, table_number
 
 CODE = "IMP002"
-_HEADINGS = {
-    f"h{level}": float(20 - level) for level in range(1, 7)
-}  # as type sizes: larger ones contain smaller ones
+# As type sizes: larger ones contain smaller ones.
+_HEADINGS = {f"h{level}": float(20 - level) for level in range(1, 7)}
 _BREAKS = {"p", "div", "li", "br", "tr"}
 _SKIPPED = {"script", "style", "head", "template", "noscript"}
 

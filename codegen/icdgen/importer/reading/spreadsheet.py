@@ -28,13 +28,10 @@ from icdgen.importer.document import (
 from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"
-MOST_ROWS, MOST_COLUMNS = (
-    100_000,
-    1_000,
-)  # of a sheet: sheets that are formatted to their end have a million rows
-Cells = list[
-    tuple[int, list[Cell]]
-]  # number of the row, counted from 1, and the cells that begin in it
+# Of a sheet: sheets that are formatted to their end have a million rows.
+MOST_ROWS, MOST_COLUMNS = 100_000, 1_000
+# Number of the row, counted from 1, and the cells that begin in it.
+Cells = list[tuple[int, list[Cell]]]
 
 
 def read_csv(path: Path) -> Document:

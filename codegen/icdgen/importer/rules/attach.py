@@ -14,6 +14,7 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part, known_kind
 from icdgen.importer.words import squeezed
 
+# Roles that bits share with the field they divide.
 _GROUP = (
     "group",
     "counter",
@@ -21,7 +22,7 @@ _GROUP = (
     "rest",
     "stride",
     "up_to",
-)  # roles that bits share with the field they divide
+)
 _SAID = ("kind", "length")
 
 

@@ -184,9 +184,8 @@ class RoleReader:
         Report a text that matches no pattern, and text that a pattern does not cover.
         """
         is_name = any("name" in pattern.roles for pattern in patterns)
-        if not text or (
-            text.casefold() in self.empty and not is_name
-        ):  # a dash may be the name of reserved bits
+        # A dash may be the name of reserved bits.
+        if not text or (text.casefold() in self.empty and not is_name):
             return {}
         where = f"{self.table.title}, column `{name}`"
         spot, place = self.table.spot_of(row.source), patterns[0].place

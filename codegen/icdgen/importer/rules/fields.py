@@ -31,9 +31,8 @@ from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number
 _EMPTY = ("", "n/a", "none")
-_IN_PARENTHESES = re.compile(
-    r"\A\(([^()]*(?:\([^()]*\)[^()]*)*)\)\Z"
-)  # `(V)`, but not `(N)·(m)`
+# `(V)`, but not `(N)·(m)`.
+_IN_PARENTHESES = re.compile(r"\A\(([^()]*(?:\([^()]*\)[^()]*)*)\)\Z")
 _VALUE = r"(?:0x[0-9a-f]+|0b[01]+|-?[0-9]+)"
 # A comma separates members only in front of a value: names may contain one.
 _MEMBER = re.compile(
@@ -55,17 +54,15 @@ class Draft:
     roles: Roles
     count: int = 0
     members: list[tuple[int, str]] = field(default_factory=list)
-    facts: dict[str, Any] = field(
-        default_factory=dict
-    )  # further keys of the field in the ICD
+    # Further keys of the field in the ICD.
+    facts: dict[str, Any] = field(default_factory=dict)
     # bit numbers of the whole field that this piece has
     part: tuple[int, int] | None = None
     order: Order | None = None  # where it is not the node's
     # The table of bits that gives the field; None for the table of its message.
     table: SourceTable | None = None
-    frame_bits: list[Bit] = field(
-        default_factory=list
-    )  # from the least significant one, if `at` does not state them
+    # From the least significant one, if `at` does not state them.
+    frame_bits: list[Bit] = field(default_factory=list)
 
     @property
     def size(self) -> int:
@@ -158,9 +155,7 @@ class FieldReader:
         # In a group, `count` is the number of elements of the group. The field itself
         # is no array.
         if roles.get("group") and not roles.get("counter") and not roles.get("rest"):
-            numbers.pop(
-                "count", None
-            )  # says how often the group is repeated, not the field
+            numbers.pop("count", None)
         sized = self.size(numbers, printed, roles, where, spot)
         if sized is None:
             return None
@@ -345,9 +340,8 @@ class FieldReader:
             total // count if count and total % count == 0 else total
         )
         if printed.bits and printed.kind != "bool":
-            if (
-                element in (0, printed.bits) or total == printed.bits
-            ):  # some tables print the size of one element
+            # Some tables print the size of one element.
+            if element in (0, printed.bits) or total == printed.bits:
                 return printed.bits, count
             self.error(
                 "IMP105",

@@ -48,9 +48,8 @@ class Interpretation:
     choices: list[Choice]
     parts: list[Part]
     survey: Survey
-    attributes: dict[
-        int, dict[str, str]
-    ]  # number of the table -> roles that texts around it give
+    # Number of the table -> roles that texts around it give.
+    attributes: dict[int, dict[str, str]]
     rules: list[Rule]
 
 
@@ -160,9 +159,8 @@ class _Interpreter:
             part.given.update(own)
             part.stated_in_rows.update(own)
             if is_field or not own or rule.what not in ("message", "registers"):
-                self.row(
-                    part, roles, reader
-                )  # else the row is a message without fields
+                # Otherwise the row is a message without fields.
+                self.row(part, roles, reader)
         if (
             not parts
             and {"message", "id", "set_id"} & set(message)

@@ -73,13 +73,15 @@ MESSAGE_ROLES = {
 ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
 _FIELD_ROLES = {*PLACE_ROLES, *VALUE_ROLES, *TEXT_ROLES}
 _IDS = {"id", "set_id", "get_id"}
+# Any rule may give these roles. Where an ICD has no place for the text, they have no
+# effect.
 _PROSE = {
     "text",
     "message_text",
     "section",
     "default",
     "access",
-}  # without effect where nothing represents it
+}
 _MESSAGE = {*_FIELD_ROLES, *_IDS, *_PROSE, "message", "kind", "length", "enumeration"}
 ROLES_OF = {
     "message": _MESSAGE,

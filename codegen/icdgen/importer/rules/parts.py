@@ -23,13 +23,11 @@ class Part:
     rule: Rule
     table: SourceTable
     given: dict[str, str]  # roles of the message
-    stated_in_rows: dict[str, str] = field(
-        default_factory=dict
-    )  # those that cells of the table give
+    # Roles of the message that cells of the table give.
+    stated_in_rows: dict[str, str] = field(default_factory=dict)
     drafts: list[Draft] = field(default_factory=list)
-    pairs: list[tuple[int, str]] = field(
-        default_factory=list
-    )  # values with members, or with points
+    # Values with members, or with points.
+    pairs: list[tuple[int, str]] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)  # descriptions of the members
 
     @property

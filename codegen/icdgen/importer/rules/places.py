@@ -140,9 +140,8 @@ class PlaceReader:
             return []
         printed = numbers["byte"], numbers.get("last_byte", numbers["byte"])
         count = max(printed) - min(printed) + 1
-        start = at - min(
-            numbers["bit"], numbers.get("last_bit", numbers["bit"])
-        )  # bit 0 of the bytes
+        # Bit 0 of the bytes.
+        start = at - min(numbers["bit"], numbers.get("last_bit", numbers["bit"]))
         highest = max(numbers["bit"], numbers.get("last_bit", 0))
         is_ambiguous = self.order not in positions.MONOTONIC
         help = ""

@@ -12,9 +12,9 @@ SEPARATOR = r"\s*(?:,|;|&|\+|/|\band\b)\s*"
 _ITEM = r"[0-9]+(?:\s*(?:-|–|to|\.\.)\s*[0-9]+)?"
 _LIST = re.compile(rf"{_ITEM}(?:{SEPARATOR}{_ITEM})+", re.I)
 _PARTING = re.compile(SEPARATOR, re.I)
-MONOTONIC = ORDERS[
-    :2
-]  # bit numbers ascend from byte to byte: the least (or most) significant bit is always first
+# Bit numbers ascend from byte to byte: the least (or most) significant bit is always
+# first.
+MONOTONIC = ORDERS[:2]
 
 
 def is_list(text: str) -> bool:

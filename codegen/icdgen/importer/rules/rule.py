@@ -21,20 +21,22 @@ from icdgen.importer.rules.language import (
 from icdgen.suggest import close_to
 
 CODE = "IMP001"
+# Texts in which `message` looks for roles.
 SOURCES = (
     "caption",
     "heading",
     "before",
     "row",
     "sheet",
-)  # texts in which `message` looks for roles
+)
+# Keys of which `like` takes over single entries.
 _MERGED = (
     "tables",
     "message",
     "columns",
     "each",
     "map",
-)  # keys of which `like` takes over single entries
+)
 
 
 @dataclass(frozen=True)
@@ -81,13 +83,11 @@ class Rule:
     head: str = ""
     pages: tuple[int, int] | None = None
     nth: int | None = None
-    conditions: dict[str, re.Pattern[str]] = field(
-        default_factory=dict
-    )  # source -> pattern
+    # Source -> pattern.
+    conditions: dict[str, re.Pattern[str]] = field(default_factory=dict)
     literals: dict[str, str] = field(default_factory=dict)  # role -> value
-    sources: dict[str, list[Pattern]] = field(
-        default_factory=dict
-    )  # source -> patterns, all of them used
+    # Source -> patterns, all of them used.
+    sources: dict[str, list[Pattern]] = field(default_factory=dict)
     optional: set[str] = field(default_factory=set)  # sources that may match nothing
     columns: list[Column] = field(default_factory=list)
     lines: list[Column] = field(default_factory=list)
@@ -102,9 +102,8 @@ class Rule:
     fill: list[str] = field(default_factory=list)
     glue: list[str] = field(default_factory=list)
     ignore: list[str] = field(default_factory=list)
-    absent: list[str] = field(
-        default_factory=list
-    )  # columns whose empty cells the source leaves out
+    # Columns whose empty cells the source leaves out.
+    absent: list[str] = field(default_factory=list)
     head_rows: int = 1
     transpose: bool = False
     also: bool = False

@@ -72,9 +72,8 @@ def joined_parts(
         # The order of an array's elements is that of the frame, whatever the order of
         # their bits.
         if draft.count or draft.size == 0:
-            placed.append(
-                draft
-            )  # elements stand one after the other: their first bit is as printed
+            # Elements stand one after the other: their first bit is as printed.
+            placed.append(draft)
             continue
         run = bit_order.run_of(bits, order)
         if run is None:

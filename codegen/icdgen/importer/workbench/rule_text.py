@@ -89,9 +89,8 @@ def with_rule(
         lines[-1] += "\n"
     if not isinstance(rules, Seq):
         return "".join(lines) + f"rules:\n{block}"
-    if (
-        not rules or tree.key_at("rules").line == rules.item_at(0).line
-    ):  # in one line, as `[]` or `[{...}]`
+    # In one line, as `[]` or `[{...}]`.
+    if not rules or tree.key_at("rules").line == rules.item_at(0).line:
         first = tree.key_at("rules").line - 1
         texts = [text_of_rule(plain(entry)) for entry in rules]
         added = len(texts) if behind is None else behind + 1

@@ -49,15 +49,13 @@ class Session:
             reader,
         )
         self.lock = RLock()
-        self.disk = (
-            self.read_disk()
-        )  # contents of the profile's file when it was read or written last
+        # Contents of the profile's file when it was read or written last.
+        self.disk = self.read_disk()
         self.text = self.saved = _decoded(self.disk, path)
         if self.disk is None:
             self.text = rule_text.NEW
-        self.past: list[Version] = (
-            []
-        )  # earlier versions of the profile, the latest last
+        # Earlier versions of the profile, the latest last.
+        self.past: list[Version] = []
         self.future: list[Version] = []  # versions that were undone
         self.pictures: dict[int, bytes] = {}
         self.apply(self.text, [None] * len(rule_text.rules_of(self.text)))
@@ -455,8 +453,7 @@ def _render(path: Path, number: int) -> bytes:
             raise KeyError(number)
         data = io.BytesIO()
         document[number - 1].render(scale=RESOLUTION / 72).to_pil().save(data, "PNG")
-    except (
-        pypdfium2.PdfiumError
-    ):  # it is stricter with broken files than the reader of text
+    except pypdfium2.PdfiumError:
+        # PDFium is stricter with broken files than the reader of text.
         raise KeyError(number) from None
     return data.getvalue()

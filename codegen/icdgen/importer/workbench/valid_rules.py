@@ -23,9 +23,8 @@ class ValidProfile:
 
     words: profile.Profile
     indices: list[int]  # for each rule of ``words``, its index in the text
-    errors: list[
-        tuple[int, Finding]
-    ]  # index of a rule in the text, and what is wrong in it
+    # Index of a rule in the text, and what is wrong in it.
+    errors: list[tuple[int, Finding]]
     last_valid: list[RuleKeys | None]  # for each rule of the text
 
 

@@ -444,13 +444,14 @@ def _i2c(
         (m for m in facts.telecommands.values() if m.acknowledge and m is not plain),
         other,
     )
+    # Until all attempts of a request are used.
     quiet = [
         {"at": 100},
         {"at": 110},
         {"at": 210},
         {"at": 220},
         {"at": 320},
-    ]  # until all attempts of a request are used
+    ]
     near = next(
         (
             m
