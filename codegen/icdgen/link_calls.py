@@ -131,6 +131,7 @@ class _LinkBuilder:
             "acknowledge": self.part(facts.acknowledge),
             "polled": self.commented_rest(self.polled(), "link.buses.i2c.acknowledge"),
             "i2c_address": facts.i2c_address,
+            # True is the default of the runtime.
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
             "checksum": self.checksum(),
@@ -305,9 +306,11 @@ def _stream(form: Stream) -> Call:
     parts = _members(form)
     parts["packets"] = tuple(map(_packet, form.packets))
     parts["telecommands"] = _stream_rows(form.telecommands, form.exchanges)
+    # Telemetry has no exchange of its own: the packet that requests it has.
     parts["telemetry"] = _stream_rows(form.telemetry, ())
     request, escaping = parts.pop("request"), parts.pop("escaping")
     if isinstance(request, TelemetryRequest):
+        # Many messages share an exchange, so rows have its index in the list.
         exchange = form.exchanges.index(request.exchange)
         parts["request"] = _row("TelemetryRequest", request.packet, exchange)
     if form.exchanges:
@@ -328,6 +331,7 @@ def _packet(packet: PacketFormat) -> Call:
     if packet.check:
         check = {**_members(packet.check), "crc": _crc(packet.check.crc)}
         parts["check"] = _row("CheckForm", *check.values())
+    # A link with one packet format needs no name for it.
     if packet.name:
         parts |= {"name": packet.name, "directions": packet.directions}
     if packet.content != MESSAGE:
@@ -474,6 +478,7 @@ def _packet_map(blocks: Blocks) -> Call | None:
     if form is None:
         return None
     members = _members(form)
+    # The runtime has no objects of messages: it needs their ids and length.
     del members["messages"]
     return _call(
         "PacketMap",

@@ -1,5 +1,5 @@
 """Reader of the procedures of a checked ICD, into the classes of
-`icdgen.protocol.procedures`. Rules ICD190 to ICD193 check what it relies on.
+`icdgen.protocol.procedures`. Rules ICD190 to ICD194 check what it relies on.
 
 In the ICD, `blocks`, `missing` and `repeat` contain steps. Here each of these loops
 becomes a step that decides whether it goes on, the steps of the loop, and a jump back.
@@ -62,7 +62,6 @@ from icdgen.protocol.procedures import (
 from icdgen.protocol.responding import place_of
 from icdgen.protocol.sections import Crc
 
-_U32 = 0xFFFF_FFFF
 _LATER = -1  # `to` of a step until the step is known at which it continues
 
 Section = Mapping[str, Any]
@@ -102,6 +101,7 @@ class ProcedureReader:
     def read(self, name: str) -> Procedure:
         """Return the procedure under its name."""
         section, limits = self._section, self._limits
+        # Before the steps: a client writes its inputs into consecutive registers.
         for key, row in self._inputs.items():
             if row.get("type") != BYTES:
                 self._register(("", key))
@@ -109,6 +109,7 @@ class ProcedureReader:
         outputs = [
             self._output(key, path) for key, path in section.get("outputs", {}).items()
         ]
+        # Last: now all fields are known that steps and outputs use.
         self._keep_fields()
         return Procedure(
             name=name,
@@ -131,6 +132,7 @@ class ProcedureReader:
 
     def _input(self, name: str, row: Section) -> Input:
         register = self._registers.get(("", name))
+        # An input must fit into each field that gets it.
         most = (1 << self._bits.get(name, 32)) - 1
         if self._blocks and register is not None and register == self._blocks.total:
             most = min(most, self._blocks.most)
@@ -155,10 +157,11 @@ class ProcedureReader:
     def _effect(self, row: Section | None) -> Effect | None:
         if row is None:
             return None
+        # Fields of an effect are those of the telemetry that is requested last.
         message = list(self._frames.values())[-1] if self._frames else None
         fields = []
         for name, field in row.get("fields", {}).items():
-            assert message is not None, "rule ICD190 checks the effect"
+            assert message is not None, "rule ICD194 checks the effect"
             fields.append((name, self._place(message, field)))
         all_if = [
             Test(self._register(("", name)), self._value(value))
@@ -187,7 +190,7 @@ class ProcedureReader:
 
     def _field(self, message: Message, name: str) -> NodePlace:
         field = field_of(message, name)
-        assert field is not None, "rule ICD190 checks the names of fields"
+        assert field is not None, "rule ICD191 checks the names of fields"
         return field
 
     def _place(self, message: Message, name: str) -> NumberPlace:
@@ -274,6 +277,7 @@ class ProcedureReader:
                 self._bits[value] = min(self._bits.get(value, 32), place.bits)
             puts.append(Put(place, self._value(value)))
         node = self._nodes[message.node]
+        # The other fields have their initial values, constants among them.
         data = codec.encode(node, message, codec.initial_values(node, message))
         return Send(
             message=message,
@@ -314,6 +318,7 @@ class ProcedureReader:
             total=None if total is None else self._value(total).number,
             size=blocks["size"],
             begin=first + 1,
+            # A block is one packet, unless `missing` divides it.
             packet_bytes=blocks["size"],
             first_packet=0,
             fill=0,
@@ -327,7 +332,7 @@ class ProcedureReader:
         self._leads_here(first)
 
     def _change_blocks(self, **changes: Any) -> None:
-        assert self._blocks is not None, "rule ICD193 checks the places of steps"
+        assert self._blocks is not None, "rule ICD190 checks the places of steps"
         self._blocks = replace(self._blocks, **changes)
 
     def _add_missing(self, missing: Section) -> None:
@@ -336,6 +341,8 @@ class ProcedureReader:
             first_packet=missing.get("first", 0),
             fill=missing.get("fill", 0),
         )
+        # A loop is: decide or leave, the steps, jump back. So its first step continues
+        # behind its last one (`_leads_here`).
         rounds = len(self._steps)
         self._steps.append(NextRound(_LATER))
         if "each" in missing:

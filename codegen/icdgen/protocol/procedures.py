@@ -28,7 +28,9 @@ from icdgen.protocol.sections import Crc
 BLOCK_OFFSET, BLOCK_LENGTH, BLOCK_IS_EMPTY, PACKET_NUMBER, PACKET_OFFSET = range(
     len(FIXED_NAMES)
 )
-UNKNOWN = 0xFFFF_FFFF  # value of an optional input that is not given
+# Value of an optional input that is not given: the number of bytes to receive, which is
+# smaller.
+UNKNOWN = 0xFFFF_FFFF
 
 Result = Literal[
     "done", "refused", "busy", "timeout", "failed", "length", "checksum", "rounds", "limit"
@@ -140,6 +142,7 @@ class NextPacket:
     to: int
 
 
+# Classes without fields have `eq=False`, because `icdgen.frozen` compares fields.
 @dataclass(frozen=True, slots=True, eq=False)
 class PacketDone:
     """The packet is no longer missing."""
@@ -346,11 +349,11 @@ class Procedure:
     @property
     def messages(self) -> tuple[Message, ...]:
         """Messages of the steps, each once."""
-        found = [
+        messages = [
             step.message
             for step in self.steps
             if isinstance(step, (Send, Get, Poll, Receive))
         ]
         if self.blocks and self.blocks.map:
-            found += self.blocks.map.messages
-        return tuple({message.name: message for message in found}.values())
+            messages += self.blocks.map.messages
+        return tuple({message.name: message for message in messages}.values())
