@@ -112,6 +112,7 @@ def remarks(
         yield "a view of bits that other fields have"
     if orders := orders_text(field):
         yield orders
+    # Only lines of an ICD have levels; the rows of a page are single elements.
     for level in field.levels if isinstance(field, Line) else ():
         if level.struct is not None and level.count:
             most = "up to " if part is not None else ""

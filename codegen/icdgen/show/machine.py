@@ -75,6 +75,8 @@ def _attributes(thing: Any) -> _Object:
 @cache
 def _defaults(kind: Any) -> dict[str, object]:
     """Return the defaults of the attributes of a class."""
+    # Attributes that have a default are left out if they have it: a new attribute does
+    # not change the output of older ICDs.
     return {attribute.name: attribute.default for attribute in fields(kind)}
 
 
@@ -267,6 +269,7 @@ def _present(**items: object) -> _Object:
     """Return the items that have a value: not None, and not an empty text, list or
     mapping.
     """
+    # 0 and False stay: they are values.
     return {
         key: value
         for key, value in items.items()

@@ -136,6 +136,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
     messages = [
         message for message in icd.messages_of(node) if kind in (None, message.kind)
     ]
+    # Own messages first. The sort is stable, so each group keeps its order.
     messages.sort(key=lambda message: message.node != node.name)
     rows = []
     for message in messages:
@@ -255,7 +256,10 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
     enums = [
         _enum(enum, width)
         for enum in dict.fromkeys(
-            line.enum for line in icd_lines(message.layout) if line.enum
+            # Each enumeration once, in the order of its first field.
+            line.enum
+            for line in icd_lines(message.layout)
+            if line.enum
         )
     ]
     errata = [_erratum(erratum, width) for erratum in errata_of_message(message)]
