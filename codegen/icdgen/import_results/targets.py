@@ -42,6 +42,8 @@ def prepare(
     Raise `UserError` if a file exists and ``over`` does not allow an update, unless
     ``dry`` is set.
     """
+    # All conflicts are reported before any file is written. A link without target
+    # exists, too.
     existing = [
         out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")
     ]
@@ -98,10 +100,12 @@ def write(targets: list[Target]) -> None:
         for path, data in files.items()
         if schema.LINE.encode() in data
     ]:
+        # An existing copy is not replaced: `icdgen schema --out` renews it.
         if not os.path.lexists(path):
             files[path] = schema.PATH.read_bytes()
     for path, data in files.items():
         try:
+            # A symbolic link stays one: its target is replaced.
             replace(Path(os.path.realpath(path)), data)
         except OSError as error:
             raise UserError(

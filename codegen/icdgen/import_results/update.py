@@ -135,6 +135,7 @@ def _update_section(
         changes += [f"+ {kind} {_title(kind, item)}" for item in items]
         return
     if not isinstance(old.value, Branch):
+        # An empty section, `messages:` without items.
         old.value = Branch(False, False, 0)
     old.value.children = _merge_items(
         old.value.children, items, kind, "", changes, given_keys
@@ -157,6 +158,7 @@ def _merge_items(
     """
     pairs = _matches(old, items, kind)
     placed_items: list[tuple[int, Child]] = []
+    # New items at the beginning have no predecessor.
     place = -1
     placed: dict[int, int] = {}
     for index, item in enumerate(items):
@@ -230,12 +232,14 @@ def _merge(
             child.value = Branch(False, False, 0, lines)
         elif child is None:
             result.children.append(Child(Text(key, key), emit.node(value)))
+            # Neither is a fact of the device, so the list of changes omits them.
             if key not in ("source", "summary"):
                 changes.append(
                     f"~ {where}{kind} {title}: {key} (absent) -> {_value_text(value)}"
                 )
         elif key in _USER_KEYS[kind] and key not in given_keys:
             continue  # the user's value has precedence
+        # The user can have added a page or a table to the place in the manual.
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
         elif key == "also" and [s.get("table") for s in _plain(child.value)] == [
@@ -277,10 +281,13 @@ def _matches(
 
 
 def _ids(item: dict[str, Any]) -> object:
+    # The kind is part of it: a telecommand and telemetry can share an id.
     ids = (item.get("kind"), item.get("id"), item.get("set_id"), item.get("get_id"))
     return ids if any(i is not None for i in ids[1:]) else None
 
 
+# Keys by which an old item is found again, the most certain first: a message that was
+# renamed keeps its id, a field that moved keeps its name.
 _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
     "message": [lambda i: (i.get("name"), _ids(i)), lambda i: i.get("name"), _ids],
     "field": [

@@ -23,12 +23,14 @@ _GROUP = (
     "stride",
     "up_to",
 )
-_SAID = ("kind", "length")
+# Attributes of a message that its own table and the index can state.
+_STATED = ("kind", "length")
 
 
 def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) -> None:
     """Give enumerations, lookup tables and bits to the fields that their `of` names."""
     for part in parts:
+        # An enumeration with a name of its own belongs to no field: `lists` reads it.
         has_own_name = part.rule.what == "enumeration" and part.given.get("enumeration")
         if part.rule.what not in ("enumeration", "lookup", "bits") or has_own_name:
             continue
@@ -63,6 +65,7 @@ def _hosts(
     if not name:
         return []
     wanted = squeezed(name)
+    # A part without the name of a message is about all messages.
     hosts = [m for m in messages if squeezed(part.name) in ("", squeezed(m.name))]
     fields = [(m, d) for m in hosts for d in m.drafts if squeezed(d.name) == wanted]
     rivals = [
@@ -91,12 +94,15 @@ def _lookup(part: Part, field: Draft, notes: Notes) -> None:
         return
     field.facts["points"] = [
         [raw, float(str(physical))]
+        # Manuals also print tables with the largest value first.
         for raw, physical in sorted(points, key=lambda point: point[0] or 0)
     ]
 
 
 def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) -> None:
     """Put the fields of bits in the place of the field that they divide."""
+    # Tables of bits count from the least significant bit of the value, wherever the
+    # value stands in the frame.
     host_bits = bits_of(field.at, field.bits, field.order or order)
     covered = {bit for draft in part.drafts for bit in range(draft.at, draft.end)}
     missing = sorted(set(range(field.bits)) - covered)
@@ -142,6 +148,7 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
                 table=part.table,
             )
         )
+    # By identity: two fields can have equal content.
     index = next(i for i, draft in enumerate(host.drafts) if draft is field)
     host.drafts[index : index + 1] = pieces
 
@@ -185,6 +192,7 @@ def _complete(
         message.name = name
     stated = {"kind": entry.given.get("kind"), "length": entry.number("length")}
     if all(number is None for number in message.ids) and id is not None:
+        # One id for setting and reading, as in protocols with a direction bit.
         if (message.kind or stated["kind"]) == "configuration":
             message.set_id = message.get_id = id
         else:
@@ -198,7 +206,7 @@ def _complete(
             "compare both tables",
             entry.rule.place,
         )
-    for key in _SAID:
+    for key in _STATED:
         own, other = getattr(message, key), stated[key]
         if own in (None, "") and other:
             setattr(message, key, other)

@@ -22,6 +22,8 @@ class Order(NamedTuple):
     bit_order: str
 
 
+# `positions.MONOTONIC` relies on the first two: their bit numbers ascend through a
+# value of several bytes.
 ORDERS = (
     Order("little", "lsb0"),
     Order("big", "msb0"),
@@ -63,6 +65,7 @@ def run_of(bits: list[Bit], preferred: Order) -> tuple[int, Order] | None:
             for byte, weight in bits
         ]
         at = min(numbers)
+        # No gaps, and in the order of significance.
         if max(numbers) - at == len(bits) - 1 and bits_of(at, len(bits), order) == bits:
             return at, order
     return None

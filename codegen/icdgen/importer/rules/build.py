@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
+from icdgen.importer.descriptions import Described
 from icdgen.importer.model import (
     Extent,
     Found,
@@ -72,6 +73,8 @@ class Builder:
         merged: list[Part] = []
         last: Part | None = None
         for part in parts:
+            # Only consecutive tables are joined. A later table with the same id is a
+            # description of its own.
             before, last = last, part
             if before is None or not _is_same_message(before, part):
                 merged.append(part)
@@ -233,6 +236,7 @@ class Builder:
             f"{part.name} {draft.name}".strip(),
             f"{part.name} {draft.name} {draft.at}",
         ):
+            # The first name that is free, or whose enumeration has equal members.
             own = self.enums.get(name)
             if own is None:
                 own = self.enums[name] = ReadEnum(
@@ -281,6 +285,7 @@ class Builder:
             draft.facts = {
                 key: value
                 for key, value in draft.facts.items()
+                # These keys describe the repetition of the group, not its fields.
                 if key not in ("count", "size", "up_to")
             }
             field = self.field(draft, part)
@@ -297,7 +302,7 @@ class Builder:
             start,
             8 * size,
             "struct",
-            drafts[0].described.__class__(),
+            Described(),  # texts belong to the fields of the struct
             drafts[0].spot,
         )
         array.facts = facts | (

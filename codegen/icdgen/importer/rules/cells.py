@@ -69,6 +69,7 @@ class RoleReader:
                 fields += self.from_lines(row, given)
             else:
                 fields.append(Roles(given, row))
+        # Roles of the rule have the lowest precedence, corrections (`set`) the highest.
         for roles in fields:
             roles.given = {**rule.each, **roles.given}
             for correction in rule.corrections:
@@ -96,6 +97,7 @@ class RoleReader:
         """Add the roles of the columns to ``given``; report columns that give one role
         different texts.
         """
+        # The column that gave each role.
         sources: dict[str, str] = {}
         for column, names in columns:
             text = "".join(one_line(row, name, self.words) for name in names)
@@ -123,6 +125,7 @@ class RoleReader:
         used: set[str] = set()
         shown = ", ".join(f"`{title}`" for title in titles if title)
         for column in (*rule.columns, *rule.lines):
+            # `*` stands for the melted columns.
             if column.key == "*":
                 continue
             names = find_columns(column, titles)
@@ -242,6 +245,7 @@ class RoleReader:
             return
         star = next(column for column in self.rule.columns if column.key == "*")
         shift = whole_number(given.get("byte", "0"), self.rule.base) or 0
+        # The byte of the row is added to the bytes of the headings (`byte_shift`).
         shared = {role: text for role, text in given.items() if role != "byte"}
         for title in titles:
             text = one_line(row, title, self.words)
@@ -302,6 +306,8 @@ class RoleReader:
                     elif "name" not in roles:
                         position = roles
                     else:
+                        # A line with a byte of its own ends the position of the lines
+                        # above.
                         position = {} if "byte" in roles else position
                         self.check_line(row, column, name, line, roles, given)
                         outer = {
@@ -371,6 +377,8 @@ def find_columns(column: Column, titles: list[str]) -> list[str]:
         else:
             wanted = normalised(key).casefold()
             name = next((title for title in titles if title.casefold() == wanted), None)
+            # After the headings: a heading can be a number itself, such as that of a
+            # bit.
             if name is None and key.isdigit() and 0 < int(key) <= len(titles):
                 name = titles[int(key) - 1] or f"column {key}"
         if name is None:

@@ -55,6 +55,8 @@ def explain(interpretation: Interpretation, number: int) -> str:
 
 
 def _columns(rule: Rule, table: SourceTable) -> list[str]:
+    # Read again with notes of its own, which are discarded: they are among the findings
+    # already.
     titles, rows = read_rows(rule, table, Notes())
     roles: dict[str, str] = {}
     for column in (*rule.columns, *rule.lines):

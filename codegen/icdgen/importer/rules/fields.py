@@ -180,6 +180,7 @@ class FieldReader:
                 "check the roles of position, size, type and count",
             )
             return None
+        # `width: unit`: a position without a size is one bit or one byte.
         if bits == 0 and self.rule.is_unit_wide and place is not None:
             bits = 1 if "bit" in numbers else 8
         if (
@@ -386,6 +387,7 @@ class FieldReader:
                     "correct the pattern or the table file",
                 )
             else:
+                # Hexadecimal constants stay so: magic numbers are recognized by it.
                 described.const = (
                     const if re.fullmatch(r"0[xX][0-9A-Fa-f]+", const) else str(raw)
                 )
@@ -436,6 +438,7 @@ class FieldReader:
         for role in ("min", "max"):
             if role in roles.given and roles.get(role):
                 value = float(roles.get(role))
+                # An ICD has `3`, not `3.0`.
                 draft.facts[role] = int(value) if value == int(value) else value
         self.check_range(draft, where, spot)
         if (roles.get("rest") or roles.get("counter")) and not roles.get("group"):
@@ -471,6 +474,7 @@ class FieldReader:
                 )
         text = roles.get("part")
         if text:
+            # `L` and `H` name the low and the high part.
             first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
             draft.part = first, int(roles.get("last_part") or first)
 
@@ -539,6 +543,8 @@ def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> st
     """Return the formula as an ICD writes it; empty if physical and raw value are the
     same.
     """
+    # As texts, so that the formula has the digits of the manual: 0.10 does not become
+    # 0.1.
     factor = scale if scale is not None and Decimal(scale) != 1 else ""
     raw = "raw"
     if bias is not None and Decimal(bias) != 0:

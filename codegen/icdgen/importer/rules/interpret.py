@@ -77,6 +77,8 @@ class _Interpreter:
             for text in texts(table)
             for word in text.split()
         )
+        # A word that a cell breaks at a hyphen is joined if it stands elsewhere in the
+        # document.
         self.document_words = frozenset(words)
         self.order = Order(*profile.orders)
 
@@ -234,6 +236,7 @@ class _Interpreter:
 
         The nearest text has precedence.
         """
+        # What the rule states itself has precedence.
         given = dict(rule.literals)
         sources: dict[str, str] = {}  # role -> source that gave it; literals have none
         missing: list[tuple[str, Pattern]] = []
@@ -320,6 +323,7 @@ class _Interpreter:
             texts = {
                 "caption": [table.caption],
                 "heading": table.headings[::-1],
+                # In the order of the page, so the last text is the nearest.
                 "before": table.before[::-1],
                 "sheet": [table.sheet],
             }[source]
@@ -413,6 +417,7 @@ class _Interpreter:
                     "IMP109",
                     f"the profile does not state `{key}`, on which `{affected[0].name}`{further} of {size} depend"
                     f"{'' if further else 's'}; read with `{key}: {getattr(self.order, key)}`",
+                    # The finding is about the profile and not about one table.
                     affected[0].spot._replace(order=None, table=None),
                     f"look for it in the document and state it under `node:` of the profile: {values}",
                 )
@@ -499,6 +504,7 @@ class _Interpreter:
                             place=pattern.place,
                         )
                     )
+                    # One finding per id, although several texts can name it.
                     ids_with_table |= ids
 
 

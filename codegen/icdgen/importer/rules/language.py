@@ -217,6 +217,7 @@ def compile_pattern(text: str, place: Place) -> Pattern:
 def take(patterns: Sequence[Pattern], text: str) -> Taken | None:
     """Return the roles of the first pattern that matches; None if none matches."""
     for pattern in patterns:
+        # A bare role takes the whole text.
         if pattern.regex is None:
             return Taken({pattern.text: text} if text else {}, "")
         match = pattern.regex.search(text)
@@ -282,6 +283,7 @@ def whole_number(text: str, base: int = 10) -> int | None:
     if base != 2 and re.fullmatch(r"0b[01]+", text):
         return int(text, 2)
     digits = {2: "[01]+", 10: "[-+]?[0-9]+", 16: "[0-9a-fA-F]+"}[base]
+    # No id, size or position has 25 digits.
     return int(text, base) if re.fullmatch(digits, text) and len(text) < 25 else None
 
 
@@ -302,8 +304,12 @@ class TypeName(NamedTuple):
     bits: int = 0
 
 
+# The first pattern that matches the whole name counts. `long` is missing, because it
+# has 32 or 64 bits.
 _TYPE_NAMES = [
     (r"(?:unsigned char|uchar|byte|octet)", "uint", 8),
+    # The sign of a plain `char` is implementation-defined in C (C99 6.2.5); manuals
+    # that mean bytes print `unsigned char` or `byte`.
     (r"(?:signed char|char)", "int", 8),
     (r"unsigned short(?: int)?", "uint", 16),
     (r"short(?: int)?", "int", 16),

@@ -136,4 +136,5 @@ def bit_of_mask(text: str) -> int | None:
         return None
     data = bytes.fromhex(text.strip().removeprefix("0x").replace(" ", ""))
     value = int.from_bytes(data, "little")
+    # Only a power of two has no bit in common with the number before it.
     return value.bit_length() - 1 if value and value & (value - 1) == 0 else None

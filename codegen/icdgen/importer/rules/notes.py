@@ -106,8 +106,8 @@ class Notes:
         if not example:
             self.single.append(import_finding)
             return
-        # The help names the change to make: findings with the same help and rule are
-        # mended together.
+        # The help names the change to make: one change removes all findings with the same
+        # help and rule.
         key = (
             import_finding.code,
             import_finding.severity,

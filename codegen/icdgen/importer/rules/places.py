@@ -36,6 +36,7 @@ class PlaceReader:
         """
         if "byte" not in numbers and "bit" not in numbers:
             return None
+        # `origin` is the byte of the table at which the message begins.
         origin = 8 * (self.rule.origin - byte_shift)
         if "end_bit" in numbers:
             first, last = self.ends(numbers)

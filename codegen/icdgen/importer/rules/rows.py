@@ -104,6 +104,8 @@ def _completed(rule: Rule, titles: list[str], slots: list[Slot]) -> list[Slot]:
     at = next(
         (index for index, title in enumerate(titles) if title in rule.absent), None
     )
+    # Only if one cell is missing, so that the cell at its place is that of the next
+    # column.
     if at is None or len(slots) != len(titles) - 1 or not slots[at].text.strip():
         return slots
     return [
@@ -121,6 +123,8 @@ def _row(titles: list[str], slots: list[Slot], source: SourceRow) -> DataRow:
     )
     for column, slot in enumerate(slots):
         title = titles[column] if column < len(titles) else ""
+        # A cell below no heading keeps its text, so that it is reported as a column
+        # without a role.
         if not title and slot.is_origin and slot.cell.text.strip():
             title = f"column {column + 1}"
         if not title or not slot.is_origin:
@@ -145,6 +149,7 @@ def _transposed(
     names = [
         normalised(slots[head].cell.text) if head < len(slots) else "" for slots in grid
     ]
+    # The first heading repeats at the beginning of each block.
     starts = [index for index, name in enumerate(names) if name == names[0]]
     titles = names[: starts[1] if len(starts) > 1 else None]
     data_rows: list[DataRow] = []

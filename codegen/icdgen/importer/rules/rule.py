@@ -215,6 +215,7 @@ def _laid_over(base: Map, own: Map) -> Map:
     merged = Map(own.spot)
     for source in (base, own):
         for key, value in source.items():
+            # The name of the earlier rule and its own `like` are not inherited.
             if key in ("rule", "like") and source is base:
                 continue
             if key in _MERGED and key in merged and isinstance(value, Map):
@@ -400,6 +401,7 @@ class _Reader:
                 place,
                 "check brackets and backslashes",
             )
+            # Matches anything, so that the rest of the rule can be checked.
             return re.compile("")
 
     def roles(self, tree: Map | None, leave_out: str = "") -> dict[str, str]:

@@ -37,6 +37,7 @@ def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
         ]
     rows = [[normalised(slot.text) for slot in row] for row in table.grid()]
     width = max(map(len, rows), default=0)
+    # Rows can have fewer cells than the widest one.
     padded = [row + [""] * (width - len(row)) for row in rows]
     return [list(column) for column in zip(*padded, strict=True)]
 
@@ -135,6 +136,7 @@ def choose(rules: list[Rule], tables: list[SourceTable]) -> list[Choice]:
         choice = Choice(table)
         for rule in rules:
             reason = why_not(rule, table)
+            # `nth` counts the tables that fulfil all other conditions.
             if not reason and rule.nth is not None:
                 seen[rule.name] += 1
                 if seen[rule.name] != rule.nth:

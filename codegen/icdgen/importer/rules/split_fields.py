@@ -33,12 +33,15 @@ def joined_parts(
         if draft.part is None:
             fields.append(draft)
             continue
+        # The first part keeps the place of the field in the list.
         if draft.name not in pieces:
             fields.append(draft)
         pieces.setdefault(draft.name, []).append(draft)
     for name, split in pieces.items():
         split.sort(key=lambda piece: piece.part or (0, 0))
         ends = [piece.part for piece in split if piece.part is not None]
+        # Parts are sorted by their bit numbers: each must begin where the one before
+        # ends.
         if any(before[1] + 1 != after[0] for before, after in pairwise(ends)):
             numbers = ", ".join(
                 str(first) if first == last else f"{last}:{first}"
