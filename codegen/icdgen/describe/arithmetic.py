@@ -120,6 +120,8 @@ class Arithmetic:
             return None
         ends = Storage(bits, True)
         least, most = max(scale.least, ends.min), min(scale.most, ends.max)
+        # A setter subtracts the offset before it divides, so both ends of its range
+        # must fit after the subtraction.
         setter_bits = (
             32
             if bits == 32 and within(32, least - scale.offset, most - scale.offset)

@@ -111,6 +111,7 @@ def loop_from(first: FieldDescription, count: int) -> ArrayLoop | None:
     at, bits = first.model.at, first.model.bits
     if at % 8 or first.is_copied or first.model.conditions:
         return None
+    # Two elements of 12 bits are three bytes, eight flags are one.
     per_iteration = 8 // gcd(8, bits)  # the fewest elements that end at a byte
     loop = ArrayLoop(
         per_iteration, count // per_iteration, at // 8, per_iteration * bits // 8

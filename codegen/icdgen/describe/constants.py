@@ -54,6 +54,8 @@ def constants(
     for special in field.special:
         meaning = naming.words(special.meaning, vocabulary)
         end = naming.snake(meaning)
+        # Two values can have the same meaning, such as `reserved`: the later ones are
+        # named after their value.
         if not 0 < len(meaning) <= MOST_WORDS or end in taken:
             end = (
                 f"special_{special.number or special.value}".replace("-", "minus_")

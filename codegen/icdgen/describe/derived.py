@@ -65,6 +65,8 @@ def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
     fields = tuple(
         (name, members[of]) for name, of in zip(names, how.fields, strict=True)
     )
+    # Steps name their operands by index: the fields, then the numbers, then the results
+    # of the steps before.
     row: list[Operand] = [*names, *how.numbers]
     statements = []
     for number, (operator, left, right) in enumerate(how.steps, 1):

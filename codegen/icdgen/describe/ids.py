@@ -18,6 +18,7 @@ def pair_bytes(form: Stream | None) -> int:
             not field.shift and field.bits == 8 * field.size for field in fields
         )
         size = sum(field.size for field in fields)
+        # The first packet format with an id decides for all of them.
         if fields:
             is_number = len(fields) == 1 and fields[0].little
             return size if is_bytes and size > 1 and not is_number else 0

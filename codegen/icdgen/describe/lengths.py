@@ -29,6 +29,8 @@ def length_tests(lengths: range, minimum: int = 0) -> tuple[LengthTest, ...]:
     ``minimum`` bytes.
     """
     least, most, step = lengths[0], lengths[-1], lengths.step
+    # A comparison that is always true is an error of compilers and linters (`length >=
+    # 0u`).
     tests = [LengthTest("at least", least)] if least > minimum else []
     tests.append(LengthTest("at most", most))
     if step > 1:

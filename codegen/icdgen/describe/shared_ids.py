@@ -15,6 +15,8 @@ def sharing(ids: Ids, message: Message) -> str:
     """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``; empty if no
     message of its node has the same id.
     """
+    # A dict, because a configuration message can have the same sentence for both of its
+    # ids.
     sentences: dict[str, None] = {}
     for id, groups in (
         (message.telecommand_id, ids.telecommand),

@@ -44,6 +44,7 @@ def _literal(field: FieldDescription, value: int) -> str:
         return enumerator(field.enum, member)
     if field.storage.signed:
         return f"({value})" if value < 0 else str(value)
+    # An `unsigned int` has at least 16 bits (C99 5.2.4.2.1).
     return f"{value}u" if value < 1 << 16 else mask(value, field.storage.bits)
 
 

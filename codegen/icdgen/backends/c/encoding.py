@@ -47,6 +47,7 @@ def size(message: MessageDescription) -> list[str]:
         return [f"{fixed}u", *parts]
     if not fixed:
         return parts
+    # Without gaps there is exactly one variable-length part.
     (part,) = message.variable_parts
     return [f"{fixed}u", *(parts if part.model.step == 1 else [f"({parts[0]})"])]
 

@@ -43,12 +43,12 @@ macros can't be met.
 """
 
 
-def stem(one: Composite[Any] | EnumDescription) -> str:
+def stem(part: Composite[Any] | EnumDescription) -> str:
     """``demo_estimated_roll``: stem of the functions and the type; of ``DemoState``
-    ``demo_state``, for it has the node's name.
+    ``demo_state``, because it has the node's name.
     """
-    prefix = f"{one.node.name}_"
-    return one.name if one.name.startswith(prefix) else prefix + one.name
+    prefix = f"{part.node.name}_"
+    return part.name if part.name.startswith(prefix) else prefix + part.name
 
 
 def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
@@ -57,19 +57,22 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
 
 
 def element_reader(message: MessageDescription, name: str) -> str:
-    """The function that reads an element of an array of structs; ``name`` is that of
-    `icdgen.describe.arrays`.
+    """Return the name of the function that reads an element of an array of structs.
+
+    ``name``: of the array, as in `icdgen.describe.arrays`.
     """
     return f"{stem(message)}_read_{name}"
 
 
 def element_writer(message: MessageDescription, name: str) -> str:
-    """The function that writes one."""
+    """Return the name of the function that writes an element of an array of structs."""
     return f"{stem(message)}_write_{name}"
 
 
 def received_element_reader(message: MessageDescription, name: str) -> str:
-    """The function that reads one of a frame that is not decoded."""
+    """Return the name of the function that reads an element from a frame that is not
+    decoded.
+    """
     return f"{stem(message)}_{name}_at"
 
 

@@ -71,6 +71,8 @@ def int64(value: int) -> str:
 
 
 def _limit(value: int, storage: Storage) -> str:
+    # C has no negative literals (C99 6.4.4.1): -2147483648 is the negation of a number
+    # that does not fit into 32 bits.
     if value == storage.min and storage.signed:
         return f"INT{storage.bits}_MIN"
     if value == storage.max:
@@ -101,6 +103,7 @@ def double_value(field: FieldDescription, raw: str) -> str:
         return f"icdgen_quotient({_scaled(raw, p, c, 64, storage)}, {int64(q)})"
     *terms, is_negated = field.arithmetic.int64_terms
     value = f"icdgen_physical_{kind}({', '.join((raw, *map(int64, terms)))})"
+    # `-value` would turn 0 into -0.0; 0.0 - 0.0 is +0.0 (IEEE 754, 6.3).
     return f"0.0 - {value}" if is_negated else value
 
 
@@ -121,6 +124,7 @@ def double_setter(field: FieldDescription) -> tuple[str, ...]:
             *limits,
         )
     assert field.arithmetic is not None
+    # The functions for unsigned integers have no lower limit, because it is 0.
     limits = limits if storage.signed else limits[1:]
     if field.arithmetic.steps.is_wide:
         return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits

@@ -52,6 +52,7 @@ from icdgen.protocol.procedures import (
 )
 from icdgen.protocol.sections import BUSES
 
+# A request is a poll without conditions.
 _KINDS: dict[type, str] = {
     Send: "SEND", Get: "POLL", Poll: "POLL", NextBlock: "NEXT_BLOCK", SetLength: "SET_LENGTH", NextRound: "NEXT_ROUND",
     NextPacket: "NEXT_PACKET", PacketDone: "PACKET_DONE", SendMap: "SEND_MAP", GetMap: "GET_MAP", Receive: "RECEIVE",
@@ -242,6 +243,7 @@ class ProcedureCode:
     def type_of(self, each: Input) -> str:
         """Return the type of an input that is a number."""
         if each.is_optional:
+            # Only 32 bits can represent `ICD_UNKNOWN`.
             return "uint32_t"
         if each.is_flag:
             return "bool"
@@ -326,6 +328,7 @@ class _Tables(TableSet):
         return rows.index(Row(row))
 
     def send(self, step: Send) -> str:
+        # NULL stands for zeros, which need no table.
         data = "NULL"
         if any(step.data):
             number = len(self._rows["sends"])
@@ -375,6 +378,7 @@ class _Tables(TableSet):
 
     def checksum(self, step: VerifyChecksum) -> str:
         crc, shared = "NULL", self.facts_of_link.crc16
+        # NULL stands for the CRC of the link.
         if shared is None or self.values("", step.crc) != self.values("", shared):
             number = len(self._rows["checksums"])
             row = Row(self.crc(f"crc_{number}", step.crc))
@@ -424,6 +428,7 @@ class _Tables(TableSet):
             "icd_blocks_form_t",
             [
                 Row(boolean(blocks.sends), "sends"),
+                # 0 is the register of the offset, so it can mean that there is none.
                 Row(f"{blocks.total or 0}u", "register with the number of bytes"),
                 Row(f"{blocks.begin}u, {blocks.size}u", "first step, bytes of a block"),
                 Row(

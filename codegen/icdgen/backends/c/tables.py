@@ -58,6 +58,7 @@ class TableSet:
     def array(self, name: str, type: str, rows: Iterable[str | Row]) -> str:
         """Declare an array; return NULL if it is empty."""
         items = [row if isinstance(row, Row) else Row(row) for row in rows]
+        # The name of an array is its address: `&rows[]` becomes `rows`.
         return self.add(f"{name}[]", type, items).strip("&[]") if items else "NULL"
 
     def numbers(self, name: str, type: str, numbers: Iterable[str], count: int) -> str:
@@ -116,5 +117,6 @@ class TableSet:
             tables[bits // 8 - 1] = (
                 f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
             )
+            # The table that `numbers` declared last.
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
         return ", ".join((self.values(name, parameters), *tables))

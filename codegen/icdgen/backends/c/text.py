@@ -40,6 +40,8 @@ def plain(text: str) -> str:
     trigraphs and control characters.
     """
     text = lines.plain(text)
+    # Trigraphs (C99 5.2.1.1) are replaced before comments are recognized: `??/` at the
+    # end of a line is a backslash, which continues the line.
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
             text = text.replace(unsafe, safe)
@@ -98,6 +100,7 @@ def noted(paragraphs: Comment) -> list[str]:
 def literal(text: str) -> str:
     """Return a string literal, in ASCII, of the UTF-8 bytes of a text."""
     text = text.replace("\\", "\\\\").replace('"', '\\"')
+    # `\?` exists to avoid trigraphs (C99 6.4.4.4).
     while "??" in text:
         text = text.replace("??", "?\\?")
     if not (text.isascii() and text.isprintable()):
@@ -106,4 +109,6 @@ def literal(text: str) -> str:
 
 
 def _octal(char: str) -> str:
+    # Octal, because an octal escape ends after three digits. A hexadecimal one takes
+    # all digits that follow (C99 6.4.4.4).
     return "".join(f"\\{byte:03o}" for byte in char.encode("utf-8", "replace"))

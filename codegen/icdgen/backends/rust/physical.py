@@ -109,6 +109,7 @@ def integer_value(field: FieldDescription, access: IntegerAccess) -> str:
 
 def integer_raw(field: FieldDescription, access: IntegerAccess) -> str:
     """Return the raw value of ``value`` in whole parts of the unit, a Result."""
+    # `whole` of the support module takes an i64.
     value = "value" if access.bits == 64 else "value.into()"
     return f"{scale_name(field)}.whole({value}, {integer(access.scale.factor)}, {integer(access.scale.offset)})"
 
@@ -125,7 +126,7 @@ def _quotient(steps: Steps, raw: str) -> str:
     p, c, q = steps.terms
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
-        # in this order a result of 0 is never -0.0
+        # In this order a result of 0 is never -0.0 (IEEE 754, 6.3).
         value = f"{whole_double(c)} - {value}"
     elif c:
         value = f"{value} {'+' if c > 0 else '-'} {whole_double(abs(c))}"
