@@ -353,10 +353,14 @@ def sources(work: Path) -> Iterator[Source]:
 def walked(work: Path, whole: bool) -> dict[str, set[str]]:
     """What came of the changes of each key, in any of the ICDs; nothing, where it does
     not stand or has but one value.
+
+    Not ``whole``: a key that is heeded in one of the ICDs is not changed in others.
     """
     found: dict[str, set[str]] = {str(key): set() for key in all_keys()}
     for source in sources(work):
         for key in all_keys():
+            if not whole and found[str(key)] - {NOTHING}:
+                continue
             for _, _, what in outcomes(source, key, whole):
                 found[str(key)].add(what)
     return found
