@@ -108,7 +108,8 @@ def symbols(
 ) -> set[str]:
     """What the linker sees of the program."""
     tools = Toolchain(toolchain)
-    library = Toolchain(toolchain).library(subject.crate, level)
+    # Machine code is made once, of all of it, at the end.
+    library = tools.library(subject.crate, level, "-C", "linker-plugin-lto")
     source = folder / "everything.rs"
     source.write_text(HEAD + "".join(everything(subject.icd)) + more)
     archive = tools.freestanding(source, library, folder / "libeverything.a", level)
