@@ -43,7 +43,16 @@ def long(tmp_path_factory) -> Package:
 
 
 @pytest.mark.parametrize("name", ["shipped", "odd", "ordered", "long"])
-def test_black_changes_nothing(name, request):
+def test_ruff_changes_nothing(name, request):
+    package = request.getfixturevalue(name)
+    check(package, "ruff", "format", "--no-cache", "--check", package.name)
+
+
+@pytest.mark.parametrize("name", ["odd", "long"])
+def test_nor_does_black(name, request):
+    """Asked of two packages, since it takes seconds: ruff and black differ in the lines
+    that they break, and here are lines of all lengths.
+    """
     check(request.getfixturevalue(name), "black", "--check", ".")
 
 

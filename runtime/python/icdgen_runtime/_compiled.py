@@ -132,9 +132,8 @@ class Codec:
         self._items: list[_Item] = []
         self._assign: list[str] = []
         self._prepare: list[str] = []
-        self._parts: dict[int, list[tuple[int, FieldInfo]]] = (
-            {}
-        )  # byte -> fields within it, from bit `shift` up
+        # byte -> fields within it, from bit `shift` up
+        self._parts: dict[int, list[tuple[int, FieldInfo]]] = {}
         self._terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
         self._floats: list[str] = []  # 32-bit floats that the struct converts
         self._holders: dict[str, str] = {}  # attribute of a struct -> its variable
@@ -277,9 +276,8 @@ class Codec:
         code = code.lower() if info.signed else code
         order = "<" if byte_order(info, self.message) == "little" else ">"
         words = struct.Struct(f"{order}{info.elements}{code}")
-        unpack, pack = self._named("unpack", words.unpack), self._named(
-            "pack", words.pack
-        )
+        unpack = self._named("unpack", words.unpack)
+        pack = self._named("pack", words.pack)
         self._items.append(_Item(byte, words.size, f"{words.size}s", local, local))
         values, given = f"{unpack}({local})", own
         if is_single:
@@ -368,9 +366,8 @@ class Codec:
         parts = sorted(self._parts.get(byte, ()), key=lambda part: part[0])
         if parts:
             table = _codec.bit_table(tuple((shift, info) for shift, info in parts))
-            rows, inverse = self._named("rows", table), self._named(
-                "bytes", _codec.Inverse(table)
-            )
+            rows = self._named("rows", table)
+            inverse = self._named("bytes", _codec.Inverse(table))
             names = ", ".join(self._attribute_of(info) for _, info in parts)
             targets = ", ".join(self._target(info) for _, info in parts)
             self._assign.append(f"{targets} = {rows}[{local}]")
