@@ -35,6 +35,7 @@ from icdgen.protocol.procedures import (
     Send,
 )
 from icdgen.protocol.sections import (
+    ChecksumAlgorithm,
     Crc,
     LogFile,
     LogMessage,
@@ -106,6 +107,7 @@ class _LinkBuilder:
     def link(self) -> Call:
         """Return the call of ``Link``."""
         facts, node = self.facts, self.facts.node
+        files = facts.checksums.get("crc16")
         parts: dict[str, object] = {
             "node": node.name,
             "order": "little" if facts.little else "big",
@@ -135,7 +137,7 @@ class _LinkBuilder:
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
             "checksum": self.checksum(),
-            "crc16": self.part(facts.crc16),
+            "crc16": self.part(files.crc if files else None),
             "mask": self.mask(),
             "log_file": self.part(facts.log_file),
             "log_message": self.part(facts.log_message),
@@ -225,7 +227,7 @@ class _LinkBuilder:
         """Return the call for the checksum of messages."""
         form = self.facts.checksum
         return (
-            self.part(form, crc=_call("CrcForm", **self.declared(form.crc)))
+            self.part(form, crc=_call("CrcForm", **self.declared(form.algorithm.crc)))
             if form
             else None
         )
@@ -329,8 +331,12 @@ def _packet(packet: PacketFormat) -> Call:
         "fields": tuple(map(_envelope_field, packet.fields)),
     }
     if packet.check:
-        check = {**_members(packet.check), "crc": _crc(packet.check.crc)}
-        parts["check"] = _row("CheckForm", *check.values())
+        check = _members(packet.check)
+        algorithm = packet.check.algorithm
+        del check["algorithm"]
+        parts["check"] = _row(
+            "CheckForm", algorithm.kind, _crc(algorithm.crc), *check.values()
+        )
     # A link with one packet format needs no name for it.
     if packet.name:
         parts |= {"name": packet.name, "directions": packet.directions}
@@ -511,6 +517,8 @@ def _step_row(step: object) -> Call:
             is_sent = isinstance(step, Send)
             name = "telecommand" if is_sent else "telemetry"
             member = member.telecommand_id if is_sent else member.telemetry_id
+        if isinstance(member, ChecksumAlgorithm):
+            name, member = "crc", member.crc
         if name not in _STEP_DEFAULTS or member != _STEP_DEFAULTS[name]:
             members[name] = _step_part(member)
     # A step with several fields has a line for each.

@@ -23,31 +23,11 @@ const icdgenEnvelopes = ((frames) => {
     return parts.length ? parts.reduce((id, field) => id + get(packet, field, frame, length) * 2 ** (field.id_shift ?? 0), 0) : undefined;
   }
 
-  /** A checksum of up to 32 bits. */
-  function sum({ kind, crc }, data) {
-    if (kind === "crc") return frames.crc(crc, data);
-    let found;
-    if (kind === "sum") {
-      found = data.reduce((value, byte) => value + byte, crc.init) % 2 ** crc.width;
-    } else if (kind === "xor") {
-      found = data.reduce((value, byte) => value ^ byte, crc.init);
-    } else {
-      const modulus = kind === "fletcher_255" ? 255 : 256;
-      let [first, second] = [crc.init & 0xff, crc.init >> 8];
-      for (const byte of data) {
-        first = (first + byte) % modulus;
-        second = (second + first) % modulus;
-      }
-      found = (second % modulus) * 256 + (first % modulus);
-    }
-    return (found ^ crc.xor_out) >>> 0;
-  }
-
   /** The checksum that a frame must have; `row` has the seed of its message. */
   function checksum(packet, row, frame) {
     const { from, trailer, seeded } = packet.check;
     const covered = [...frame.slice(from, frame.length - packet.trailer + trailer)];
-    return sum(packet.check, seeded && row ? [...covered, row[3]] : covered);
+    return frames.sum(packet.check, seeded && row ? [...covered, row[3]] : covered);
   }
 
   /** An id as people write it: `01 35` where packets have it as bytes, the most significant first, else `309`. */

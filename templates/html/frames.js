@@ -34,7 +34,7 @@ const icdgenFrames = (() => {
     return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0").toUpperCase()).join(" ");
   }
 
-  /** A checksum of up to 32 bits from its parameters. */
+  /** A CRC of up to 32 bits from its parameters. */
   function crc(facts, data) {
     if (data.length === 0 && facts.empty !== undefined) return facts.empty;
     const { width = 8, polynomial } = facts;
@@ -51,9 +51,30 @@ const icdgenFrames = (() => {
     return (value ^ facts.xor_out) >>> 0;
   }
 
+  /** A checksum of up to 32 bits. Without a kind, it is a CRC. */
+  function sum(facts, data) {
+    const { kind, width, init, xor_out } = facts;
+    if (kind === undefined) return crc(facts, data);
+    let found;
+    if (kind === "sum") {
+      found = data.reduce((value, byte) => value + byte, init) % 2 ** width;
+    } else if (kind === "xor") {
+      found = data.reduce((value, byte) => value ^ byte, init);
+    } else {
+      const modulus = kind === "fletcher_255" ? 255 : 256;
+      let [first, second] = [init & 0xff, init >> 8];
+      for (const byte of data) {
+        first = (first + byte) % modulus;
+        second = (second + first) % modulus;
+      }
+      found = (second % modulus) * 256 + (first % modulus);
+    }
+    return (found ^ xor_out) >>> 0;
+  }
+
   /** The bytes of a message's checksum, which covers the id too where the device says so. */
   function checksum(facts, id, data) {
-    const value = crc(facts, facts.covers_id ? [id, ...data] : data);
+    const value = sum(facts, facts.covers_id ? [id, ...data] : data);
     const bytes = Array.from({ length: facts.bytes }, (_, place) => Math.floor(value / 256 ** place) % 256);
     return facts.little ? bytes : bytes.reverse();
   }
@@ -80,6 +101,6 @@ const icdgenFrames = (() => {
     return hasLength && signs.every(([byte, mask, value]) => ((data[byte] ?? 0) & mask) === value);
   }
 
-  return { parseHex, hex, crc, checksum, check, framed, isLike };
+  return { parseHex, hex, sum, checksum, check, framed, isLike };
 })();
 if (typeof module !== "undefined") module.exports = icdgenFrames;

@@ -26,7 +26,7 @@
       return;
     }
     wrong.textContent = "";
-    shown.replaceChildren(...plan.map((crc) => row(crc.name, `0x${icdgenFrames.crc(crc, bytes).toString(16).toUpperCase().padStart(Math.ceil(crc.width / 4), "0")}`)));
+    shown.replaceChildren(...plan.map((facts) => row(facts.name, `0x${icdgenFrames.sum(facts, bytes).toString(16).toUpperCase().padStart(Math.ceil(facts.width / 4), "0")}`)));
   }
 
   box.addEventListener("input", show);

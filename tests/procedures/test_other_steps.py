@@ -99,7 +99,8 @@ def test_files_of_the_user_are_named_by_the_inputs_of_the_icd(tmp_path):
     (tmp_path / "file").write_bytes(b"123456789")
     device = Device(files=[f"9={tmp_path / 'file'}"])
     assert device.run("read", number=9, size=9).data == b"123456789"
-    assert device.files() == [(9, 9, 0)]  # no checksum: the ICD has no `crc16`
+    # The checksum of files is the one that a procedure verifies.
+    assert device.files() == [(9, 9, 0x29B1)]
 
 
 def test_a_copy_is_another_file():

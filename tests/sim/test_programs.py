@@ -55,7 +55,9 @@ def test_a_copied_program_is_the_one_that_was_uploaded(device):
     assert (device.frame(20, COPIED), device.frame(30, COPIED)) == (b"\x01", b"\x00")
     assert code(device, 40, READ, 1) == 0
     assert device.frame(40, INFORMATION)[:2] == b"\x01\x01"
-    checksum = links.crc(BOOT.crc16, b"a new program").to_bytes(2, "little")
+    checksum = links.crc(BOOT.checksums["crc16"].crc, b"a new program").to_bytes(
+        2, "little"
+    )
     assert device.frame(50, INFORMATION) == bytes([1, 0, 13, 0, 0, 0]) + checksum
 
 

@@ -238,7 +238,7 @@ def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
         "A packet ends where its length says.",
         ", from the length to the data",
         "Heartbeat 50",
-        "Polynomial 0x1021",
+        "without the leading term 0x1021",
     ):
         assert words in plain, words
     message = (tmp_path / "site" / "autopilot" / "heartbeat.html").read_text("utf-8")

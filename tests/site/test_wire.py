@@ -51,7 +51,7 @@ def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
     other = wire.Wire(plain, section, link_of(shipped, plain), speakers)
     uart = wire.buses(message, other, b"\x1f")[0]
     texts = [" ".join(chunk.text for chunk in line.chunks) for line in uart.lines]
-    form = covering[0].checksum.crc
+    form = covering[0].checksum.algorithm.crc
     check, of_data = links.crc(form, b"\x1f\x1f"), links.crc(form, b"\x1f")
     assert texts == ["1F 7F 1F 1F 1F 1F FF", f"1F 7F 1F 1F 1F {check:02X} 1F FF"]
     assert check != of_data

@@ -67,8 +67,9 @@ class Assumptions:
 
     def __init__(self, facts: Facts) -> None:
         self._sections = {id(part): section for section, part in facts.parts.items()}
-        if facts.checksum is not None:
-            self._sections[id(facts.checksum.crc)] = "crc8"
+        self._sections |= {
+            id(each.crc): each.section for each in facts.checksums.values()
+        }
         self._left = {
             (assumption.section, assumption.key): assumption.why
             for assumption in facts.assumptions

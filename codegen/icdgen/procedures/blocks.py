@@ -97,7 +97,7 @@ class BlockRun(Run):
                 data = data[: self.length_of(data)]
         else:
             data = self.device.objects.read(self.effect.kind, self.key) or b""
-        return self.device.checksum(step.crc, data)
+        return self.device.checksum(step.algorithm, data)
 
 
 class Reading(BlockRun):

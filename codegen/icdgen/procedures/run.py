@@ -14,6 +14,7 @@ from typing import TypeVar
 from icdgen_runtime.wire.crc import Crc as CrcOfBytes
 from icdgen_runtime.wire.link import CrcForm
 
+from icdgen.icd import checksum
 from icdgen.icd.model import Message
 from icdgen.procedures.effects import Key, Objects
 from icdgen.procedures.flow import until_next_send
@@ -31,7 +32,7 @@ from icdgen.protocol.procedures import (
     Value,
     Verify,
 )
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm
 
 AnyStep = TypeVar("AnyStep")
 Change = Callable[[bytes], bytes]
@@ -48,30 +49,33 @@ class Refused(Exception):
         self.place = place
 
 
-def checksum_of(form: Crc | None, data: bytes) -> int:
-    """Return a CRC, or 0 if the ICD has none."""
-    if form is None:
+def checksum_of(algorithm: ChecksumAlgorithm | None, data: bytes) -> int:
+    """Return a checksum; 0 without an algorithm."""
+    if algorithm is None:
         return 0
-    parameters = (getattr(form, name) for name in CrcForm._fields)
-    return CrcOfBytes(CrcForm(*parameters)).feed(data).result()
+    crc = algorithm.crc
+    if algorithm.kind == checksum.CRC:
+        parameters = (getattr(crc, name) for name in CrcForm._fields)
+        return CrcOfBytes(CrcForm(*parameters)).feed(data).result()
+    return checksum.plain(algorithm.kind, data, crc.width, crc.init, crc.xor_out)
 
 
 @dataclass
 class Device:
     """What all procedures of a device share.
 
-    ``busy``: duration of each slow step in milliseconds. ``crc``: of the checksum in
-    the description of an object. ``filler``: value of the bytes after the end of a
+    ``busy``: duration of each slow step in milliseconds. ``algorithm``: that of
+    the checksum in the description of an object. ``filler``: value of the bytes after the end of a
     block in its last packet; None: that of the ICD. ``fails``: whether each step fails
     that can report a failure.
     """
 
     objects: Objects
     busy: int = 20
-    crc: Crc | None = None
+    algorithm: ChecksumAlgorithm | None = None
     filler: int | None = None
     fails: bool = False
-    checksum: Callable[[Crc | None, bytes], int] = checksum_of
+    checksum: Callable[[ChecksumAlgorithm | None, bytes], int] = checksum_of
     telecommands: int = field(default=0, init=False)  # so far; they order the changes
 
 
@@ -194,7 +198,9 @@ class Run:
         numbers = dict(zip(self.names, key, strict=False)) | {
             "size": len(data),
             "time": stored.time if stored else 0,
-            "checksum": self.device.checksum(self.device.crc, data) if data else 0,
+            "checksum": (
+                self.device.checksum(self.device.algorithm, data) if data else 0
+            ),
         }
         for name, place in self.effect.fields:
             yield place, numbers.get(name, 0)

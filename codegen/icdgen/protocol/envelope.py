@@ -12,7 +12,7 @@ from typing import Literal
 from icdgen.frozen import dataclass
 from icdgen.icd import checksum
 from icdgen.protocol.exchange import Exchange
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm
 
 LENGTH, SLIP, COBS, HDLC, ESCAPE, DATAGRAM = DELIMITERS = (
     "length",
@@ -69,12 +69,9 @@ class EnvelopeField:
 class Check:
     """Checksum of a packet format: its algorithm, and the bytes that it covers in
     addition to the data.
-
-    Kinds other than a CRC use only ``init``, ``xor_out`` and ``width`` of `crc`.
     """
 
-    kind: str  # one of `CHECKS`
-    crc: Crc
+    algorithm: ChecksumAlgorithm
     covered_from: int  # first covered byte of the header
     covered_trailer: int  # number of covered bytes of the trailer
     is_seeded: bool  # whether the seed of the message is covered, as the last byte

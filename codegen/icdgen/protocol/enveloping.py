@@ -38,9 +38,10 @@ from icdgen.protocol.envelope import (
 )
 from icdgen.protocol.exchange import Exchange
 from icdgen.protocol.responding import Sources, exchange_of, request_exchange
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm
 
 Section = Mapping[str, Any]
+Checksums = Mapping[str, ChecksumAlgorithm]
 
 
 def bytes_of(bits: Iterable[tuple[int, int]]) -> int:
@@ -90,7 +91,7 @@ def rows_of(
     ids: Mapping[int, tuple[Variant, ...]],
     direction: str,
     packets: Packets,
-    checksums: Section,
+    checksums: Checksums,
     exchanges: Mapping[str, Exchange],
     requested: Container[int] = (),
 ) -> tuple[StreamRow, ...]:
@@ -110,13 +111,14 @@ def rows_of(
         )
         is_blank = not first.layout.shortest or not raw_fields_in(first.layout)
         packet, *_ = packets.of(first.name, direction)
+        algorithm = algorithm_of(packet, checksums)
         rows.append(
             StreamRow(
                 id,
                 min(message.layout.shortest for message in messages),
                 max(message.length for message in messages),
                 bool(first.may_end_early),
-                declaration_of(packet, checksums).get("seeds", {}).get(first.name, 0),
+                algorithm.seeds.get(first.name, 0) if algorithm else 0,
                 name,
                 exchange,
                 all(message.repeat for message in messages),
@@ -139,44 +141,34 @@ def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
     return matches[-1 if last else 0] if matches else None
 
 
-def declaration_of(packet: Packet, checksums: Section) -> Section:
-    """Return the declaration of the checksum of a packet; empty without one."""
+def algorithm_of(packet: Packet, checksums: Checksums) -> ChecksumAlgorithm | None:
+    """Return the algorithm of the checksum of a packet; None without one."""
     row = place_of(packet.rows, "checksum")
-    declaration: Section = checksums[row["checksum"]] if row else {}
-    return declaration
+    return checksums[row["checksum"]] if row else None
 
 
-def check_of(packet: Packet, checksums: Section) -> Check | None:
+def check_of(packet: Packet, checksums: Checksums) -> Check | None:
     """Return the checksum of a packet; None without one."""
     field = place_of(packet.rows, "checksum")
     if field is None:
         return None
-    declaration, covers = checksums[field["checksum"]], field["covers"]
-    kind = declaration["kind"]
-    width, polynomial, init, xor_out = (
-        declaration.get(key, 0) for key in ("width", "polynomial", "init", "xor_out")
-    )
-    reflected = declaration.get("reflect_in", False), declaration.get(
-        "reflect_out", False
-    )
-    crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
+    algorithm, covers = checksums[field["checksum"]], field["covers"]
     first = _covered(packet.header, covers["from"], False)
     last = _covered(packet.trailer, covers["to"], True)
     return Check(
-        kind,
-        crc,
+        algorithm,
         (
             first["at"] // 8
             if first
             else bytes_of((row["at"], row["bits"]) for row in packet.header)
         ),
         bytes_of([(last["at"], last["bits"])]) if last else 0,
-        bool(declaration.get("seeds")),
+        bool(algorithm.seeds),
     )
 
 
 def packet_of(
-    node: Node, packets: Packets, packet: Packet, checksums: Section
+    node: Node, packets: Packets, packet: Packet, checksums: Checksums
 ) -> PacketFormat:
     """Return a packet format."""
     sizes = [
@@ -225,18 +217,19 @@ def escaping_of(framing: Section) -> Escaping | None:
 def stream_of(
     node: Node,
     section: Section,
+    checksums: Checksums,
     ids: Ids,
     enums: Mapping[str, Enum],
 ) -> Stream:
     """Return the packet formats and messages of a `link` section.
 
-    ``enums``: enumerations of the node, by name.
+    ``checksums`` and ``enums``: those of the node, by name.
     """
     sent, received = (
         [variant.message for variants in of_id.values() for variant in variants]
         for of_id in (ids.telecommand, ids.telemetry)
     )
-    packets, checksums = declared_packets(section, sent), section.get("checksums", {})
+    packets = declared_packets(section, sent)
     telemetry = {
         message.name: (message.telemetry_id, message)
         for message in received

@@ -14,13 +14,13 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.bus_exchanges import BusExchanges, bus_exchanges
 from icdgen.protocol.envelope import Stream
-from icdgen.protocol.procedures import Procedure
+from icdgen.protocol.procedures import Procedure, VerifyChecksum
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
     Acknowledge,
     Can,
     Checksum,
-    Crc,
+    ChecksumAlgorithm,
     Direction,
     Framing,
     Index,
@@ -57,8 +57,8 @@ class Facts:
     i2c_repeated_start: bool  # otherwise a read is a separate transaction
     can: Can | None
     errors: dict[str, int]  # none, unknown_id, length, parameter, checksum
-    checksum: Checksum | None
-    crc16: Crc | None
+    checksums: dict[str, ChecksumAlgorithm]  # all, in the order of the ICD
+    checksum: Checksum | None  # of messages on UART, I2C and CAN
     mask: LogMask | None
     log_file: LogFile | None
     log_message: LogMessage | None
@@ -73,6 +73,19 @@ class Facts:
     # UART: telemetry that the node sends unasked, by the id that heads it
     unsolicited: dict[int, int]
     assumptions: tuple[Assumption, ...]
+
+    @property
+    def checksum_of_files(self) -> ChecksumAlgorithm | None:
+        """Checksum of files: the first that the procedures verify; None without one."""
+        return next(
+            (
+                step.algorithm
+                for procedure in self.procedures
+                for step in procedure.steps
+                if isinstance(step, VerifyChecksum)
+            ),
+            None,
+        )
 
     @property
     def bus_exchanges(self) -> dict[str, BusExchanges]:
@@ -93,7 +106,7 @@ class Facts:
         parts = {
             "link.client": self.client, "link.buses.uart.framing": self.framing,
             "link.buses.uart.acknowledge": self.acknowledge, "link.buses.can": self.can,
-            "link.buses.can.extended": self.can and self.can.extended, "crc8": self.checksum, "crc16": self.crc16,
+            "link.buses.can.extended": self.can and self.can.extended, "crc8": self.checksum,
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
             "index_file": self.index,
         }  # fmt: skip
@@ -191,8 +204,8 @@ def of(icd: Icd, node: Node) -> Facts:
             for key, code in reader.section("link", "reasons").items()
             if isinstance(code, int)
         },
+        checksums=reader.checksums,
         checksum=reader.checksum(),
-        crc16=reader.part("crc16", Crc),
         mask=reader.mask(),
         log_file=reader.log_file(),
         log_message=reader.log_message(),

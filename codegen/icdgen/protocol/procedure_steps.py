@@ -60,7 +60,7 @@ from icdgen.protocol.procedures import (
     VerifyChecksum,
 )
 from icdgen.protocol.responding import place_of
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm
 
 _LATER = -1  # `to` of a step until the step is known at which it continues
 
@@ -82,7 +82,7 @@ class ProcedureReader:
         nodes: Mapping[str, Node],
         messages: Mapping[str, Message],
         enums: Mapping[str, Enum],
-        checksums: Mapping[str, Crc],
+        checksums: Mapping[str, ChecksumAlgorithm],
     ) -> None:
         self._section, self._nodes, self._messages = section, nodes, messages
         self._inputs: Section = section.get("inputs", {})
@@ -383,7 +383,7 @@ class ProcedureReader:
         if "field" in verify:
             return Verify(Test(self._value(verify["field"]).number, value), again)
         return VerifyChecksum(
-            crc=self._checksums[verify["checksum"]],
+            algorithm=self._checksums[verify["checksum"]],
             of_block=verify["of"] == BLOCK,
             covers_fill=verify.get("covers_fill", False),
             value=value,

@@ -21,7 +21,7 @@ from icdgen.icd.enumeration import Enum
 from icdgen.icd.model import Message
 from icdgen.icd.procedures import FIXED_NAMES
 from icdgen.protocol.exchange import NumberPlace
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm
 
 # Registers with a fixed meaning. `BLOCK_IS_EMPTY` is 1 until a packet of the block has
 # been received.
@@ -179,7 +179,7 @@ class VerifyChecksum:
     If it differs, transfer the block again (``again``), or end with ``checksum``.
     """
 
-    crc: Crc
+    algorithm: ChecksumAlgorithm
     of_block: bool
     covers_fill: bool  # whether it covers the fill of the last packet
     value: Value

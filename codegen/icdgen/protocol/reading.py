@@ -11,8 +11,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import ceil
 from typing import Any, NamedTuple, TypeVar
 
+from icdgen.icd.checksum import CRC
 from icdgen.icd.model import Icd, Message, Node, framed_link
 from icdgen.icd.variants import ids_of
+from icdgen.once import cached_property
 from icdgen.protocol.declared import read
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.enveloping import stream_of
@@ -24,6 +26,7 @@ from icdgen.protocol.sections import (
     Can,
     CanPart,
     Checksum,
+    ChecksumAlgorithm,
     Crc,
     Direction,
     Extended,
@@ -168,24 +171,36 @@ class Reader:
             extended=self.part("link.buses.can.extended", Extended),
         )
 
+    @cached_property
+    def checksums(self) -> dict[str, ChecksumAlgorithm]:
+        """Checksums of the node by name, in the order of the ICD."""
+        declared = {name: name for name in ("crc8", "crc16") if self.section(name)}
+        for name in self.section("link", "checksums"):
+            declared[name] = f"link.checksums.{name}"
+        return {
+            name: algorithm_of(name, path, self.section(*path.split(".")))
+            for name, path in declared.items()
+        }
+
     def checksum(self) -> Checksum | None:
-        given = self.section("crc8")
-        crc = self.part("crc8", Crc)
-        if crc is None:
+        algorithm = self.checksums.get("crc8")
+        if algorithm is None:
             return None
+        given = self.section("crc8")
         telecommand, telemetry = given.get("telecommand", {}), given.get(
             "telemetry", {}
         )
         return self.part(
             "crc8",
             Checksum,
-            crc=crc,
+            algorithm=algorithm,
             telecommand_buses=_buses(telecommand, False),
             telemetry_buses=_buses(telemetry, False),
             telecommand_always=_buses(telecommand, True),
             telemetry_always=_buses(telemetry, True),
             bytes=telecommand.get(
-                "extra_bytes", telemetry.get("extra_bytes", ceil(crc.width / 8))
+                "extra_bytes",
+                telemetry.get("extra_bytes", ceil(algorithm.crc.width / 8)),
             ),
         )
 
@@ -196,6 +211,7 @@ class Reader:
         return stream_of(
             self.node,
             section,
+            self.checksums,
             ids_of(self.icd, self.node),
             {
                 enum.name: enum
@@ -262,14 +278,10 @@ class Reader:
         owners = (*self.icd.included(self.node), self.node)
         nodes = {node.name: node for node in owners}
         enums = {enum.name: enum for node in owners for enum in node.enums}
-        names = [f"link.checksums.{name}" for name in self.section("link", "checksums")]
-        checksums = {
-            path.removeprefix("link.checksums."): crc
-            for path in ("crc8", "crc16", *names)
-            if (crc := self.part(path, Crc))
-        }
         for name, section in self.icd.procedures_of(self.node).items():
-            reader = ProcedureReader(section, nodes, self.messages, enums, checksums)
+            reader = ProcedureReader(
+                section, nodes, self.messages, enums, self.checksums
+            )
             yield reader.read(name)
 
     def unsolicited(self) -> dict[int, int]:
@@ -293,6 +305,17 @@ class Reader:
                 yield Assumption(
                     f"message {message.name}", key, declared_value(message, key), why
                 )
+
+
+def algorithm_of(
+    name: str, path: str, declaration: Mapping[str, Any]
+) -> ChecksumAlgorithm:
+    """Return the algorithm of the checksum that a section declares."""
+    # Kinds other than a CRC have only some of the parameters.
+    given: dict[str, Any] = {"polynomial": 0, "init": 0, "xor_out": 0}
+    given |= {"reflect_in": False, "reflect_out": False, **declaration}
+    kind, seeds = given.get("kind", CRC), given.get("seeds", {})
+    return ChecksumAlgorithm(name, path, kind, read(Crc, given), seeds)
 
 
 def _buses(use: Mapping[str, Any], is_mandatory: bool) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ milliseconds, sizes bytes.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 
 from icdgen.frozen import dataclass
@@ -129,11 +130,26 @@ class CheckValue:
     )
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class ChecksumAlgorithm:
+    """Algorithm of a checksum.
+
+    Kinds other than a CRC use only ``init``, ``xor_out`` and ``width`` of `crc`.
+    """
+
+    name: str  # by which the ICD declares it
+    section: str  # in which the ICD declares it
+    kind: str  # one of `icdgen.icd.checksum.KINDS`
+    crc: Crc
+    # By message: a byte that the checksum of a packet covers after all others
+    seeds: Mapping[str, int]
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Checksum:
-    """Checksum of telecommands and telemetry frames."""
+    """Checksum of telecommands and telemetry frames on UART, I2C and CAN."""
 
-    crc: Crc
+    algorithm: ChecksumAlgorithm
     covers_id: bool = flag(
         "covers_id", "whether the checksum covers the id byte", False
     )

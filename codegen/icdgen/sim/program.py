@@ -49,11 +49,11 @@ class Program:
         self.link = link_of(icd, self.facts)
         self.values = Values(icd, node)
         procedures = [(each, effect_of(each)) for each in self.facts.procedures]
-        self.counterpart = Counterpart(
-            procedures, Device(storage, settings.busy_ms, self.facts.crc16)
-        )
+        checksum = self.facts.checksum_of_files
+        device = Device(storage, settings.busy_ms, checksum)
+        self.counterpart = Counterpart(procedures, device)
         kinds = (effect.kind for _, effect in procedures if effect.verb == "read")
-        storage.provide_index(self.link, next(kinds, None))
+        storage.provide_index(self.link, next(kinds, None), checksum)
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
         # Id, processed, code and parameter of the last telecommand.

@@ -298,17 +298,21 @@ class _Tables(TableSet):
         checksum = self.facts_of_link.checksum
         return (
             self.part(
-                "checksum", checksum, Row(f"{_CRC}{{{self.crc('crc8', checksum.crc)}}}")
+                "checksum",
+                checksum,
+                Row(f"{_CRC}{{{self.crc('crc8', checksum.algorithm.crc)}}}"),
             )
             if checksum
             else "NULL"
         )
 
     def crc16(self) -> str:
-        crc = self.facts_of_link.crc16
+        files = self.facts_of_link.checksums.get("crc16")
         return (
-            self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', crc)}")])
-            if crc
+            self.add(
+                "crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', files.crc)}")]
+            )
+            if files
             else "NULL"
         )
 
@@ -383,9 +387,9 @@ class _Tables(TableSet):
         )
         check = "NULL"
         if packet.check:
-            name = f"check{suffix}"
-            crc = self.crc(name, packet.check.crc, packet.check.kind == CRC)
-            row = Row(f"ICD_CHECK_{packet.check.kind.upper()}, {{{crc}}}")
+            name, algorithm = f"check{suffix}", packet.check.algorithm
+            crc = self.crc(name, algorithm.crc, algorithm.kind == CRC)
+            row = Row(f"ICD_CHECK_{algorithm.kind.upper()}, {{{crc}}}")
             covered = f"{packet.check.covered_from}u, {packet.check.covered_trailer}u, {boolean(packet.check.is_seeded)}"
             check = self.add(name, "icd_check_form_t", [row, Row(covered, "covered")])
         sizes = (

@@ -377,12 +377,12 @@ class _Tables(TableSet):
         )
 
     def checksum(self, step: VerifyChecksum) -> str:
-        crc, shared = "NULL", self.facts_of_link.crc16
+        crc, parameters = "NULL", step.algorithm.crc
         # NULL stands for the CRC of the link.
-        if shared is None or self.values("", step.crc) != self.values("", shared):
+        if step.algorithm is not self.facts_of_link.checksums.get("crc16"):
             number = len(self._rows["checksums"])
-            row = Row(self.crc(f"crc_{number}", step.crc))
-            crc = self.add(f"crc_{number}", TYPES[type(step.crc)], [row])
+            row = Row(self.crc(f"crc_{number}", parameters))
+            crc = self.add(f"crc_{number}", TYPES[type(parameters)], [row])
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
         return f"{{{crc}, {flags}, {value(step.value)}}}"
 

@@ -17,6 +17,8 @@ from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
 
 _IN_HEXADECIMAL = ("address_7bit", "check", "printed_constant")
+# Keys in the tables of the checksums
+_OF_CHECKSUMS = ("kind", "check", *(fact.key for fact in facts_of(Crc)))
 # Not shown as facts: the place in the manual, reasons (in a table of their own), prose.
 _NOT_SHOWN = ("source", "assumptions", "summary")
 
@@ -52,8 +54,6 @@ def facts_of_code(facts: Facts) -> list[Part]:
     }
     parts = []
     for path, thing in facts.parts.items():
-        if isinstance(thing, Crc):
-            continue  # CRC parameters have their own tables
         rows = []
         for fact in facts_of(thing):
             value = getattr(thing, fact.name)
@@ -87,13 +87,17 @@ def with_others(
         for path, thing in facts.parts.items()
         for fact in facts_of(thing)
     }
-    # The page has a table of its own for each CRC.
+    # The page has a table of its own for each checksum.
     read |= {
-        f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)
+        f"{algorithm.section}.{key}"
+        for algorithm in facts.checksums.values()
+        for key in _OF_CHECKSUMS
     }
+    seeds = tuple(f"{each.section}.seeds." for each in facts.checksums.values())
     parts_by_anchor = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
     for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):
-        if ".".join((*path, key)) in read:
+        place = ".".join((*path, key))
+        if place in read or place.startswith(seeds):
             continue
         # A list of mappings becomes a row for each entry.
         if isinstance(value, list) and value and isinstance(value[0], Mapping):

@@ -15,7 +15,7 @@ from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 from icdgen.describe.ids import pair_bytes
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message
-from icdgen.icd.packets import Packet, declared_packets, id_shifts
+from icdgen.icd.packets import Packet, id_shifts
 from icdgen.protocol.envelope import (
     COBS,
     CRC,
@@ -34,8 +34,7 @@ from icdgen.protocol.envelope import (
     Stream,
 )
 from icdgen.protocol.exchange import NumberPlace, Response
-from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm
 from icdgen.wording import count
 
 Section = Mapping[str, Any]
@@ -77,12 +76,6 @@ _ROLES = {
 }
 # Attributes of a field that the decoder in JavaScript reads.
 _FIELD_KEYS = ("role", "in_trailer", "at", "size", "shift", "bits", "little", "values")
-_KINDS = {
-    "fletcher": "Fletcher's, sums modulo 256",
-    "fletcher_255": "Fletcher's, sums modulo 255",
-    "sum": "sum of the bytes",
-    "xor": "exclusive or of the bytes",
-}
 
 
 class Place(NamedTuple):
@@ -94,14 +87,6 @@ class Place(NamedTuple):
     holds: str
     url: str = ""  # of the enumeration of its values
     name: str = ""
-
-
-class Sum(NamedTuple):
-    """Checksum with its parameters; for a CRC, also the parameters of the calculator."""
-
-    name: str
-    rows: list[tuple[str, str]]
-    crc: Crc | None
 
 
 def script_facts(
@@ -188,7 +173,7 @@ def _check(check: Check) -> dict[str, object]:
         "trailer": check.covered_trailer,
         "seeded": check.is_seeded,
     }
-    return {"kind": check.kind, "crc": crc_numbers(check.crc), **places}
+    return {**checksum_facts(check.algorithm), **places}
 
 
 def _responses(form: Stream) -> Iterator[dict[str, object]]:
@@ -227,9 +212,12 @@ def _place(place: NumberPlace) -> list[object]:
     return [place.at, place.size, place.shift, place.bits, place.little]
 
 
-def crc_numbers(crc: Crc) -> dict[str, object]:
-    """Return the defined parameters of a checksum."""
-    return {key: value for key, value in asdict(crc).items() if value is not None}
+def checksum_facts(algorithm: ChecksumAlgorithm) -> dict[str, object]:
+    """Return kind and parameters for scripts. A CRC has no kind there."""
+    numbers = {
+        k: value for k, value in asdict(algorithm.crc).items() if value is not None
+    }
+    return numbers if algorithm.kind == CRC else {"kind": algorithm.kind, **numbers}
 
 
 def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str]]:
@@ -327,57 +315,6 @@ def _number(value: int | list[int]) -> str:
         if isinstance(value, list)
         else f"{value} (0x{value:X})"
     )
-
-
-def sums(section: Section, node_facts: Facts) -> list[Sum]:
-    """Return the named checksums."""
-    checksums = []
-    checks = _checks(section, node_facts)
-    for name, declaration in section.get("link", {}).get("checksums", {}).items():
-        form = checks.get(name)
-        kind = declaration["kind"]
-        rows = [
-            (
-                "Kind",
-                (
-                    f"CRC of {declaration['width']} bits"
-                    if kind == CRC
-                    else f"{_KINDS[kind]}, {declaration['width']} bits"
-                ),
-            )
-        ]
-        rows += [
-            (key.replace("_", " ").capitalize(), _value(declaration[key]))
-            for key in _PARAMETERS
-            if key in declaration
-        ]
-        if declaration.get("seeds"):
-            seeds = ", ".join(
-                f"{message} {seed}" for message, seed in declaration["seeds"].items()
-            )
-            rows.append(("A byte after all others, by message", seeds))
-        checksums.append(Sum(name, rows, form.crc if form and kind == CRC else None))
-    return checksums
-
-
-def _checks(section: Section, node_facts: Facts) -> dict[str, Check]:
-    """Return the checksums of the packets by name."""
-    if node_facts.stream is None:
-        return {}
-    declared = declared_packets(section["link"]).all
-    return {
-        row["checksum"]: form.check
-        for packet, form in zip(declared, node_facts.stream.packets, strict=True)
-        for row in packet.of("checksum")
-        if form.check
-    }
-
-
-_PARAMETERS = ("polynomial", "init", "reflect_in", "reflect_out", "xor_out")
-
-
-def _value(value: object) -> str:
-    return ("yes" if value else "no") if isinstance(value, bool) else f"0x{value:X}"
 
 
 def _covered(covers: Mapping[str, str]) -> str:

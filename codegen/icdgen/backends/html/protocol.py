@@ -9,21 +9,21 @@ from typing import Any, NamedTuple
 
 from icdgen.backends.html import (
     all_facts,
+    checksums,
     envelopes,
     packets,
     responses,
     sequences,
     texts,
 )
-from icdgen.backends.html.all_facts import Row, as_text, value_text
+from icdgen.backends.html.all_facts import Row, as_text
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.error_codes import error_enum
 from icdgen.icd.model import Node, buses_of
 from icdgen.protocol import facts
-from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import LENGTH
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import CanPart, Crc
+from icdgen.protocol.sections import CanPart
 
 _WIDTH = 720
 
@@ -49,11 +49,7 @@ def has_page(relations: Relations, node: Node) -> bool:
 def values(relations: Relations, node: Node) -> dict[str, object]:
     """Return the values of the page."""
     node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
-    checks, sums = _checks(node_facts, section), envelopes.sums(section, node_facts)
     parts = all_facts.facts_of_code(node_facts)
-    computed = [(name, crc) for name, crc, _ in checks] + [
-        (checksum.name, checksum.crc) for checksum in sums if checksum.crc
-    ]
     return {
         "node": node,
         "framed": _framed(relations, node, node_facts),
@@ -62,22 +58,12 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
         "escaped_as": node_facts.framing
         and f"{node_facts.framing.escape:02X} {node_facts.framing.escaped:02X}",
-        "checks": [
-            *(
-                (name, _crc_rows(crc), f"0x{check:X}" if check is not None else "")
-                for name, crc, check in checks
-            ),
-            *(
-                (checksum.name, [Row(*row) for row in checksum.rows], "")
-                for checksum in sums
-            ),
-        ],
-        "calculator": (
-            texts.script_json(
-                [{"name": name, **envelopes.crc_numbers(crc)} for name, crc in computed]
-            )
-            if computed
-            else ""
+        "checks": checksums.of_node(node_facts, section),
+        "calculator": texts.script_json(
+            [
+                {"name": each.name, **envelopes.checksum_facts(each)}
+                for each in node_facts.checksums.values()
+            ]
         ),
         "identifier": _identifier(node_facts, section),
         "types": [
@@ -208,28 +194,6 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
     ])  # fmt: skip
 
 
-def _checks(
-    node_facts: Facts, section: dict[str, Any]
-) -> list[tuple[str, Crc, int | None]]:
-    candidates = (
-        ("crc8", node_facts.checksum and node_facts.checksum.crc),
-        ("crc16", node_facts.crc16),
-    )
-    return [
-        (f"CRC-{crc.width}", crc, section[key].get("check"))
-        for key, crc in candidates
-        if crc
-    ]
-
-
-def _crc_rows(crc: Crc) -> list[Row]:
-    return [
-        Row(texts.capitalized(fact.about), value_text(fact, getattr(crc, fact.name)))
-        for fact in facts_of(Crc)
-        if getattr(crc, fact.name) is not None
-    ]
-
-
 def errors(
     relations: Relations, node: Node, node_facts: Facts, section: dict[str, Any]
 ) -> list[tuple[int, str, str, str]]:
@@ -260,10 +224,6 @@ def entries(
         yield f"line bus serial interface {words}", f"{title} settings", Place(
             node.title, f"{url}#lines"
         )
-    checks = [
-        *(name for name, _, _ in _checks(node_facts, section)),
-        *(checksum.name for checksum in envelopes.sums(section, node_facts)),
-    ]
     crc = "crc checksum polynomial init reflect calculator"
     sections = [
         (
@@ -291,11 +251,11 @@ def entries(
         *(
             (
                 True,
-                f"{crc} {checksum.replace('-', '').lower()}",
+                f"{crc} {checksum.lower()}",
                 f"{checksum} parameters and calculator",
                 "checksums",
             )
-            for checksum in checks
+            for checksum in node_facts.checksums
         ),
         (
             node_facts.can,

@@ -149,7 +149,7 @@ def crc_facts(facts: Facts) -> dict[str, object]:
     """
     form = facts.checksum
     assert form is not None
-    crc_data = envelopes.crc_numbers(form.crc) | {"bytes": form.bytes}
+    crc_data = envelopes.checksum_facts(form.algorithm) | {"bytes": form.bytes}
     flags = {"covers_id": form.covers_id, "little": facts.little and form.bytes > 1}
     return crc_data | {key: True for key, value in flags.items() if value}
 
@@ -184,10 +184,10 @@ def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
 def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
     form = speaker.facts.checksum
     assert form is not None
-    optional = speaker.section["crc8"][direction].get("optional")
-    return Chunk(
-        "crc", _hex(sent), f"CRC-{form.crc.width}" + (", optional" if optional else "")
-    )
+    is_sent = direction == "telecommand"
+    always = form.telecommand_always if is_sent else form.telemetry_always
+    text = form.algorithm.name + ("" if always else ", optional")
+    return Chunk("crc", _hex(sent), text)
 
 
 def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:

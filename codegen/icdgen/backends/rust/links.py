@@ -88,6 +88,7 @@ class _Literal:
 
     def link(self) -> Brackets:
         facts, link = self.facts, self.description
+        files = facts.checksums.get("crc16")
         codes = (
             f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})"
             for key, code in link.error_codes
@@ -119,7 +120,7 @@ class _Literal:
             part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),
             part("can", some(self.can())),
             part("checksum", some(self.checksum())),
-            part("crc16", some(self.struct(facts.crc16))),
+            part("crc16", some(self.struct(files.crc if files else None))),
             part("mask", some(self.mask())),
             part("log_file", some(self.struct(facts.log_file))),
             part(
@@ -172,7 +173,7 @@ class _Literal:
     def checksum(self) -> Brackets | None:
         form = self.facts.checksum
         return (
-            self.struct(form, part("crc", self.struct(form.crc) or ""))
+            self.struct(form, part("crc", self.struct(form.algorithm.crc) or ""))
             if form
             else None
         )

@@ -510,7 +510,11 @@ def _(step: model.Receive) -> Brackets:
 def _(step: model.VerifyChecksum) -> Brackets:
     return _of(
         "Step::VerifyChecksum",
-        **{**members(step), "crc": _crc(step.crc), "value": _value(step.value)},
+        crc=_crc(step.algorithm.crc),
+        of_block=step.of_block,
+        covers_fill=step.covers_fill,
+        value=_value(step.value),
+        again=step.again,
     )
 
 

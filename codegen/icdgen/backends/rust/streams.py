@@ -120,7 +120,7 @@ def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
 def crc_tables(form: Stream | None) -> dict[Brackets, str]:
     """Return the name of the lookup table of each CRC of the packets."""
     checks = [packet.check for packet in (form.packets if form else ())]
-    crcs = [_crc(check) for check in checks if check and check.kind == CRC]
+    crcs = [_crc(check) for check in checks if check and check.algorithm.kind == CRC]
     return {
         crc: f"TABLE_{number}" if number > 1 else "TABLE"
         for number, crc in enumerate(dict.fromkeys(crcs), 1)
@@ -131,9 +131,9 @@ def _check(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
     crc = _crc(check)
     return struct(
         "CheckForm",
-        part("kind", f"link::CheckKind::{variant(check.kind)}"),
+        part("kind", f"link::CheckKind::{variant(check.algorithm.kind)}"),
         part("crc", crc),
-        part("table", some(f"&{tables[crc]}" if check.kind == CRC else None)),
+        part("table", some(f"&{tables[crc]}" if check.algorithm.kind == CRC else None)),
         part("covered_from", spelled(check.covered_from)),
         part("covered_trailer", spelled(check.covered_trailer)),
         part("is_seeded", spelled(check.is_seeded)),
@@ -141,11 +141,10 @@ def _check(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
 
 
 def _crc(check: Check) -> Brackets:
+    crc = check.algorithm.crc
     return flat(
         "CrcForm",
-        **{
-            member_name(fact): value_of(fact, check.crc) for fact in facts_of(check.crc)
-        },
+        **{member_name(fact): value_of(fact, crc) for fact in facts_of(crc)},
     )
 
 

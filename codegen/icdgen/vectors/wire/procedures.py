@@ -28,7 +28,7 @@ from icdgen.protocol.procedures import (
     Verify,
     VerifyChecksum,
 )
-from icdgen.protocol.sections import UART, Crc
+from icdgen.protocol.sections import UART, ChecksumAlgorithm
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.runtime_objects.procedures import LONGEST
 from icdgen.vectors.wire import Requests, Row
@@ -479,7 +479,7 @@ def _spoil_checksums(device: RecordedDevice, times: int) -> None:
     """Let the checksums in the first frames that have one be wrong."""
     checksum, wrong = device.device.checksum, set[int]()
 
-    def spoilt(form: Crc | None, data: bytes) -> int:
+    def spoilt(form: ChecksumAlgorithm | None, data: bytes) -> int:
         if len(wrong) < times:
             wrong.add(device.requests)
         return checksum(form, data) ^ (device.requests in wrong)

@@ -55,7 +55,7 @@ class RecordedDevice:
         self.loss = self.packet_loss = loss
         self.requests = 0  # of telemetry
         # The fill is not that of the ICD, because no client may rely on it.
-        self.device = Device(Objects(), BUSY, facts.crc16, filler=0xEE)
+        self.device = Device(Objects(), BUSY, facts.checksum_of_files, filler=0xEE)
         # An object is all that its procedure reads or writes, and has no other effect.
         procedures = [(each, default_effect(each)) for each in facts.procedures]
         self.counterpart = Counterpart(procedures, self.device)

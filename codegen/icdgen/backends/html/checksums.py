@@ -1,0 +1,54 @@
+"""Checksums of a node on the page of its protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from icdgen.backends.html.all_facts import Row, value_text
+from icdgen.backends.html.texts import capitalized
+from icdgen.icd.checksum import CRC, FLETCHER, FLETCHER_255, SUM, XOR
+from icdgen.protocol.declared import facts_of
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import ChecksumAlgorithm, Crc
+
+_KINDS = {
+    FLETCHER: "Fletcher's, sums modulo 256",
+    FLETCHER_255: "Fletcher's, sums modulo 255",
+    SUM: "sum of the bytes",
+    XOR: "exclusive or of the bytes",
+}
+_OF_ALL_KINDS = ("width", "init", "xor_out")
+
+
+class Sum(NamedTuple):
+    """Checksum with its parameters, and its value of the characters 123456789."""
+
+    name: str
+    rows: list[Row]
+    check: str
+
+
+def of_node(node_facts: Facts, section: Mapping[str, Any]) -> list[Sum]:
+    """Return the checksums of a node in the order of the ICD."""
+    sums = []
+    for algorithm in node_facts.checksums.values():
+        declaration: Mapping[str, Any] = section
+        for key in algorithm.section.split("."):
+            declaration = declaration[key]
+        check = declaration.get("check")
+        shown = "" if check is None else f"0x{check:X}"
+        sums.append(Sum(algorithm.name, [*_rows(algorithm)], shown))
+    return sums
+
+
+def _rows(algorithm: ChecksumAlgorithm) -> Iterator[Row]:
+    yield Row("Kind", _KINDS.get(algorithm.kind, f"CRC-{algorithm.crc.width}"))
+    for fact in facts_of(Crc):
+        value = getattr(algorithm.crc, fact.name)
+        has_fact = algorithm.kind == CRC or fact.name in _OF_ALL_KINDS
+        if has_fact and value is not None:
+            yield Row(capitalized(fact.about), value_text(fact, value))
+    if algorithm.seeds:
+        seeds = (f"{message} {seed}" for message, seed in algorithm.seeds.items())
+        yield Row("A byte after all others, by message", ", ".join(seeds))
