@@ -19,6 +19,7 @@ class Listing(Run):
     def prepare(self) -> None:
         self._position = 0
         collect = index_of(self.procedure.steps, Collect) or 0
+        # The loop of the list is the jump back over `collect`.
         self._loop = next(
             range(step.to, index)
             for index, step in enumerate(self.procedure.steps)
@@ -34,6 +35,8 @@ class Listing(Run):
         if is_busy:
             return bytearray(len(data))
         if self.entries is not None:
+            # Behind the last entry all bytes are 0, which ends the list
+            # (`end_if_zeros`).
             entries = self.entries[self._position : self._position + 1]
             return bytearray(entries[0] if entries else bytes(len(data)))
         frame, keys = bytearray(len(data)), list(
@@ -49,6 +52,8 @@ class Action(Run):
     """The device does something with an object, or describes it."""
 
     def prepare(self) -> None:
+        # The telecommand that names the object does something with it; without a key,
+        # the first telecommand.
         naming = [i for i in self.sends if self.given(i) & set(self.effect.key)]
         self._step = next(iter(naming or self.sends), None)
         requests = [s for s in self.procedure.steps if isinstance(s, (Get, Poll))]

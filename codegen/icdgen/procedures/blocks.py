@@ -48,9 +48,11 @@ class BlockRun(Run):
         assert procedure.blocks
         self.blocks: Blocks = procedure.blocks
         self.map = empty_map(self.blocks.map) if self.blocks.map else bytearray()
+        # The jump back to `NextBlock` ends the steps of a block.
         end = procedure.steps.index(Jump(self.blocks.begin - 1))
         self.inside = [i for i in self.sends if self.blocks.begin <= i < end]
-        self.starts = {  # telecommands after which the packets come
+        # Telecommands after which the packets come.
+        self.starts = {
             i
             for i in self.inside
             if not sends_packets(procedure, i) and leads_to_packets(procedure, i)
@@ -109,6 +111,8 @@ class Reading(BlockRun):
         self.block = b""
         self.waiting: list[int] = []  # positions of packets that are to be sent
         self._last: int | None = None  # position of the last requested packet
+        # The telecommand with offset or length loads the block; without one, the first
+        # of the loop.
         about_block = {BLOCK_OFFSET, BLOCK_LENGTH}
         loads = [i for i in self.inside if self.given(i) & about_block]
         self._load_step = next(iter(loads or self.inside), None)
@@ -155,6 +159,7 @@ class Reading(BlockRun):
         self.block, self.waiting, self._last = b"", [], None
         if self.blocks.map:
             self.map = empty_map(self.blocks.map)
+        # The device cannot read behind the end of the object, or more than its buffer.
         self.failed = True
         if (
             content is not None
@@ -190,7 +195,8 @@ class Writing(BlockRun):
         # Without a telecommand that commits the block, each packet is stored at once.
         self._commit_step = later[-1] if later else None
         others = (self.given(i) for i in self.sends if i not in packets)
-        self._told: set[int] = set().union(*others)  # numbers besides those of packets
+        # Registers that telecommands without a packet give to the device.
+        self._block_numbers: set[int] = set().union(*others)
 
     def execute(self, index: int, data: bytes) -> None:
         step = self.step(index)
@@ -233,11 +239,16 @@ class Writing(BlockRun):
         """Offset of the first packet of the block; None if the device is not told."""
         if PACKET_OFFSET not in self.registers:
             return 0
-        return self.registers.get(BLOCK_OFFSET) if BLOCK_OFFSET in self._told else None
+        return (
+            self.registers.get(BLOCK_OFFSET)
+            if BLOCK_OFFSET in self._block_numbers
+            else None
+        )
 
     def length_of(self, data: bytes) -> int:
-        told = BLOCK_LENGTH in self._told
-        return self.registers.get(BLOCK_LENGTH, len(data)) if told else len(data)
+        if BLOCK_LENGTH not in self._block_numbers:
+            return len(data)
+        return self.registers.get(BLOCK_LENGTH, len(data))
 
     def number(self, register: int, is_busy: bool) -> int | None:
         number = super().number(register, is_busy)
@@ -278,7 +289,7 @@ class Writing(BlockRun):
         """Return a packet without its fill, as far as the device is told the end of the
         block. ``offset``: that of the packet in the block.
         """
-        if {BLOCK_OFFSET, BLOCK_LENGTH} <= self._told:
+        if {BLOCK_OFFSET, BLOCK_LENGTH} <= self._block_numbers:
             return data[: max(0, self.registers.get(BLOCK_LENGTH, 0) - offset)]
         return data
 

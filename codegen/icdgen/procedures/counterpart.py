@@ -46,6 +46,8 @@ class Counterpart:
                 is_processed |= run.telecommand(now, message, data)
             except Refused as refusal:
                 refusals.append(refusal)
+        # A telecommand can belong to several procedures: it is refused only if none of
+        # them takes it.
         if refusals and not is_processed:
             raise refusals[0]
 

@@ -34,6 +34,7 @@ def following(
             if test.value.in_register:
                 wanted = registers.get(wanted, 0)
             return (index + 1 if registers[test.register] == wanted else to,)
+        # The device does not know what these decide, so both ways are possible.
         case SkipUnless() | NextBlock() | NextRound() | NextPacket():
             return (index + 1, step.to)
         case Verify() | VerifyChecksum() if step.again and procedure.blocks:

@@ -138,6 +138,8 @@ class Run:
         self._previous = index
         self.execute(index, data)
         reached = self._reached(index)
+        # Telemetry that the client requests next reports a failure. Without such
+        # telemetry, only a refusal can.
         if self.failed and not any(map(self._reports_failure, reached)):
             raise Refused()
         due = self.device.telecommands, now + self.device.busy

@@ -97,6 +97,7 @@ def _can_message(request: Request) -> CanMessage:
 
 def can_packet(row: Request) -> CanPacket:
     """Return the CAN packet of a row."""
+    # Extended identifiers of CAN have 29 bits (ISO 11898-1).
     return CanPacket(number(row, "id", 0, (1 << 29) - 1), octets(row))
 
 
@@ -257,6 +258,7 @@ def stream_events(link: AnyLink, request: Request) -> Response:
     form, direction = need(link.stream, "stream"), choice(
         request, "direction", DIRECTIONS
     )
+    # A decoder must have room for a packet without data.
     least = max(packet.overhead for packet in form.packets)
     limit = number(request, "limit", least, link.longest, link.longest)
     decoder = stream.StreamDecoder(link, direction, limit)

@@ -64,6 +64,7 @@ def _results(procedure: Procedure) -> Row:
 
 def event_of(row: object) -> events.Event:
     """Return the event of a row: only what procedures use."""
+    # Id and number of attempts are 0 and 1: procedures do not look at them.
     name = text(row, "event") if isinstance(row, dict) else None
     match row, name:
         case dict(), "done":

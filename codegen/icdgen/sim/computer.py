@@ -61,6 +61,7 @@ class Computer:
             self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
         )
         message = self.program.facts.telemetry.get(id)
+        # A request of this telemetry keeps the device in its boot program.
         if message and message.name == stop:
             self.boot_at = None
         return self.program.frame(now, id)

@@ -204,6 +204,7 @@ def locate_message(icd: Icd, node: Node, name: str) -> Message:
             return find_message(icd, candidate.name, name, "telemetry")
         except NotFound as error:
             errors.append(error)
+    # That of the simulated node: its help suggests the messages of that node.
     raise errors[0]
 
 
@@ -214,6 +215,7 @@ def raw_value_of(message: Message, field: FrameField, value: object) -> int | by
             f"{message.name}, {field.name}: an overlay field has no bits of its own",
             "set the fields that have them",
         )
+    # `str` spells them `True` and `False`, which no ICD has.
     text = "true" if value is True else "false" if value is False else str(value)
     raw = typed(field, text)
     if (
@@ -240,7 +242,7 @@ def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
         return low if part < 0.5 else high
     if kind == "noise":
         return low + (high - low) * random()
-    return low + (high - low) * part
+    return low + (high - low) * part  # ramp
 
 
 def read(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[Step]:

@@ -28,7 +28,8 @@ from icdgen.values import numbers
 Cause = Literal["unknown_id", "length", "value", "checksum", "busy"]
 """Why a telecommand is refused: a key of `reasons` in `link: commands`."""
 
-_CAUSES: dict[str, Cause] = {  # event of the decoder -> cause
+# Event of the decoder -> cause.
+_CAUSES: dict[str, Cause] = {
     "unknown_id": "unknown_id",
     "length": "length",
     "checksum": "checksum",
@@ -148,6 +149,8 @@ class EnvelopeLine(DeviceLine):
                 continue
             on = "upload" if self._is_packet(event.id) else "telecommand"
             for _, received_data in self.faults.apply(on, event.data):
+                # The decoder has checked the checksum, so a fault behind it must be
+                # refused here.
                 if received_data == event.data or not self._is_checked:
                     self._telecommand(now, event.id, received_data)
                 else:
@@ -181,6 +184,7 @@ class EnvelopeLine(DeviceLine):
             self._refuse(now, id, data, "value", fault.reason)
             return
         is_busy = now < program.free_at or self.faults.hits("busy", "telecommand")
+        # Without a response for it, the device takes the telecommand all the same.
         if is_busy and self._defer(now, id, data):
             return
         message = self._message(id, data)
@@ -267,6 +271,7 @@ class EnvelopeLine(DeviceLine):
         for a cause, or with ``reason``.
         """
         name = self._names_of_causes.get(cause) if reason is None else reason
+        # Damaged telecommands are ignored, unless the ICD has a reason for them.
         if cause == "checksum" and name is None:
             return
         self.computer.program.count("refused")

@@ -77,6 +77,8 @@ class Faults:
         """Return the bytes of a message with faults: pieces and their delays in
         milliseconds.
         """
+        # Each test takes random numbers. Another order would give other faults for the
+        # same seed.
         if self.hits("drop", on):
             return []
         out = bytearray(data)

@@ -58,6 +58,8 @@ def read_file(icd: Icd, node: Node, text: str) -> tuple[str, Key, Object]:
     try:
         packed = dos_time_pack(link_of(icd, node_facts), changed)
     except IcdError:
+        # The packed format cannot represent the time, for instance of a year before its
+        # first one.
         packed = 0
     return effect.kind, tuple(key), Object(bytearray(data), packed)
 
@@ -92,6 +94,7 @@ def saver(folder: Path | None) -> Callable[[str, Key, bytes], None] | None:
 
     def save(kind: str, key: Key, data: bytes) -> None:
         name = "-".join(map(str, key))
+        # Replaced at once, so that no reader of the folder finds half of a program.
         partial = folder / f"{name}.bin.part"
         partial.write_bytes(data)
         partial.replace(folder / f"{name}.bin")

@@ -13,7 +13,8 @@ from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
 from icdgen.values import numbers
 
-FLAGS: dict[str, str] = {  # event of the decoder -> role in the statistics
+# Event of the decoder -> role in the statistics.
+FLAGS: dict[str, str] = {
     "unexpected_start": "uart_incomplete",
     "protocol_error": "uart_protocol",
     "overrun": "overrun",
@@ -104,6 +105,7 @@ class Line(DeviceLine):
             self._telecommand(now, received)
 
     def _request(self, now: int, message: bytes) -> None:
+        # A request is the id alone.
         if len(message) != 1:
             return
         frame = self.computer.frame(now, message[0])
@@ -142,6 +144,7 @@ class Line(DeviceLine):
     def _push(self, now: int) -> None:
         """Send the packets that the device sends unasked."""
         program = self.computer.program
+        # Such packets can come under another id than that of their telemetry.
         heads = {id: head for head, id in program.facts.unsolicited.items()}
         for packet in program.counterpart.packets(UART):
             id = packet.message.telemetry_id

@@ -15,7 +15,9 @@ from icdgen.sim.control import Control
 from icdgen.sim.device_line import DeviceLine
 
 Send = Callable[[bytes], None]
-PIECE = 1400  # bytes of a stream in one datagram
+# Bytes of a stream in one datagram. With the headers of IP and UDP they fit into an
+# Ethernet frame of 1,500 bytes, so that the datagram is not fragmented.
+PIECE = 1400
 RECONNECT_INTERVAL = 1.0  # s between two attempts to connect
 IDLE = 0.5  # s; longest sleep, as some systems notice an interrupt only afterwards
 
@@ -187,6 +189,7 @@ async def _handle(
 
 async def pty(server: Server) -> tuple[str, object]:
     """Open a pseudo-terminal. Return its path and its files."""
+    # Windows does not have this module.
     import tty
 
     master, slave = os.openpty()

@@ -151,6 +151,7 @@ def _candidates(field: FrameField) -> Iterable[int]:
             )
             continue
         raw: Fraction = field.scale.raw(bound) if field.scale else bound
+        # The limit itself can be excluded, or lie between two raw values.
         yield from (floor(raw), ceil(raw), floor(raw) - 1, ceil(raw) + 1)
 
 
