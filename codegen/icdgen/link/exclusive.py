@@ -48,6 +48,8 @@ def users_of(path: str) -> list[tuple[int, str]]:
     Each has its id and command, as far as Linux shows them.
     """
     target = os.path.realpath(path)
+    # Files of other users' processes are not visible, so this list can lack the owner
+    # of a lock.
     pids = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
     # A simulator has opened its own end of a pseudo-terminal. Only the owner of the
     # lock prevents the use.

@@ -87,11 +87,12 @@ class Monitor:
             row.id not in responding and not row.is_requested for row in form.telemetry
         ):
             return ""
-        asked = form.requested_ids
+        requested_ids = form.requested_ids
         names = [
             message.name
             for message in self.icd.messages_of(self.node)
-            if message.telemetry_id is not None and message.telemetry_id in asked
+            if message.telemetry_id is not None
+            and message.telemetry_id in requested_ids
         ]
         why = "on request" if form.request else "in response to telecommands"
         what = f"{self.node.name} sends telemetry only {why}"
@@ -112,11 +113,11 @@ class Monitor:
 
     def requested(self) -> Iterator[Message]:
         """Return the messages that must be requested."""
-        asking = self.facts.stream.requested_ids if self.facts.stream else ()
+        requested_ids = self.facts.stream.requested_ids if self.facts.stream else ()
         yield from (
             message
             for message in self.messages
-            if not self.listens or message.telemetry_id in asking
+            if not self.listens or message.telemetry_id in requested_ids
         )
 
     def begin(self) -> None:

@@ -57,6 +57,7 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             help="Number of repetitions of a request.",
         ),
     ]
+    # Decorators apply from the inside out: the last one is the first in the help.
     for option in reversed(options):
         command = option(command)
     return command

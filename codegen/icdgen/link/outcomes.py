@@ -65,11 +65,12 @@ def has_further_fields(icd: Icd, node: Node, sent: Message, response: Message) -
     reason.
     """
     commands = icd.protocol_of(node).get("link", {}).get("commands", {})
-    known: set[str | None] = set()
+    # Fields that a report shows already.
+    reported: set[str | None] = set()
     for row in declared_responses(commands, sent).values():
         if row.get("message") == response.name:
-            known |= {*echoes_of(row), row.get("status"), reason_of(row)}
+            reported |= {*echoes_of(row), row.get("status"), reason_of(row)}
     return any(
-        field.name not in known and field.const is None
+        field.name not in reported and field.const is None
         for field in icd.longest_frame(response)
     )

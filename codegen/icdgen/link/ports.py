@@ -26,7 +26,10 @@ from icdgen.link.exclusive import busy_error, lock_port
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
-MOST_OF_A_PACKET = 1400  # bytes of a stream in one datagram
+# Bytes of a stream in one datagram. With the headers of IP and UDP they fit into an
+# Ethernet frame of 1,500 bytes, so that the datagram is not fragmented.
+MOST_OF_A_PACKET = 1400
+# An IPv4 packet has up to 65,535 bytes: 20 are the header of IP, 8 that of UDP.
 MOST_OF_A_DATAGRAM = 65507
 # Host and port without tcp:// or udp://.
 _BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")
@@ -122,6 +125,8 @@ class Terminal:
         with _failures(
             f"cannot open {path}", OSError, help="check the path and your rights to it"
         ):
+            # `O_NOCTTY`: otherwise the terminal could become that of this process,
+            # whose interrupt characters then end it.
             self.file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         try:
             lock_port(self.file, path)
@@ -191,6 +196,8 @@ class Serial:
     def read(self, timeout: float) -> bytes:
         with _failures(self.name, *self.errors):
             self.serial.timeout = max(timeout, 0)
+            # The first byte waits for the time-out. The others are taken as far as they
+            # are there, so that a response is returned at once.
             first = self.serial.read(1)
             return first + self.serial.read(self.serial.in_waiting) if first else b""
 

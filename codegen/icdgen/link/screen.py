@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 PAGE_SECONDS = 5.0  # duration of a page without a keyboard
 KEY_SECONDS = 0.2  # interval for checking whether the screen is closed
+# Escape sequences of the keys, in the forms of xterm (`ESC [`, and `ESC O` for
+# application cursor keys), and the letters of `less`.
 _LINES = {"\x1b[A": -1, "k": -1, "\x1bOA": -1, "\x1b[B": 1, "\x1bOB": 1, "j": 1}
 _PAGES = {"\x1b[5~": -1, "b": -1, "\x1b[6~": 1, " ": 1}
 _ENDS = {

@@ -45,6 +45,7 @@ def readings(
     times = [packet.time for packet in packets]
     can_endpoints = [endpoint for endpoint in endpoints if endpoint.facts.can]
     per_endpoint = [_of_endpoint(endpoint, sent, times) for endpoint in can_endpoints]
+    # The right nodes are those that explain the most packets.
     most = max(len(result) for result in per_endpoint)
     if most == 0:
         raise _no_message_error(can_endpoints[0], sent)

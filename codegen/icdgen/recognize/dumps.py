@@ -59,6 +59,7 @@ def _row(line: str) -> _Row | None:
         and not match["mark"]
         and all(len(word) == 4 for word in words)
     )
+    # The dump has words as numbers: the first byte is the second pair of digits.
     data = b"".join(bytes.fromhex(word)[:: -1 if swapped else 1] for word in words)
     is_sure = bool(match["mark"]) or len(at) == _WORDS or len(match["space"]) > 1
     return _Row(at, data, is_sure or (match["text"] or "").strip().startswith("|"))

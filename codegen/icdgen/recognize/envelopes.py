@@ -119,6 +119,8 @@ def readings(
         for direction in DIRECTIONS
         if endpoint.facts.stream.packets_of(direction)
     ]
+    # Without a constant or a checksum, nearly any bytes look like a packet. Then all of
+    # them must belong to packets.
     usable = [
         result
         for result in results
@@ -150,10 +152,10 @@ def readings(
 
     def decided(span: Span, candidates: list[Reading]) -> Reading:
         before = [request for at, request in requests if at < span.at]
-        asked = [
+        requested = [
             each for each in candidates if before and _answers(each, before[-1])
-        ] or candidates
-        return match.most_likely(asked, "a packet", selection)
+        ]
+        return match.most_likely(requested or candidates, "a packet", selection)
 
     chosen = {}
     for at in range(-fewer):
@@ -186,14 +188,14 @@ def readings(
 
 def begun(endpoints: Sequence[Endpoint], data: bytes) -> Fault | None:
     """Return the fault of bytes that begin like a packet, otherwise None."""
-    found_faults = []
+    begun_faults = []
     for endpoint in endpoints:
         form = endpoint.link.stream
         for direction in DIRECTIONS if form else ():
             if form and faults.begins_packet(form, direction, data):
                 packet = faults.packet_begun(endpoint, direction, data)
-                found_faults.append(faults.fault_of(endpoint, direction, *packet))
-    return max(filter(None, found_faults), key=lambda fault: fault.rank, default=None)
+                begun_faults.append(faults.fault_of(endpoint, direction, *packet))
+    return max(filter(None, begun_faults), key=lambda fault: fault.rank, default=None)
 
 
 def _left_out(results: Sequence[DirectionResult], taken: bytearray) -> list[str]:

@@ -9,6 +9,8 @@ from typing import NamedTuple
 # Time, interface, direction.
 _BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"
 _ID = r"(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})"
+# candump; its log files (`##` and a digit are CAN FD, `R` is a remote request); slcan
+# adapters with identifiers of 29 and 11 bits, and their remote requests.
 _FORMS = (
     re.compile(
         _BEFORE
@@ -62,6 +64,7 @@ def _packet(line: str) -> Iterator[Printed]:
     if match is None:
         return
     text = match["data"]
+    # A remote request has no data (ISO 11898-1).
     data = b"" if text[:1] in ("R", "r") else bytes.fromhex(text.replace(".", ""))
     size = int(match.groupdict().get("size") or len(data))
     if text != "remote request" and len(data) not in (

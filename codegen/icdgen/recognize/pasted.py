@@ -106,6 +106,7 @@ def _unescaped(text: str) -> bytes | None:
         elif len(escape) > 1:
             value = int(escape[1:], 16)
         else:
+            # 256 is no byte: an unknown escape makes the text no literal.
             value = _ESCAPED.get(escape, 256)
         if value > 255:
             return None

@@ -88,9 +88,9 @@ class Reading:
     error: int | None = None
     checked: bool = False
     remarks: tuple[str, ...] = ()
-    left_out: tuple[
-        str, ...
-    ] = ()  # first reading only: packets of the input that cannot be decoded, with reason
+    # Packets of the input that cannot be decoded, with reason. Only the first reading has
+    # them.
+    left_out: tuple[str, ...] = ()
     time: str = ""  # time of reception, as printed by the recording tool
 
     @property
