@@ -262,6 +262,7 @@ def _message(
     if senders:
         item["group"] = senders[0]
     cycle = message.cycle_time
+    # The key takes whole numbers; any other cycle becomes a sentence.
     is_whole = isinstance(cycle, int) and cycle > 0
     if is_whole:
         item["period_ms"] = cycle

@@ -150,6 +150,7 @@ def give_long_names(messages: list[Any]) -> None:
                     signal.multiplexer_signal, signal.multiplexer_signal
                 )
         message.name = _long_name(message, _LONG_MESSAGE, names)
+        # cantools has tables by name, which it built when it read the message.
         message.refresh(strict=False)
 
 

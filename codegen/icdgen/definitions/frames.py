@@ -11,6 +11,8 @@ from icdgen.definitions.model import Definitions, Item
 
 OVERLAPPING = "IMP071"
 LITTLE, BIG = "little", "big"
+# In these pairs of orders the numbers of the bits of a field follow each other, also
+# across bytes, so that the first bit and the width place any field.
 ORDERS = {
     LITTLE: {"byte_order": "little", "bit_order": "lsb0"},
     BIG: {"byte_order": "big", "bit_order": "msb0"},
@@ -85,7 +87,7 @@ def laid_out(
         }
         fields.append(field)
         covered = max(covered, place.mask.bit_length())
-    fields.sort(key=lambda field: (field["at"] // 8, field["at"]))
+    fields.sort(key=lambda field: field["at"])
     if (unused := message["length"] - -(-covered // 8)) > 0:
         message["reserved"] = unused
     return {**message, "fields": fields} if fields else message
@@ -142,6 +144,7 @@ def _with_overlays(
     owned = 0
     for _, mask in owners:
         owned |= mask
+    # An overlay field only reads bits that another field owns.
     yield from _fields_of_bits(left & ~owned)
 
 

@@ -50,6 +50,7 @@ _SCALED = {
     "mrad/s": ("rad/s", "0.001"), "hPa": ("Pa", "100"), "hJ": ("J", "100"), "ds": ("s", "0.1"), "cs": ("s", "0.01"),
 }  # fmt: skip
 _SPELLED = {"m/s/s": "m/s^2", "bits/s": "bit/s", "bytes": "byte"}
+# Two digits of an exponent are enough: `2**999999999` would take all memory.
 _NUMBER = re.compile(
     r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z"
 )
@@ -100,6 +101,7 @@ class MavLink2:
             node_name(file), f"MAVLink {stem}", {"byte_order": "little", "bit_order": "lsb0", "id_bits": self.id_bits},
             protocol=self.envelope(),
         )  # fmt: skip
+        # The mapping inside of the section `protocol`, which the messages fill below.
         seeds = network.seeds = network.protocol["link"]["checksums"]["x25"]["seeds"]  # type: ignore[index]
         for path, root in roots.items():
             versions = (node.text or "" for node in root.iter("version"))
@@ -129,6 +131,7 @@ class MavLink2:
         in_order = {
             message["name"]: seeds[message["name"]] for message in network.messages
         }
+        # Filled again instead of replaced: the section has this very mapping.
         seeds.clear()
         seeds |= in_order
         network.declare(enum for _, enum in sorted(enums.items()))
@@ -162,6 +165,7 @@ class MavLink2:
             if tag == "field":
                 (more if is_more else base).append(_field(child))
         # Wire order; the sort is stable for fields of equal width, as MAVLink requires.
+        # By the type of an element: the length of an array does not count.
         base.sort(key=lambda field: -_BITS[field.type])
         item: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
         if self.has_extensions:
@@ -426,6 +430,7 @@ def _invalid(text: str, kind: str, bits: int) -> Item:
     if kind == "float" and text.lower() == "nan":
         return {"value": "nan", "meaning": "not known"}
     most = re.fullmatch(r"(U?)INT(8|16|32|64)_MAX", text)
+    # A signed type has one bit less: `not` is 1 for it.
     value = (1 << int(most[2]) - (not most[1])) - 1 if most else _number(text)
     if value is None:
         return {}
@@ -527,6 +532,7 @@ def _number(text: str) -> Any:
     match = _NUMBER.match(text)
     if match is None:
         return None
+    # With the base 0, `int` rejects decimal numbers with zeros in front.
     value = int(match[1], 0) if "x" in match[1].lower() else int(match[1])
     power = int(match[3] or 0)
     return value << power if match[2] == "<<" else value ** power if match[2] else value

@@ -66,6 +66,7 @@ _KINDS = {
         f"uint{bits}": _Kind("uint", bits // 16, (1 << bits) - 1)
         for bits in (16, 32, 64)
     },
+    # An accumulator that a device does not keep reads 0, not the largest value.
     **{f"acc{bits}": _Kind("uint", bits // 16, 0) for bits in (16, 32, 64)},
     **{f"enum{bits}": _Kind("uint", bits // 16, (1 << bits) - 1) for bits in (16, 32)},
     **{
@@ -112,6 +113,7 @@ class SunSpec:
         )
         to.networks.append(network)
         enums = Enumerations()
+        # In a list, so that all models of the file count down the same number.
         left = [_MOST_POINTS]
         for tree in sorted(models, key=lambda tree: int(tree["id"])):
             to.total += 1
@@ -154,6 +156,7 @@ def _parse(file: str, data: bytes) -> list[AccountedMap]:
         if (
             not isinstance(group, dict)
             or type(model.get("id")) is not int
+            # Not 0 for negative numbers, too: their sign fills the bits from the left.
             or model["id"] >> _REGISTER
         ):
             raise unreadable(
@@ -243,6 +246,7 @@ class _Model:
                 raise NotSupported(
                     f"`{item['name']}` follows a group whose repetitions no point counts"
                 )
+            # Behind a group of any length no field has a fixed place.
             if _is_open(fields):
                 item["after"] = fields[-1]["name"]
             fields.append(item)
@@ -280,6 +284,8 @@ class _Model:
 
         Raises `NotSupported`.
         """
+        # The count of a group is a number, the name of the point that has it, or 0: as
+        # often as the length of the model allows.
         count, name = group["count"], _text(group, "name")
         is_open, is_inner = (
             type(count) is not int or count <= 0,

@@ -121,6 +121,8 @@ class FieldDescription(ScalarDescription):
 
     def moved(self, place: NodePlace) -> FieldDescription:
         """Return the description of a field with the same declaration at another place."""
+        # The copy takes computed names and constants along: they do not depend on the
+        # place, and an array of structs has a copy per element and member.
         other = copy(self)
         other.model, other.owner = (
             place,

@@ -236,6 +236,7 @@ class FrameBytes:
         while byte < self._length:
             if byte in self._whole:
                 segment = Segment(byte, *self._whole[byte])
+            # Terms stand from the lowest bit up, in whatever order they were added.
             elif byte in self._parts:
                 segment = Segment(
                     byte, 1, None, tuple(term for _, term in sorted(self._parts[byte]))

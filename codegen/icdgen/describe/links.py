@@ -123,6 +123,8 @@ def byte_table(crc: Crc) -> list[int]:
     """Return the register after each of the 256 bytes if it was 0 before. If bytes
     enter least significant bit first, the register is reflected.
     """
+    # The polynomial is without its top term, as in catalogues of CRCs: the bit that
+    # leaves the register stands for it.
     top, mask = 1 << crc.width - 1, (1 << crc.width) - 1
     table, register = [0], crc.polynomial
     for _ in range(8):

@@ -302,6 +302,8 @@ def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
     if new is None:
         return "ignored", False
     if old is None:
+        # Old software sends zeros in bits without a field: a constant of 0 accepts
+        # them.
         refused = bool(new.const)
         return (f"sent as 0, must be {new.const}" if refused else "sent as 0"), refused
     if new.const is not None and old.const != new.const:

@@ -231,6 +231,7 @@ def _paired(
             new_node=node.any,
             is_of_another_node=elsewhere,
         )
+        # Most declarations of two versions are equal, and their parts need no pairs.
         if not pair.both or pair.changed:
             pair.parts = parts(pair)
         return node, pair
@@ -279,6 +280,8 @@ def _moved_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
 
 
 def _member_keys(left: _Unmatched[Enum]) -> Iterable[object]:
+    # Without a common member the score is 0.15 at most. Two enumerations without any
+    # overlap by half.
     return [(left.home, *member) for member in left.members] or [(left.home,)]
 
 
@@ -346,6 +349,8 @@ def _message_keys(left: _Unmatched[Message]) -> Iterable[object]:
         if id is not None
     )
     yield from ((left.home, name) for name in left.field_names or (None,))
+    # Without an equal id or a common field, layout and name give 0.4 and 0.15, which is
+    # just `SAME_MESSAGE` if both are equal.
     yield left.home, left.shape, letters(left.thing.name)
 
 
@@ -439,6 +444,7 @@ def _renamed_fields(
 
     def keys(line: Line) -> Iterable[object]:
         """Return position and meaning of a field."""
+        # Two fields with neither in common have the score 0.
         return spans[id(line)], (line.bits, sense(line))
 
     def score(old_line: Line, new_line: Line) -> float:

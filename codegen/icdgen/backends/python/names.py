@@ -68,19 +68,25 @@ def accessors_in_python(field: FieldDescription) -> Iterator[Accessor]:
     return accessors_of(field, "text", "double", "integer", "long integer")
 
 
-def module_name(one: Composite[Any] | EnumDescription) -> str:
-    """``estimated_attitude_angles``; it never stands in a user's program."""
-    if len(one.name) > _LONGEST:
-        return f"{one.name[:_LONGEST]}_{crc32(one.name.encode()):08x}"
-    return f"{one.name}_" if one.name in RESERVED else one.name
+def module_name(part: Composite[Any] | EnumDescription) -> str:
+    """Return the name of the module: ``estimated_attitude_angles``.
 
-
-def home(one: Composite[Any] | EnumDescription, node: str, up: str) -> str:
-    """The module, as one that stands ``up`` dots below the package imports it; ``node``
-    is that one's node.
+    It never stands in a user's program.
     """
-    start = "." if one.node.name == node else f"{up}{one.node.name}."
-    return f"{start}{TYPES}.{module_name(one)}"
+    name = part.name
+    if len(name) > _LONGEST:
+        # The checksum keeps names apart that differ only behind the cut.
+        return f"{name[:_LONGEST]}_{crc32(name.encode()):08x}"
+    return f"{name}_" if name in RESERVED else name
+
+
+def home(part: Composite[Any] | EnumDescription, node: str, up: str) -> str:
+    """Return the module of a part as another module imports it.
+
+    The other one is of ``node``, and stands ``up`` dots below the package.
+    """
+    start = "." if part.node.name == node else f"{up}{part.node.name}."
+    return f"{start}{TYPES}.{module_name(part)}"
 
 
 def constant_name(name: str) -> str:
