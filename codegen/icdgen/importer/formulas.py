@@ -65,6 +65,8 @@ def words(raw: tuple[str, ...], physical: tuple[str, ...]) -> Words:
 def _names(names: tuple[str, ...]) -> re.Pattern[str]:
     parts = [
         re.escape(name).replace(r"\ ", r"\s+")
+        # Longer names first: a pattern takes the first alternative that matches, and
+        # one name can begin another.
         for name in sorted(names, key=len, reverse=True)
     ]
     return re.compile(
@@ -206,6 +208,7 @@ def _expression(
             at, operand = match.end(), True
         else:
             break
+        # Complete so far. What follows may be text and no part of the formula.
         if depth == 0 and not operand:
             good, end = len(tokens), at
     if not seen or name not in tokens[:good] or _GOES_ON.match(text, end):

@@ -158,6 +158,7 @@ class _Flow:
         cuts = region.cuts()
         bands = []
         for top, bottom in itertools.pairwise(cuts):
+            # Points. No text fits between rules so close: they are one double rule.
             if bottom - top < 3:
                 continue
             words = [w for w in inside if top <= w.middle < bottom]
@@ -178,6 +179,8 @@ class _Flow:
         line = following[0]
         if _CONTINUED.match(line.text):
             return 1, None
+        # At the top of a page, a reference such as `Table 5` in a cell that goes on
+        # from the page before is no caption.
         goes_on = (
             first
             and self.open is not None

@@ -34,6 +34,7 @@ from icdgen.importer.reading.utf8 import utf8_text
 CODE = "IMP002"
 COLUMNS = ("Byte", "Bit", "Bits", "Type", "Name", "Count", "Members", "Comment")
 MOST_ELEMENTS = 64  # of an array of structs, each of which is a group of fields
+# `long` is missing: it has 8 bytes on 64-bit Linux and 4 on Windows.
 _SIZES = {
     "_Bool": ("bool", 8), "char": ("char", 8), "signed char": ("int", 8), "unsigned char": ("uint", 8), "short": ("int", 16),
     "unsigned short": ("uint", 16), "int": ("int", 32), "unsigned int": ("uint", 32), "long long": ("int", 64),
@@ -319,6 +320,9 @@ class _Reader:
                 crosses = at // size != (at + width - 1) // size if width else True
                 if width == 0 or (crosses and not is_packed):
                     at = self.aligned(at, size, layout, declaration.name or "")
+                # C99 6.7.2 leaves the sign of a bit field of type `int` to the
+                # compiler; gcc and clang take a signed one.
+                # Bit fields without a name do not align the struct (System V ABI).
                 if declaration.name and width:
                     kind = "int" if kind == "int" else "uint"
                     layout.members.append(

@@ -51,6 +51,7 @@ def read_markdown(path: Path, profile: Profile) -> Document:
     text = utf8_text(path, "save it as UTF-8")
     html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
     return _of_html(
+        # Without a declared encoding, the parser would guess one.
         f'<html><meta charset="utf-8"><body>{html}</body></html>'.encode(),
         str(path),
         profile,

@@ -131,6 +131,7 @@ def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
             _end_worker()
         return
     with get_context().Pool(jobs, _start_worker, (path, True)) as pool:
+        # `imap` returns the pages in their order, which tables across pages need.
         yield from pool.imap(
             _work, wanted, chunksize=max(1, min(8, count // (4 * jobs)))
         )
@@ -140,7 +141,9 @@ _open_file: Any = None
 
 
 def _start_worker(path: Path, ignore: bool) -> None:
-    """Opens the file once in each process; an interrupt is the parent's business."""
+    """Open the file once in a process. Worker processes ignore interrupts, which the
+    parent handles.
+    """
     global _open_file
     import pdfplumber
 
@@ -173,8 +176,8 @@ def _work(number: int) -> Page:
 
 
 def _weigh(page: Any) -> None:
-    """Raises `ValueError` for a page whose contents unpack to more than any page of
-    text and tables needs.
+    """Raise `ValueError` for a page whose contents unpack to more than any page of text
+    and tables needs.
     """
     from pdfminer.pdftypes import stream_value
 
@@ -182,6 +185,9 @@ def _weigh(page: Any) -> None:
     for stream in page.page_obj.contents:
         raw = stream_value(stream).rawdata or b""
         unpacked = len(raw)
+        # Unpacked as far as the limit and no further: some kilobytes can unpack to
+        # gigabytes. Contents that are not compressed fail here, and have their raw
+        # size.
         with contextlib.suppress(zlib.error):
             unpacked = max(
                 unpacked, len(zlib.decompressobj().decompress(raw, left + 1))
@@ -241,7 +247,7 @@ def _of_page(page: Page) -> Iterator[ImportFinding]:
 
 
 def _captions(page: Page, profile: Profile) -> int:
-    """About how many tables begin on the page: for the eye, while pages are read."""
+    """Return about how many tables begin on the page, for the display of progress."""
     heads = {word.rstrip(".") for word in profile.data["captions"]}
     pairs = pairwise(word.text for word in page.words)
     return sum(
