@@ -32,7 +32,10 @@ def enlarged(text: str, times: int) -> str:
     parts = [text]
     for number in range(1, times):
         high = _EXTENDED | number << 24
-        repeated = _OF_ID.sub(lambda match, high=high: f"{match[1]}{high | int(match[2]) & 0xFFFFFF}", text)  # type: ignore[misc]
+        repeated = _OF_ID.sub(
+            lambda match, high=high: f"{match[1]}{high | int(match[2]) & 0xFFFFFF}",
+            text,
+        )  # type: ignore[misc]
         lines = _NAME.sub(rf"\g<1>_{number}", repeated).split("\n")
         parts.append(
             "\n".join(line for line in lines if re.match(r"\s*(BO_|SG_|VAL_) ", line))

@@ -87,8 +87,9 @@ def main() -> None:
             f"| {'+'.join(languages)}, {options.runs} runs | median, s | least, s | times bare Python |\n|---|---|---|---|"
         )
         for title, all_spent in times.items():
-            least, times_bare = min(all_spent), min(all_spent) / min(
-                times["python -c pass"]
+            least, times_bare = (
+                min(all_spent),
+                min(all_spent) / min(times["python -c pass"]),
             )
             print(
                 f"| {title} | {statistics.median(all_spent):.3f} | {least:.3f} | {times_bare:.1f} |"

@@ -158,8 +158,9 @@ def main() -> None:
             (Path(folder) / path).parent.mkdir(parents=True, exist_ok=True)
             (Path(folder) / path).write_text(text, encoding="utf-8")
         sys.path.insert(0, folder)
-        acp, wire = import_module(f"{PACKAGE}.cubeacp"), import_module(
-            f"{PACKAGE}.wire"
+        acp, wire = (
+            import_module(f"{PACKAGE}.cubeacp"),
+            import_module(f"{PACKAGE}.wire"),
         )
         print(f"Python {sys.version.split()[0]}, medians of {options.rounds} rounds\n")
         streams(acp, wire, options.rounds)

@@ -187,9 +187,10 @@ def main() -> None:
         words = subprocess.run(
             [program, str(options.rounds)], input=data, capture_output=True, check=True
         ).stdout.split()
-        counts_of_messages, least = [int(word) for word in words[1:4]], [
-            float(word) for word in words[4:]
-        ]
+        counts_of_messages, least = (
+            [int(word) for word in words[1:4]],
+            [float(word) for word in words[4:]],
+        )
         out = folder / "counts"
         valgrind = [
             "valgrind",

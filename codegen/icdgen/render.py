@@ -61,8 +61,9 @@ class Renderer:
             ),
             bytecode_cache=_compiled(),
             undefined=jinja2.StrictUndefined,
-            autoescape=lambda template: template is not None
-            and template.endswith((".html.j2", ".xml.j2")),
+            autoescape=lambda template: (
+                template is not None and template.endswith((".html.j2", ".xml.j2"))
+            ),
             trim_blocks=True,
             lstrip_blocks=True,
             keep_trailing_newline=True,

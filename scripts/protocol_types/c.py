@@ -74,5 +74,7 @@ def _type(fact: Fact) -> str:
     return (
         "uint8_t "
         if fact.holds <= BYTE
-        else "uint16_t " if fact.holds <= U16 else "uint32_t "
+        else "uint16_t "
+        if fact.holds <= U16
+        else "uint32_t "
     )

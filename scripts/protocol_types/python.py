@@ -51,8 +51,7 @@ def _with_facts(text: str, part: type) -> str:
         ):
             has_docstring = isinstance(after, ast.Expr)
             own = lines[
-                statement.lineno
-                - 1 : (
+                statement.lineno - 1 : (
                     after.end_lineno
                     if has_docstring and after
                     else statement.end_lineno

@@ -69,11 +69,14 @@ class Vectors:
         constants = cases.constants()
         of_fields = ("default", "special", "limits")
         at = self._after(node, 0, {"name": name, "kind": message["kind"]}, ",")
-        yield at, [
-            constants._replace(
-                answer={**constants.answer, **dict.fromkeys(of_fields, ...)}
-            )
-        ]
+        yield (
+            at,
+            [
+                constants._replace(
+                    answer={**constants.answer, **dict.fromkeys(of_fields, ...)}
+                )
+            ],
+        )
         for field in message["fields"]:
             at = self._after(node, at, field)
             own = [
@@ -93,27 +96,35 @@ class Vectors:
         for key in ("node_type", "interface_version"):
             if key in data:
                 whole = node_itself(data)
-                yield self._after(node, 0, {key: data[key]}, ""), [
-                    whole._replace(answer={"ok": True, key: data[key], ...: ...})
-                ]
+                yield (
+                    self._after(node, 0, {key: data[key]}, ""),
+                    [whole._replace(answer={"ok": True, key: data[key], ...: ...})],
+                )
         for direction in DIRECTIONS:
             at = self._after(node, 0, {direction: data["ids"][direction]}, "")
             alone = {key: value for key, value in data.items() if key != "shared_ids"}
-            yield at, [
-                case
-                for case in node_cases(alone)
-                if case.request.get("kind") == direction
-            ]
+            yield (
+                at,
+                [
+                    case
+                    for case in node_cases(alone)
+                    if case.request.get("kind") == direction
+                ],
+            )
         for row in data.get("shared_ids", ()):
-            yield self._after(node, 0, row), list(
-                shared_ids({**data, "shared_ids": [row]})
+            yield (
+                self._after(node, 0, row),
+                list(shared_ids({**data, "shared_ids": [row]})),
             )
         for enum in data["enums"]:
-            yield self._after(node, 0, enum), [
-                case
-                for case in enum_cases(data)
-                if case.request["enum"] == enum["name"]
-            ]
+            yield (
+                self._after(node, 0, enum),
+                [
+                    case
+                    for case in enum_cases(data)
+                    if case.request["enum"] == enum["name"]
+                ],
+            )
 
     def _after(self, node: str, line: int, value: dict, end: str = "}") -> int:
         """The number of the next line that begins with the value, or with its only key,

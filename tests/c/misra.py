@@ -115,7 +115,9 @@ def template(path: Path) -> str:
     name = (
         path.name
         if path.name in ("enums.h", "link.h", "link.c", "client.h", "procedures.h")
-        else "message.h" if len(path.parts) > 1 else "node.h"
+        else "message.h"
+        if len(path.parts) > 1
+        else "node.h"
     )
     return f"{name}.j2"
 

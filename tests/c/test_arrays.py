@@ -86,6 +86,6 @@ def test_elements_are_members_and_an_index_is_held_to_the_count(compiler, tmp_pa
         output=folder / "user",
     )
     done = subprocess.run([program], capture_output=True, text=True)
-    assert (
-        done.returncode == 0
-    ), f"line {done.returncode} of the program: {done.stderr[:2000]}"
+    assert done.returncode == 0, (
+        f"line {done.returncode} of the program: {done.stderr[:2000]}"
+    )

@@ -26,7 +26,9 @@ static void on_event(void *context, const icd_event_t *event)
         (unsigned)event->id, event->length != 0u ? (unsigned)event->data[0] : 0u);
 }
 """
-UART = BEGIN + r"""
+UART = (
+    BEGIN
+    + r"""
 /* The id of the next message that is sent, in pieces of this size; 0 if there is none. */
 static unsigned sends(size_t piece)
 {
@@ -86,7 +88,10 @@ int main(void)
     return 0;
 }
 """
-I2C = BEGIN + r"""
+)
+I2C = (
+    BEGIN
+    + r"""
 /* The id of the next transaction; 0 if there is none. */
 static unsigned sends(void)
 {
@@ -117,6 +122,7 @@ int main(void)
     return 0;
 }
 """
+)
 PROGRAMS = {
     "uart": (UART, ["done 146 1", "done 147 2", "done 146 1", "done 10 10"]),
     "i2c": (I2C, ["done 146 1", "done 146 2", "done 10 10"]),

@@ -72,7 +72,9 @@ static void load(uint32_t length)
 }
 """
 
-PACKETS = START + r"""
+PACKETS = (
+    START
+    + r"""
 /* A packet arrives. Return the number of packets that are missing. */
 static uint32_t arrive(uint32_t number, size_t more)
 {
@@ -105,9 +107,12 @@ int main(void)
     return 0;
 }
 """
+)
 
 
-OFFSETS = START + r"""
+OFFSETS = (
+    START
+    + r"""
 /* Load a block at an offset; the device says that it has so many bytes. */
 static icd_result_t load_at(uint32_t offset, uint32_t length)
 {
@@ -131,8 +136,11 @@ int main(void)
     return 0;
 }
 """
+)
 
-INPUTS = START + r"""
+INPUTS = (
+    START
+    + r"""
 static icd_status_t upload(uint8_t destination, size_t size)
 {
     static uint8_t map[BOOTLOADER_UPLOAD_BITMAP_BYTES];
@@ -158,6 +166,7 @@ int main(void)
     return 0;
 }
 """
+)
 
 
 @pytest.fixture(scope="module")

@@ -21,9 +21,9 @@ def now():
 
 def test_the_record_is_what_cppcheck_finds(now):
     differences = misra.differences(misra.record(), now)
-    assert (
-        differences == []
-    ), "mend the code, or give the reason in runtime/c/misra.yaml: python -m tests.c.misra"
+    assert differences == [], (
+        "mend the code, or give the reason in runtime/c/misra.yaml: python -m tests.c.misra"
+    )
 
 
 def test_the_runtime_and_every_template_were_looked_at(now):

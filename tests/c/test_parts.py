@@ -52,8 +52,9 @@ def program(icd: Icd) -> tuple[str, int]:
     description, checks = describe(icd), []
     for case in composites.cases(icd):
         for one in case.parts:
-            composite, part = description.message(case.message), description.message(
-                one.part
+            composite, part = (
+                description.message(case.message),
+                description.message(one.part),
             )
             count = sum(other.part is one.part for other in case.parts)
             name, number = f"{stem(composite)}_part_{part.name}", len(checks)

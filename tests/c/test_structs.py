@@ -195,6 +195,6 @@ def test_a_struct_is_a_value_of_its_own_wherever_it_stands(compiler, tmp_path):
         output=folder / "user",
     )
     done = subprocess.run([program], capture_output=True, text=True)
-    assert (
-        done.returncode == 0
-    ), f"line {done.returncode} of the program: {done.stderr[:2000]}"
+    assert done.returncode == 0, (
+        f"line {done.returncode} of the program: {done.stderr[:2000]}"
+    )

@@ -189,9 +189,9 @@ def test_every_assumption_stands_with_its_reason_where_its_value_is(headers):
         ]
         assert assumed
         for assumption in assumed:
-            assert (
-                f"{assumption.key}: {' '.join(assumption.why.split())}" in text
-            ), assumption
+            assert f"{assumption.key}: {' '.join(assumption.why.split())}" in text, (
+                assumption
+            )
 
 
 def test_nothing_is_called_but_functions_that_move_memory(headers, tmp_path):

@@ -55,8 +55,9 @@ def test_its_c_does_what_it_says(made, compiler, standard, tmp_path):
 
 
 def test_its_python_does_what_it_says_and_is_typed(made, tmp_path):
-    program, package = shutil.copy(api_page.FOLDER / "imu.py", tmp_path), str(
-        made / "python"
+    program, package = (
+        shutil.copy(api_page.FOLDER / "imu.py", tmp_path),
+        str(made / "python"),
     )
     environment = {
         **os.environ,

@@ -93,9 +93,9 @@ def test_every_command_runs_in_order_in_one_shell_and_prints_what_is_shown(
         timeout=600,
     )
     outputs = re.split(rf"^{MARK} \d+\n", ran.stdout, flags=re.MULTILINE)[1:]
-    assert (
-        ran.returncode == 0
-    ), f"{typed[len(outputs) - 1].command}\n{ran.stdout}\n{ran.stderr}"
+    assert ran.returncode == 0, (
+        f"{typed[len(outputs) - 1].command}\n{ran.stdout}\n{ran.stderr}"
+    )
     assert len(outputs) == len(typed) + 1 and len(typed) > 10
     missing = [
         step

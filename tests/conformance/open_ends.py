@@ -118,9 +118,9 @@ def nested_end(
     for name in inner:
         element = draw(
             elements.filter(
-                lambda one: one["type"] != "bool"
-                and one["bits"] % 8 == 0
-                and one["bits"]
+                lambda one: (
+                    one["type"] != "bool" and one["bits"] % 8 == 0 and one["bits"]
+                )
             )
         )
         before = {"after": fields[-1]["name"]} if fields else {}

@@ -167,8 +167,9 @@ class Reference:
 
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
-        default, fields = codec.new(node, message), frame_fields(
-            message.layout, node.orders
+        default, fields = (
+            codec.new(node, message),
+            frame_fields(message.layout, node.orders),
         )
         return {
             "name": message.name,

@@ -46,32 +46,44 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
     yield {**decode, "id": 2**64}, {"ok": False, "error": "unknown-id"}
     yield {**decode, "id": -(2**70)}, {"ok": False, "error": "unknown-id"}
     yield {**decode, "node": ""}, {"ok": False, "error": "unknown-node"}
-    yield {**decode, "node": "no such node \U0001f6f0"}, {
-        "ok": False,
-        "error": "unknown-node",
-    }
+    yield (
+        {**decode, "node": "no such node \U0001f6f0"},
+        {
+            "ok": False,
+            "error": "unknown-node",
+        },
+    )
     for value in (None, [], "", 7):
         yield {**encode, "raw": value}, refusal
         yield {**encode, "physical": value}, refusal
     strange = 'no such field \U0001f6f0 "\\\n\0'
-    yield {**encode, "raw": {**cases.given, strange: 0}}, {
-        "ok": False,
-        "error": "unknown-field",
-        "field": strange,
-    }
-    yield {**encode, "physical": {strange: "0" * 16}}, {
-        "ok": False,
-        "error": "unknown-field",
-        "field": strange,
-    }
+    yield (
+        {**encode, "raw": {**cases.given, strange: 0}},
+        {
+            "ok": False,
+            "error": "unknown-field",
+            "field": strange,
+        },
+    )
+    yield (
+        {**encode, "physical": {strange: "0" * 16}},
+        {
+            "ok": False,
+            "error": "unknown-field",
+            "field": strange,
+        },
+    )
     for field in cases.fields:
         if field["name"] in cases.views:
             continue  # see `MessageCases.set_views`
         yield from bad_field(cases, encode, field)
-    yield {**cases.request("enum"), "enum": "no such", "value": 0}, {
-        "ok": False,
-        "error": "unknown-enum",
-    }
+    yield (
+        {**cases.request("enum"), "enum": "no such", "value": 0},
+        {
+            "ok": False,
+            "error": "unknown-enum",
+        },
+    )
 
 
 def bad_field(
@@ -82,11 +94,14 @@ def bad_field(
     without = {key: value for key, value in cases.there(field).items() if key != name}
     is_conditional = name in cases.conditional  # what is not there need not be given
     if not is_conditional:
-        yield {**encode, "raw": without}, {
-            "ok": False,
-            "error": "missing-field",
-            "field": name,
-        }
+        yield (
+            {**encode, "raw": without},
+            {
+                "ok": False,
+                "error": "missing-field",
+                "field": name,
+            },
+        )
     if "set" not in field:
         request = {**encode, "raw": without, "physical": {name: "0" * 16}}
         yield request, {"ok": False, "error": "unknown-field", "field": name}
@@ -115,16 +130,22 @@ def bad_field(
     if field["type"] not in ("float", "bytes", "text"):
         unfit = (*unfit, 2**64, -(2**63) - 1, 10**40, -(10**40))
     for value in unfit:
-        yield {**encode, "raw": {**without, name: value}}, {
-            "ok": False,
-            "error": "range",
-            "field": name,
-        }
+        yield (
+            {**encode, "raw": {**without, name: value}},
+            {
+                "ok": False,
+                "error": "range",
+                "field": name,
+            },
+        )
     if field["type"] == "float":
-        yield {
-            **encode,
-            "raw": {**without, name: "0" * (field["bits"] // 4 + 2)},
-        }, refusal
+        yield (
+            {
+                **encode,
+                "raw": {**without, name: "0" * (field["bits"] // 4 + 2)},
+            },
+            refusal,
+        )
 
 
 def bad_sweep(cases: MessageCases, name: str) -> Iterator[tuple[dict, dict]]:
@@ -139,11 +160,14 @@ def bad_sweep(cases: MessageCases, name: str) -> Iterator[tuple[dict, dict]]:
     yield {**sweep, "values": [None]}, refusal
     yield {**sweep, "values": {}}, refusal
     yield {**sweep, "values": [2**64]}, {"ok": False, "error": "range", "field": name}
-    yield {**sweep, "field": "no such"} | {"values": []}, {
-        "ok": False,
-        "error": "unknown-field",
-        "field": "no such",
-    }
+    yield (
+        {**sweep, "field": "no such"} | {"values": []},
+        {
+            "ok": False,
+            "error": "unknown-field",
+            "field": "no such",
+        },
+    )
     yield {**sweep, "values": []}, {"ok": True, "physical": "", "failures": 0}
 
 

@@ -153,8 +153,9 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         if draw(st.integers(0, 2)) == 0:
             alternatives = draw(_alternatives(fields, length, enums, orders | own))
             ends = (one["at"] + one["bits"] + 7 for one in alternatives)
-            fields, message["length"] = [*fields, *alternatives], max(
-                [length, *(end // 8 for end in ends)]
+            fields, message["length"] = (
+                [*fields, *alternatives],
+                max([length, *(end // 8 for end in ends)]),
             )
         if (
             not any("when" in field for field in fields)

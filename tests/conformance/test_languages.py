@@ -55,9 +55,9 @@ def strange(tmp_path_factory):
 
 
 def agree(language, asked):
-    assert (
-        not language.missing()
-    ), f"scripts/test installs {', '.join(language.missing())}"
+    assert not language.missing(), (
+        f"scripts/test installs {', '.join(language.missing())}"
+    )
     (result,) = run_batches([language], asked.icd, asked.batches)
     assert result.differences == 0, "\n".join(result.shown)
     assert result.vectors >= asked.vectors

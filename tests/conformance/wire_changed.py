@@ -102,8 +102,9 @@ def _change_list(source: random.Random, rows: list, key: str) -> None:
 
 
 def _change_bytes(source: random.Random, data: bytearray) -> bytearray:
-    at, byte = source.randrange(len(data) + 1), source.choice(
-        (*FRAMING, source.randrange(256))
+    at, byte = (
+        source.randrange(len(data) + 1),
+        source.choice((*FRAMING, source.randrange(256))),
     )
     what = source.choice(("set", "flip", "remove", "insert", "repeat"))
     if what == "insert" or at == len(data):

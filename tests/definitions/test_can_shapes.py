@@ -100,14 +100,14 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
                         mine = next(
                             (one for one in ours.fields if one.name == name), None
                         )
-                        assert (
-                            mine is not None and name in raw
-                        ), f"{ours.name}.{name} is there in {frame.hex()}"
+                        assert mine is not None and name in raw, (
+                            f"{ours.name}.{name} is there in {frame.hex()}"
+                        )
                         exact = codec.physical(mine, raw[name]) if scaled else None
                         expected = raw[name] if exact is None else exact
-                        assert value == pytest.approx(
-                            float(expected), rel=1e-14
-                        ), f"{ours.name}.{name} of {frame.hex()}"
+                        assert value == pytest.approx(float(expected), rel=1e-14), (
+                            f"{ours.name}.{name} of {frame.hex()}"
+                        )
                         compared += 1
     return compared
 
@@ -225,9 +225,9 @@ def test_long_names_of_messages_signals_and_multiplexers_are_those_that_arrive(
     assert {one["name"]: one.get("when") for one in message(read, "Status_of_the_engine")["fields"]} == {
         f"{long}_page": None, f"{long}_inlet": {f"{long}_page": 1}, f"{long}_outlet": {f"{long}_page": 2}, "T3": None,
     }  # fmt: skip
-    assert (
-        read.identifiers == []
-    ), "a limit of C is solved in C, not by other names for all languages"
+    assert read.identifiers == [], (
+        "a limit of C is solved in C, not by other names for all languages"
+    )
 
 
 def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
@@ -308,7 +308,7 @@ def test_start_values_cycle_times_and_further_senders_arrive(tmp_path):
 
 def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_path):
     text = (
-        f'{HEAD.replace(chr(34) * 2, chr(34) + "1.2" + chr(34))}BO_ 1 Status: 2 Engine\n'
+        f"{HEAD.replace(chr(34) * 2, chr(34) + '1.2' + chr(34))}BO_ 1 Status: 2 Engine\n"
         ' SG_ Speed : 0|8@1+ (1,0) [0|0] "" Display\n\n'
         'EV_ Lamp: 0 [0|1] "" 0 1 DUMMY_NODE_VECTOR0 Engine;\nCM_ "EV_ of a text is none";\n'
         'BA_DEF_ BO_ "GenMsgDelayTime" INT 0 10000;\nBA_DEF_DEF_ "GenMsgDelayTime" 0;\nBA_ "GenMsgDelayTime" BO_ 1 20;\n'

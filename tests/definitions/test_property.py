@@ -76,11 +76,12 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
             for one in declared["Gear"]
             for value in range(one["value"], one.get("to", one["value"]) + 1)
         ]
-        assert is_signed == any(
-            value < 0 for value in named
-        ), "the sign of an enumeration is that of its values"
-        low, high = max(first, limits.get("min", first)), min(
-            last, limits.get("max", last)
+        assert is_signed == any(value < 0 for value in named), (
+            "the sign of an enumeration is that of its values"
+        )
+        low, high = (
+            max(first, limits.get("min", first)),
+            min(last, limits.get("max", last)),
         )
         assert not formula and (
             not (unit or limits) or set(range(low, high + 1)) <= set(named)
@@ -100,9 +101,9 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
             and is_signed == any(v < 0 for v in possible)
         )
         assert not is_covered, "names without a unit are an enumeration"
-    assert sorted(named) == sorted(
-        possible
-    ), "each value that the field can have keeps its name"
+    assert sorted(named) == sorted(possible), (
+        "each value that the field can have keeps its name"
+    )
     assert len(choices) == len(possible) or any(
         one.code == "IMP074" for one in notes.import_findings
     )

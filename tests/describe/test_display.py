@@ -118,8 +118,9 @@ def test_json_has_the_full_precision(fields):
 @pytest.mark.parametrize("name", BY_NUMBER)
 def test_a_value_that_is_shown_leads_back_to_its_raw_value(fields, name):
     field = fields[name]
-    low, high = max(field.raw_min, field.settable_raws[0]), min(
-        field.raw_max, field.settable_raws[1]
+    low, high = (
+        max(field.raw_min, field.settable_raws[0]),
+        min(field.raw_max, field.settable_raws[1]),
     )
     for raw in Random(1).sample(range(low, high + 1), min(500, high - low + 1)):
         assert from_physical(field, Row(field, raw).text) == raw

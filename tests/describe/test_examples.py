@@ -27,10 +27,10 @@ def test_the_value_that_an_example_shows_is_a_number_that_its_frame_holds(path):
     for message, found in shown:
         if found.shown is not None:
             field = found.shown.field
-            assert (
-                field.struct is None and not field.count
-            ), f"{message.name}: {field.name}"
+            assert field.struct is None and not field.count, (
+                f"{message.name}: {field.name}"
+            )
             if found.shown.raw and field.model.type != "float":
-                assert any(
-                    found.frame
-                ), f"{message.name}: the frame does not hold {field.name}"
+                assert any(found.frame), (
+                    f"{message.name}: the frame does not hold {field.name}"
+                )

@@ -43,10 +43,13 @@ def test_the_frame_of_a_new_message_has_as_many_elements_as_code_gives_them_init
     path,
 ):
     for message in messages(path):
-        layout, frame = message.model.layout, codec.encode(
-            message.node,
-            message.model,
-            codec.initial_values(message.node, message.model),
+        layout, frame = (
+            message.model.layout,
+            codec.encode(
+                message.node,
+                message.model,
+                codec.initial_values(message.node, message.model),
+            ),
         )
         sizes = codec.sizes_of_frame(message.node, message.model, frame)
         assert all(
@@ -81,9 +84,9 @@ def test_what_is_zero_in_a_new_message_has_no_other_value_in_any_element(path):
                 initial[name] for name in names if not isinstance(initial[name], bytes)
             )
             if member.struct is None or member.is_in_last_part:
-                assert (
-                    member.is_initially_zero <= is_zero
-                ), f"{message.name}: {member.name}"
+                assert member.is_initially_zero <= is_zero, (
+                    f"{message.name}: {member.name}"
+                )
                 some_differ |= not is_zero
     assert some_differ or path.startswith("examples")
 

@@ -327,7 +327,9 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
         data = (
             bytes(length)
             if number == 0
-            else b"\xff" * length if number == 1 else chance.randbytes(length)
+            else b"\xff" * length
+            if number == 1
+            else chance.randbytes(length)
         )
         if len(there) == 1 and there[0][0].get("type") == "text":
             data = data[: one.length] + bytes(
@@ -379,9 +381,7 @@ def _put(data: bytes, part: dict, value: int) -> bytes:
     significant one unless it says so.
     """
     at, is_big = part["at"], part.get("bit_order") == "msb0"
-    if (
-        is_big
-    ):  # and the most significant byte first: the frame is one number that begins with its highest bit
+    if is_big:  # and the most significant byte first: the frame is one number that begins with its highest bit
         at = 8 * len(data) - at - part["bits"]
         if part.get("byte_order") == "little" and part["bits"] > 8:
             value = int.from_bytes(

@@ -189,5 +189,7 @@ def _plain(value: Any) -> Any:
     return (
         value.value
         if isinstance(value, Enum)
-        else int(value) if isinstance(value, bool) else value
+        else int(value)
+        if isinstance(value, bool)
+        else value
     )

@@ -62,8 +62,9 @@ def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
     if dialect.WIRE_PROTOCOL_VERSION == "1.0":
         start, head = b"\xfe", bytes([len(data), 0, 1, 1, message.id])
     else:
-        start, head = b"\xfd", bytes([len(data), 0, 0, 0, 1, 1]) + message.id.to_bytes(
-            3, "little"
+        start, head = (
+            b"\xfd",
+            bytes([len(data), 0, 0, 0, 1, 1]) + message.id.to_bytes(3, "little"),
         )
     crc = dialect.x25crc(head + data)
     crc.accumulate(bytes([message.crc_extra]))

@@ -177,7 +177,7 @@ def expected() -> list[str]:
 
 def test_python_counts_packets_without_a_message_with_the_messages(expected):
     # Two flags of HDLC; 7E is escaped. Constants and reason, id, sequence, reserved bytes, checksum
-    assert expected[0] == "7e" "7d5e21" "010302" "00" "0000" "fa" "7e"
+    assert expected[0] == "7e7d5e21010302000000fa7e"
     assert [line[14:16] for line in (expected[1], expected[3])] == ["01", "02"]
 
 

@@ -57,9 +57,9 @@ class Server:
 
     def __init__(self) -> None:
         self.codes: list[object] = []
-        self.requests: list[tuple[int, int, int]] = (
-            []
-        )  # function, first register, count
+        self.requests: list[
+            tuple[int, int, int]
+        ] = []  # function, first register, count
 
     async def act(self, function, start, address, count, registers, values):
         self.requests.append((function, address, count))

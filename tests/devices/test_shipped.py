@@ -183,7 +183,10 @@ def mavlink_values(name: str, data: bytes) -> Values:
     )
     found = mavlink_reads(common, message, data)
     if name == "GPS_RAW_INT":
-        return {key: value / FACTORS[key] if key in FACTORS else value for key, value in found.items()}  # type: ignore[operator]
+        return {
+            key: value / FACTORS[key] if key in FACTORS else value
+            for key, value in found.items()
+        }  # type: ignore[operator]
     if name == "COMMAND_LONG":
         found["param"] = [found[f"param{number}"] for number in range(1, 8)]
     return found | {
@@ -280,8 +283,9 @@ def test_positions_of_high_precision_are_derived_as_by_pyubx2(testee: Testee) ->
     }
     for _ in range(FRAMES):
         data = chance.randbytes(36)
-        theirs, ours = ubx_message("NAV-HPPOSLLH", data), decoded(
-            testee, "ublox", "telemetry", 0x0114, data
+        theirs, ours = (
+            ubx_message("NAV-HPPOSLLH", data),
+            decoded(testee, "ublox", "telemetry", 0x0114, data),
         )
         for name, (key, digits) in names.items():
             assert round(_double(ours[name]), digits) == round(theirs[key], digits)  # type: ignore[call-overload]
@@ -307,8 +311,9 @@ def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(
 ) -> None:
     chance = random.Random(count)
     data = chance.randbytes(5) + bytes([count]) + chance.randbytes(2 + 12 * count)
-    theirs, ours = ubx_message("NAV-SAT", data), decoded(
-        testee, "ublox", "telemetry", 0x0135, data
+    theirs, ours = (
+        ubx_message("NAV-SAT", data),
+        decoded(testee, "ublox", "telemetry", 0x0135, data),
     )
     names = [one.name for one in scalars_in(devices().node("ublox").structs[0].layout)]
     assert len(names) == 26 and {
@@ -333,8 +338,9 @@ def test_the_extensions_of_a_ubx_version_are_read_as_by_pyubx2(
         + b"00190000".ljust(10, b"\0")
         + b"".join(rows)
     )
-    theirs, ours = ubx_message("MON-VER", data), decoded(
-        testee, "ublox", "telemetry", 0x0A04, data
+    theirs, ours = (
+        ubx_message("MON-VER", data),
+        decoded(testee, "ublox", "telemetry", 0x0A04, data),
     )
     for key in ("swVersion", "hwVersion"):
         assert bytes.fromhex(str(ours[key])).rstrip(b"\0") == theirs[key].rstrip(b"\0")  # type: ignore[attr-defined]

@@ -159,5 +159,7 @@ def _raw(value: Any) -> object:
     return (
         bytes(value)
         if isinstance(value, bytes)
-        else float(value) if isinstance(value, float) else int(value)
+        else float(value)
+        if isinstance(value, float)
+        else int(value)
     )

@@ -33,7 +33,9 @@ messages:
       - {at: 12, bits: 3, name: Level, type: uint, max: 5}
       - {at: 15, bits: 1, name: Last, type: bool}
 """
-LOGGED = BASE + """\
+LOGGED = (
+    BASE
+    + """\
   - name: Power
     id: 131
     kind: telemetry
@@ -45,6 +47,7 @@ protocol:
     buses:
       uart: {framing: {by: escape, escape: 31, start: 127, end: 255, data: 31}}
 """
+)
 
 
 def compared(tmp_path, old: str, new: str):
@@ -184,7 +187,9 @@ def test_the_step_of_the_version_and_its_reason(tmp_path, change, expected):
     assert bool(found.deciding) == (expected != "none")
 
 
-ENVELOPED = BASE + """\
+ENVELOPED = (
+    BASE
+    + """\
 protocol:
   link:
     framing: {by: length}
@@ -197,6 +202,7 @@ protocol:
     checksums:
       sum: {kind: sum, width: 8, init: 0}
 """
+)
 
 
 @pytest.mark.parametrize(

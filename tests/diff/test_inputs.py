@@ -294,9 +294,10 @@ class TestNoChange:
         assert icdgen("diff", "old", "new").out == "old -> new\nno change\n"
 
     def test_nor_is_the_order_of_anything(self, icdgen, releases):
-        head, first, second = DEMO.split("  - name: Estimated")[0], *DEMO.split(
-            "messages:\n"
-        )[1].split("  - name: Set Roll")
+        head, first, second = (
+            DEMO.split("  - name: Estimated")[0],
+            *DEMO.split("messages:\n")[1].split("  - name: Set Roll"),
+        )
         turned = f"{head}  - name: Set Roll{second}{first}"
         lines = turned.splitlines(keepends=True)
         at = next(i for i, line in enumerate(lines) if "name: Idle" in line)

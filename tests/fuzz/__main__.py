@@ -166,9 +166,10 @@ def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
                 )
                 yield bytes((index, 1, 3, 128)) + b"".join(rows)[:LONGEST]
             elif request["op"] in ("log_decode", "log_message_decode"):
-                yield bytes((index, 2, 3, 128)) + bytes.fromhex(request["bytes"])[
-                    :LONGEST
-                ]
+                yield (
+                    bytes((index, 2, 3, 128))
+                    + bytes.fromhex(request["bytes"])[:LONGEST]
+                )
 
 
 def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:

@@ -26,9 +26,7 @@ with atheris.instrument_imports(include=[PACKAGE]):
     from python_dispatch import Dispatch
 
     dispatch = Dispatch(package)
-    for (
-        _node
-    ) in (
+    for _node in (
         dispatch.nodes
     ):  # types load on first use: load them while imports are instrumented
         for _messages in (_node.TELECOMMANDS, _node.TELEMETRY):

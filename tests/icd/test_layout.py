@@ -40,9 +40,9 @@ def test_a_layout_has_one_node_for_each_line_of_the_icd(path):
         for item in message.source.get("fields", ()):
             names = [part["name"] for part in item.get("bitfields", [item])]
             nodes = [one for one in message.layout.nodes if one.name in names]
-            assert [
-                one.name for one in nodes
-            ] == names, f"{message.name}: {item['name']}"
+            assert [one.name for one in nodes] == names, (
+                f"{message.name}: {item['name']}"
+            )
         visits = [
             visit for visit in walk(message.layout, node.orders) if not visit.owners
         ]
@@ -107,9 +107,9 @@ def test_owners_of_bits_do_not_overlap_unless_their_conditions_exclude_each_othe
             for piece in pieces_of(place):
                 for bit in range(piece.shift, piece.shift + piece.bits):
                     number = 8 * piece.byte + bit
-                    assert (
-                        number not in owned
-                    ), f"{message.name}: {place.name} and {owned[number]}"
+                    assert number not in owned, (
+                        f"{message.name}: {place.name} and {owned[number]}"
+                    )
                     owned[number] = place.name
 
 
@@ -155,12 +155,12 @@ def test_a_counter_is_a_plain_number_of_the_fixed_part_that_can_hold_the_size(pa
         parts = message.layout.parts
         counters = [part.counter for part in parts if not part.is_rest]
         assert len(set(counters)) == len(counters), "a field counts one part"
-        assert not any(
-            part.is_rest for part in parts[:-1]
-        ), "only the last part is the rest of the frame"
-        assert not any(
-            part.is_rest and part.inner for part in parts
-        ), "a field counts elements with arrays of variable length"
+        assert not any(part.is_rest for part in parts[:-1]), (
+            "only the last part is the rest of the frame"
+        )
+        assert not any(part.is_rest and part.inner for part in parts), (
+            "a field counts elements with arrays of variable length"
+        )
         for part in message.layout.counted_parts:
             if not part.is_rest:
                 (counter,) = (

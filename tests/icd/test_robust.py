@@ -192,7 +192,9 @@ def paths(tree: object, path: tuple = ()) -> Iterator[tuple]:
     items = (
         tree.items()
         if isinstance(tree, dict)
-        else enumerate(tree) if isinstance(tree, list) else ()
+        else enumerate(tree)
+        if isinstance(tree, list)
+        else ()
     )
     for key, value in items:
         yield (*path, key)

@@ -134,8 +134,9 @@ def test_the_rest_of_a_name_with_a_word_between_headings_begins_no_table(tmp_pat
 def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_path):
     manual = content.manual(content.shipped("common"), TITLES)
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
-    one, two = imported(tmp_path / "manual.pdf", jobs=1), imported(
-        tmp_path / "manual.pdf", jobs=2
+    one, two = (
+        imported(tmp_path / "manual.pdf", jobs=1),
+        imported(tmp_path / "manual.pdf", jobs=2),
     )
     assert one[1] == two[1]
     assert one[0].import_findings == two[0].import_findings

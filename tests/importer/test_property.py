@@ -19,7 +19,9 @@ from icdgen.importer.rules import explore
 from tests.importer.manuals.wild import WILD
 from tests.importer.test_text import ENUM, LIST, LISTED, MESSAGE, PUMP
 
-RULES = LISTED + """  - rule: bytes
+RULES = (
+    LISTED
+    + """  - rule: bytes
     tables: {head: Offset | Size | Name}
     message: {heading: '^[.0-9]+ {message} [(]{id}[)]$', kind: telemetry}
     columns: {Offset: byte, Size: bytes, Name: name, Type: type, Unit: ['^{scale}(?: {unit:[^ ]+})?$', unit]}
@@ -32,6 +34,7 @@ RULES = LISTED + """  - rule: bytes
     map: {kind: {R/W: configuration}}
     each: {type: uint}
 """
+)
 TEXT = LIST + MESSAGE + ENUM + (
     "\n5 Telemetry\n\n5.1 Motor State (0x21)\n\nOffset\tSize\tName\tType\tUnit\n0\t1\tMode\tU8\t-\n"
     "1\t2\tSpeed\tU16\t10 rpm\n3\t4\tTime\tU32\tms\n"
@@ -72,9 +75,9 @@ def check(trees: dict, text: str) -> None:
                     _is_shown(word, squeezed)
                     for word in re.findall("[A-Za-z]+", one["name"])
                 ), one
-                assert all(
-                    word in squeezed for word in one.get("unit", "").split()
-                ), one
+                assert all(word in squeezed for word in one.get("unit", "").split()), (
+                    one
+                )
                 spans = (
                     {b - a + 1 for a in numbers for b in numbers if b >= a}
                     if len(numbers) < 60

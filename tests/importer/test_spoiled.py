@@ -82,9 +82,10 @@ def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(
 ):
     path = drawn(layout, tmp_path / "motor.pdf")
     (tmp_path / "rules.yaml").write_text(LAYOUTS[layout].profile, encoding="utf-8")
-    words, wanted = profile.load(tmp_path / "rules.yaml"), {
-        "messages": LAYOUTS[layout].messages
-    }
+    words, wanted = (
+        profile.load(tmp_path / "rules.yaml"),
+        {"messages": LAYOUTS[layout].messages},
+    )
     names = {
         part
         for one in wanted["messages"]

@@ -95,9 +95,9 @@ def test_every_command_gives_what_the_page_shows(name, folder, free_port):
                 timeout=300,
             )
             got = (ran.stdout + ran.stderr).strip()
-            assert got == shown or (
-                not shown and ran.returncode == 0
-            ), f"{command}\n{got}"
+            assert got == shown or (not shown and ran.returncode == 0), (
+                f"{command}\n{got}"
+            )
     finally:
         for simulator in simulators:
             simulator.kill()

@@ -237,19 +237,25 @@ def _part(part: dict) -> Iterator[tuple[str, str, Change]]:
         yield "swap", about, change
     for index, field in enumerate(fields):
         for kind, about, change in _field(field):
-            yield kind, f"{field['name']!r}: {about}", lambda p, i=index, c=change: c(
-                p["fields"][i]
+            yield (
+                kind,
+                f"{field['name']!r}: {about}",
+                lambda p, i=index, c=change: c(p["fields"][i]),
             )
     for index, one in enumerate(part.get("derived") or ()):
         for text in formulas(one["formula"]):
             about = f"{one['name']!r}: {one['formula']} -> {text}"
-            yield "derived", about, lambda p, i=index, t=text: p["derived"][i].update(
-                formula=t
+            yield (
+                "derived",
+                about,
+                lambda p, i=index, t=text: p["derived"][i].update(formula=t),
             )
     for step in (-1, 1) if "kind" not in part else ():
         length = part["length"] + step
-        yield "length", f"{part['name']!r}: length {length - step} -> {length}", lambda p, v=length: p.update(
-            length=v
+        yield (
+            "length",
+            f"{part['name']!r}: length {length - step} -> {length}",
+            lambda p, v=length: p.update(length=v),
         )
 
 
@@ -267,9 +273,12 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
         if (one["bits"], one["type"]) == (other["bits"], other["type"]):
             about = f"{one['name']!r} and {other['name']!r} in each other's place"
             places = {index - 1: other["at"], index: one["at"]}
-            yield about, lambda t, p=places: [
-                t["fields"][i].update(at=at) for i, at in p.items()
-            ]
+            yield (
+                about,
+                lambda t, p=places: [
+                    t["fields"][i].update(at=at) for i, at in p.items()
+                ],
+            )
 
 
 def _open(field: dict) -> Iterator[tuple[str, str, Change]]:
@@ -281,14 +290,18 @@ def _open(field: dict) -> Iterator[tuple[str, str, Change]]:
     if said != "rest":
         yield "counter", "up to the end", lambda f: f.update({key: "rest"})
     if isinstance(said, str) and said != "rest":
-        yield "counter", "one more than it says", lambda f: f.update(
-            {key: {"field": said, "plus": 1}}
+        yield (
+            "counter",
+            "one more than it says",
+            lambda f: f.update({key: {"field": said, "plus": 1}}),
         )
     for step in (-1, 1) if isinstance(said, dict) else ():
         plus = said["plus"] + step
         about = f"plus {said['plus']} -> {plus}"
-        yield "counter", about, lambda f, v=plus: f.update(
-            {key: {"field": said["field"], "plus": v}}
+        yield (
+            "counter",
+            about,
+            lambda f, v=plus: f.update({key: {"field": said["field"], "plus": v}}),
         )
 
 
@@ -323,10 +336,10 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
                     if isinstance(said, list)
                     else value + step
                 )
-                yield "condition", f"{name} {said} -> {values}", lambda f, n=name, v=values: f[
-                    "when"
-                ].update(
-                    {n: v}
+                yield (
+                    "condition",
+                    f"{name} {said} -> {values}",
+                    lambda f, n=name, v=values: f["when"].update({n: v}),
                 )
     if field.get("when"):
         yield "condition", "always there", lambda f: f.pop("when")
@@ -344,13 +357,17 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
     ):
         if key in field:
             other = values[field[key] == values[0]]
-            yield key.replace(
-                "_", " "
-            ), f"{key} {other}", lambda f, k=key, o=other: f.update({k: o})
+            yield (
+                key.replace("_", " "),
+                f"{key} {other}",
+                lambda f, k=key, o=other: f.update({k: o}),
+            )
     if "formula" in field:
         for text in formulas(field["formula"]):
-            yield "formula", f"{field['formula']} -> {text}", lambda f, t=text: f.update(
-                formula=t
+            yield (
+                "formula",
+                f"{field['formula']} -> {text}",
+                lambda f, t=text: f.update(formula=t),
             )
         yield "formula", f"{field['formula']} -> none", lambda f: f.pop("formula")
     yield from _points(field) if "points" in field else ()
@@ -369,21 +386,27 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         }.get(special["value"])
         for value in named or (special["value"] - 1, special["value"] + 1):
             about = f"special {special['value']} -> {value}"
-            yield "special", about, lambda f, i=index, v=value: f["special"][i].update(
-                value=v
+            yield (
+                "special",
+                about,
+                lambda f, i=index, v=value: f["special"][i].update(value=v),
             )
 
 
 def _points(field: dict) -> Iterator[tuple[str, str, Change]]:
     """Each number of a table one more and one less, and what is so outside of it."""
     for points in tables(field["points"]):
-        yield "points", f"{field['points']} -> {points}", lambda f, p=points: f.update(
-            points=p
+        yield (
+            "points",
+            f"{field['points']} -> {points}",
+            lambda f, p=points: f.update(points=p),
         )
     for outside in OUTSIDE:
         if outside != field.get("outside"):
-            yield "outside", f"outside {outside}", lambda f, o=outside: f.update(
-                outside=o
+            yield (
+                "outside",
+                f"outside {outside}",
+                lambda f, o=outside: f.update(outside=o),
             )
 
 

@@ -89,7 +89,9 @@ def _described(output: str, old: dict[str, str], new: dict[str, str]) -> str:
     return (
         f"{output} (new)"
         if output not in old
-        else f"{output} (gone)" if output not in new else output
+        else f"{output} (gone)"
+        if output not in new
+        else output
     )
 
 

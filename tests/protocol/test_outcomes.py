@@ -174,9 +174,9 @@ def test_an_acknowledge_that_comes_twice_does_not_count_as_the_reply_to_come():
     assert arm.result(10, arm.READ_POSITION, arm.DONE) == ["Progress"]
     assert arm.result(11, arm.READ_POSITION, arm.DONE) == ["Progress"]
     assert [type(each).__name__ for each in arm.client.tick(120)] == ["Timeout"]
-    assert not arm.send(
-        130, arm.READ_POSITION, b"\1"
-    ), "the reply could be the late one"
+    assert not arm.send(130, arm.READ_POSITION, b"\1"), (
+        "the reply could be the late one"
+    )
     assert arm.receive(140, arm.POSITION, b"\1\0\0") == ["Late"]
 
 

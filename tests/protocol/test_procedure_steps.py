@@ -169,8 +169,9 @@ def test_short_telemetry_reads_as_zeros(link):
 
 def test_a_poll_fails_rather_than_succeeds_and_ends_after_its_time(link):
     takes = (Take(BYTE, OTHER), Take(SECOND, OTHER + 1))
-    tests = (Condition(OTHER, Value(1, False)),), (
-        Condition(OTHER + 1, Value(1, False)),
+    tests = (
+        (Condition(OTHER, Value(1, False)),),
+        (Condition(OTHER + 1, Value(1, False)),),
     )
     poll = Poll(128, takes, *tests, 50, 120)
     for frame, result in (("0101", "failed"), ("0100", "done")):

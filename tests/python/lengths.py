@@ -27,9 +27,10 @@ _TYPES = (
 
 def write(folder: Path, lengths: range) -> Path:
     """The file."""
-    messages, enums = [], [
-        {"name": "Mode", "members": [_member(length) for length in lengths]}
-    ]
+    messages, enums = (
+        [],
+        [{"name": "Mode", "members": [_member(length) for length in lengths]}],
+    )
     for number, length in enumerate(lengths):
         messages.append(_message("m" * length, number, _TYPES, length))
         messages.append(

@@ -127,7 +127,7 @@ def test_a_physical_value_that_does_not_fit_leaves_the_array_as_it_was(
 
 def test_nans_in_arrays_keep_their_bits(everything):
     frame = bytearray(43)
-    frame[11:19] = bytes.fromhex("0100807f" "3c5aa5ff")
+    frame[11:19] = bytes.fromhex("0100807f3c5aa5ff")
     frame[19:27] = bytes.fromhex("7ff0000000000001")
     message = everything.from_bytes(bytes(frame))
     assert all(map(math.isnan, (*message.floats, message.doubles[0])))

@@ -184,7 +184,7 @@ def test_nans_in_structs_keep_their_bits(tmp_path):
         .module("floats")
         .Floats
     )
-    frame = bytes.fromhex("7f800001" "00000000" "00" "ffa5a5a5" "00000000" "00")
+    frame = bytes.fromhex("7f8000010000000000ffa5a5a50000000000")
     message = floats.from_bytes(frame)
     assert all(math.isnan(one.aligned) for one in message.all)
     assert message.to_bytes() == frame

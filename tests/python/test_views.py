@@ -46,13 +46,16 @@ def test_a_view_is_not_set(views):
 
 def test_views_stand_behind_the_fields_of_a_message(views):
     message = views(narrow=31)
-    own, seen = ["narrow", "rest", "word", "octets"], [
-        "across",
-        "property",
-        "top",
-        "real",
-        "within",
-    ]
+    own, seen = (
+        ["narrow", "rest", "word", "octets"],
+        [
+            "across",
+            "property",
+            "top",
+            "real",
+            "within",
+        ],
+    )
     assert [info.attribute for info in views.FIELDS] == own
     assert [info.attribute for info in views.VIEWS] == seen
     assert list(message.as_dict()) == own + seen

@@ -217,9 +217,12 @@ def test_a_transaction_that_the_node_does_not_take_is_made_again(acp, wire):
 
 
 def test_a_read_that_wants_a_stop_before_it_is_a_transaction_of_its_own(acp, wire):
-    for link, parts in (acp.LINK, [2]), (
-        acp.LINK._replace(i2c_repeated_start=False),
-        [1, 1],
+    for link, parts in (
+        (acp.LINK, [2]),
+        (
+            acp.LINK._replace(i2c_repeated_start=False),
+            [1, 1],
+        ),
     ):
         bus = smbus_fake.SMBus(acp, [])
         assert (

@@ -51,9 +51,9 @@ def test_every_vector_is_answered_as_it_must_be(name, request):
     for node in protocol.nodes(package.icd):
         for case in protocol.cases(package.icd, node):
             answer = package.answer(json.dumps(case.request).encode())
-            assert (
-                difference(case.answer, json.dumps(answer).encode()) is None
-            ), case.why
+            assert difference(case.answer, json.dumps(answer).encode()) is None, (
+                case.why
+            )
             asked += 1
     assert asked > 1000
 

@@ -51,8 +51,9 @@ def test_a_frame_is_found_with_its_node_direction_and_message(
 
 
 def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_said():
-    clock, epoch = sent("receiver", "telemetry", 0x0122, bytes(20)), sent(
-        "receiver", "telemetry", 0x0161, bytes(4)
+    clock, epoch = (
+        sent("receiver", "telemetry", 0x0122, bytes(20)),
+        sent("receiver", "telemetry", 0x0161, bytes(4)),
     )
     first, second = recognize(ICD, b"\x00\xb5" + clock + epoch[:-1] + b"\0" + epoch)
     assert [one.message.name for one in (first, second)] == [

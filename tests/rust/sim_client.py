@@ -56,9 +56,13 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         if one.protocol.get("program_start", {}).get("application") == node.name
     ]
     boot = icd.node(starters[0])
-    last, log = known.polled, icd.protocol_of(node).get("unsolicited_log", {}).get(
-        "configured_by", {}
-    ).get("message")
+    last, log = (
+        known.polled,
+        icd.protocol_of(node)
+        .get("unsolicited_log", {})
+        .get("configured_by", {})
+        .get("message"),
+    )
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
         trim_blocks=True,

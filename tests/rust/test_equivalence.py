@@ -51,9 +51,9 @@ def test_every_physical_value_of_every_scale(subject, testee):
     for (scale, _, _), (*_, field), answer in zip(
         fields, fields.values(), answers, strict=True
     ):
-        assert answer["failures"] == (
-            _lost(field) if answer["failures"] else 0
-        ), field.name
+        assert answer["failures"] == (_lost(field) if answer["failures"] else 0), (
+            field.name
+        )
         assert answer["physical"] == _all_doubles(scale, field), field.name
 
 

@@ -25,8 +25,9 @@ def test_each_of_them_runs(subject):
     """All; where each is a program of its own, those of the node with the fewest
     messages.
     """
-    library, tools = Toolchain("default").library(subject.crate, *USED), Toolchain(
-        "default"
+    library, tools = (
+        Toolchain("default").library(subject.crate, *USED),
+        Toolchain("default"),
     )
     least = min(subject.icd.nodes, key=lambda node: len(node.messages))
     only = "" if tools.merges else f"/{least.name}/"
@@ -40,9 +41,9 @@ def test_every_message_enumeration_and_direction_has_one(subject):
             parts = DECLARED.split(file.read_text())
             for before, name in zip(parts[:-1:2], parts[1::2], strict=True):
                 comment = before.rsplit("\n\n", 1)[-1]
-                assert (
-                    name == "Node" or len(EXAMPLE.findall(comment)) == 2
-                ), f"{file.name}: {name}"
+                assert name == "Node" or len(EXAMPLE.findall(comment)) == 2, (
+                    f"{file.name}: {name}"
+                )
 
 
 def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):

@@ -70,8 +70,9 @@ def everything(icd: Icd) -> Iterator[str]:
             for field in (
                 field for field in message.declared_members if field.is_scaled
             ):
-                one, templates = field.physical_name, (
-                    (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
+                one, templates = (
+                    field.physical_name,
+                    ((ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)),
                 )
                 template = templates[not field.is_settable]
                 value = "Option<f64>" if field.model.conditions else "f64"

@@ -33,8 +33,9 @@ def program(icd: Icd) -> str:
             f"let message = {path(description.message(case.message))}::from_bytes(&{list(case.frame)}).unwrap();"
         ]
         for one in case.parts:
-            part, count = path(description.message(one.part)), sum(
-                other.part is one.part for other in case.parts
+            part, count = (
+                path(description.message(one.part)),
+                sum(other.part is one.part for other in case.parts),
             )
             given = (
                 f"<[{part}; {count}]>::from(&message)[{one.index}]"

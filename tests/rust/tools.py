@@ -34,9 +34,9 @@ def run(
         capture_output=True,
         text=True,
     )
-    assert (
-        done.returncode == 0
-    ), f"{' '.join(words)}\n{(done.stdout + done.stderr)[:6000]}"
+    assert done.returncode == 0, (
+        f"{' '.join(words)}\n{(done.stdout + done.stderr)[:6000]}"
+    )
     return done.stdout
 
 

@@ -51,16 +51,19 @@ def commands(of):
         if row.exchange is None:
             continue
         responses = of.stream.exchanges[row.exchange].responses
-        yield row, [
-            verdict
-            for verdict in EVENTS
-            if any(
+        yield (
+            row,
+            [
                 verdict
-                in ([r.verdict] if r.status is None else dict(r.meanings).values())
-                or (r.status is not None and verdict == r.verdict)
-                for r in responses
-            )
-        ]
+                for verdict in EVENTS
+                if any(
+                    verdict
+                    in ([r.verdict] if r.status is None else dict(r.meanings).values())
+                    or (r.status is not None and verdict == r.verdict)
+                    for r in responses
+                )
+            ],
+        )
 
 
 def sent(client: Client, id: int, data: bytes) -> bytes:

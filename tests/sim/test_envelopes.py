@@ -368,9 +368,9 @@ def test_a_receiver_of_the_examples_is_simulated_watched_and_configured():
             place,
             folder=folder,
         )
-    assert (
-        shown.returncode == 0 and "iTOW" in shown.stdout and "7" in shown.stdout
-    ), shown.stderr
-    assert (
-        sent.returncode == 0 and "acknowledged with ACK-ACK" in sent.stdout
-    ), sent.stderr
+    assert shown.returncode == 0 and "iTOW" in shown.stdout and "7" in shown.stdout, (
+        shown.stderr
+    )
+    assert sent.returncode == 0 and "acknowledged with ACK-ACK" in sent.stdout, (
+        sent.stderr
+    )

@@ -29,9 +29,9 @@ class Page(HTMLParser):
         super().__init__()
         self.ids: list[str] = []
         self.links: list[str] = []
-        self.refers: list[str] = (
-            []
-        )  # ids that labels, aria attributes and the like name
+        self.refers: list[
+            str
+        ] = []  # ids that labels, aria attributes and the like name
         self.feed(text)
 
     def handle_starttag(

@@ -33,7 +33,8 @@ def ask(demo):
 
 
 def test_docs_writes_a_site_and_touches_nothing_that_is_current(
-    icdgen, demo  # noqa: F811
+    icdgen,  # noqa: F811
+    demo,
 ):
     first = icdgen("docs", demo)
     assert first.status == 0 and "Open site/index.html" in first.out
@@ -53,7 +54,9 @@ def test_docs_check_tells_that_the_site_is_old(icdgen, demo):  # noqa: F811
 
 
 def test_docs_says_what_is_wrong_with_an_icd_and_writes_nothing(
-    icdgen, demo, tmp_path  # noqa: F811
+    icdgen,  # noqa: F811
+    demo,
+    tmp_path,
 ):
     demo.write_text(demo.read_text("utf-8").replace("bits: 16", "bits: 99"), "utf-8")
     result = icdgen("docs", demo)
@@ -65,7 +68,9 @@ def test_docs_says_what_is_wrong_with_an_icd_and_writes_nothing(
 
 
 def test_docs_of_a_release_says_what_changed_since_the_older_one(
-    icdgen, demo, tmp_path  # noqa: F811
+    icdgen,  # noqa: F811
+    demo,
+    tmp_path,
 ):
     older = tmp_path / "older.yaml"
     older.write_text(

@@ -37,7 +37,9 @@ def test_the_box_of_the_first_page_leads_there_from_every_way(browser, site):
 
 
 def test_in_every_way_page_and_command_line_give_the_same_values(
-    browser, site, icdgen  # noqa: F811
+    browser,
+    site,
+    icdgen,  # noqa: F811
 ):
     with opened(browser, site.as_uri() + "/", ANGLES.partition("#")[0]) as page:
         for way, text in {**BARE, **WHOLE}.items():
@@ -65,7 +67,9 @@ def test_in_every_way_page_and_command_line_give_the_same_values(
 
 
 def test_in_every_way_without_an_id_both_ask_which_message_it_is(
-    browser, site, icdgen  # noqa: F811
+    browser,
+    site,
+    icdgen,  # noqa: F811
 ):
     with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
         for way, text in BARE.items():

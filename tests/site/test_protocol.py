@@ -93,7 +93,10 @@ WIDE = {  # CRC-16/IBM-3740 and CRC-32/ISO-HDLC, as the catalogues have them
 
 @pytest.mark.parametrize("width", WIDE)
 def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(
-    browser, tmp_path, icdgen, width  # noqa: F811
+    browser,
+    tmp_path,
+    icdgen,  # noqa: F811
+    width,
 ):
     assert icdgen("init", "battery").status == 0
     path = tmp_path / "icd" / "battery.yaml"

@@ -80,7 +80,7 @@ def test_points_of_each_curve_are_counted_for_all(curves):
         "curves[1].levels[0]=0.02",
     ]
     frame = encode.encode(curves, "curves", "Curves", given_curves(*points))
-    ends = "0001" "{:06x}" "81" "0000fffe0001fffe" "616200"
+    ends = "0001{:06x}810000fffe0001fffe616200"
     assert frame.data.hex() == "01000002" + "00070005fffe" + ends.format(
         1
     ) + "00070006fffe" + ends.format(2)

@@ -38,7 +38,9 @@ def places(tree: Any, before: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]
     items = (
         tree.items()
         if isinstance(tree, dict)
-        else enumerate(tree) if isinstance(tree, list) else ()
+        else enumerate(tree)
+        if isinstance(tree, list)
+        else ()
     )
     for key, value in items:
         yield (*before, key)

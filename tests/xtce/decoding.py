@@ -85,8 +85,9 @@ def _compare(
         if its != ours and not (its != its and ours != ours):
             return 0, f"{message.name}: {field.name} is {ours!r}, theirs {its!r}"
         if field.has_formula and not isinstance(ours, bytes):
-            exact, read = codec.physical_double(field, int(raw[field.name])), float(
-                theirs[field.name]
+            exact, read = (
+                codec.physical_double(field, int(raw[field.name])),
+                float(theirs[field.name]),
             )
             if exact == exact and not math.isclose(
                 exact or 0.0, read, rel_tol=1e-9, abs_tol=1e-12

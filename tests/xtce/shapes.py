@@ -103,8 +103,9 @@ def _compared(
             for one in message.fields
         }
         values += 1
-        ours, packet = codec.encode(node, message, given), packets.get(
-            message.name, b""
+        ours, packet = (
+            codec.encode(node, message, given),
+            packets.get(message.name, b""),
         )
         if (ours, message.telecommand_id) != (
             packet[6:],

@@ -211,7 +211,9 @@ def _network(
     id_bits = (
         CAN_BOTH
         if len(formats) > 1
-        else CAN_EXTENDED if True in formats else CAN_STANDARD
+        else CAN_EXTENDED
+        if True in formats
+        else CAN_STANDARD
     )
     order = frames.usual(
         signal_place(signal) for message in messages for signal in message.signals
@@ -225,9 +227,10 @@ def _network(
             if id_bits == CAN_BOTH and message.is_extended_frame
             else 0
         )
-        of, signals = AccountedObject(message), [
-            AccountedObject(signal) for signal in message.signals
-        ]
+        of, signals = (
+            AccountedObject(message),
+            [AccountedObject(signal) for signal in message.signals],
+        )
         try:
             network.messages.append(_message(of, signals, id, order, enums, to))
         except NotSupported as why:

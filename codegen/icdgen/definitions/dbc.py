@@ -201,9 +201,7 @@ def _load_repaired(text: str, load: Callable[[str], Any], to: Definitions) -> An
         for _ in range(MOST):
             try:
                 return load(text)
-            except (
-                Exception
-            ) as error:  # cantools raises its own exceptions and exceptions of its parser
+            except Exception as error:  # cantools raises its own exceptions and exceptions of its parser
                 reason = str(error)
                 repaired = _without_line(text, reason, to) or _without_unused(
                     text, reason, to

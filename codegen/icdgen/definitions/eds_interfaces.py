@@ -81,9 +81,9 @@ class Interfaces:
         self._is_own = set(self.own)
         self._steps = 0
         self._derived: dict[Element, list[Element]] = {}
-        self._uses: dict[Element, set[Element]] = (
-            {}
-        )  # types of the entries, elements and base of a type
+        self._uses: dict[
+            Element, set[Element]
+        ] = {}  # types of the entries, elements and base of a type
         for package in sheets.all:
             for type_ in sheets.types(package):
                 base = self._type(type_, "baseType")

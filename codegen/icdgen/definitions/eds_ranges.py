@@ -109,7 +109,9 @@ def limited(item: Item, bits: int, of: Range) -> Item:
             number = (
                 None
                 if end is None
-                else end.numerator if end.denominator == 1 else _double(end)
+                else end.numerator
+                if end.denominator == 1
+                else _double(end)
             )
             if number is not None and "e" not in str(number) and len(str(number)) < 30:
                 result[key] = number

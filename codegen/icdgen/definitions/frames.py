@@ -171,8 +171,9 @@ def _fields_of_bits(mask: int) -> Iterator[tuple[Item, Place]]:
         while mask >> at & 1 and (at == start or at % 8):
             at += 1
         if at > start:
-            yield {"name": f"Bits from {start}", "type": "uint"}, Place(
-                start, at - start, LITTLE
+            yield (
+                {"name": f"Bits from {start}", "type": "uint"},
+                Place(start, at - start, LITTLE),
             )
         else:
             at += 1

@@ -512,7 +512,9 @@ class Layout(Container[Part]):
         chosen = (
             str(cases["_"])
             if value is None and "_" in cases
-            else None if value is None else types[value]
+            else None
+            if value is None
+            else types[value]
         )
         if is_new and chosen is not None:
             self.labels.append(Label(chosen, "other" if value is None else f"{value}"))
@@ -565,8 +567,9 @@ class Layout(Container[Part]):
         chosen = self.decided[key]
         if chosen is None and free.bit_count() == 1 and len(possible) == 1:
             # A single bit that differs from the only option has the other value.
-            part.mask, part.value = part.mask | mask, part.value & ~mask | (
-                possible[0] ^ free
+            part.mask, part.value = (
+                part.mask | mask,
+                part.value & ~mask | (possible[0] ^ free),
             )
         elif chosen is None:
             part.excluded |= {(mask, value) for value in possible}

@@ -340,7 +340,9 @@ def _icd_field(
     kind = (
         "float"
         if field.type in ("float", "double")
-        else "uint" if field.type[0] == "u" else "int"
+        else "uint"
+        if field.type[0] == "u"
+        else "int"
     )
     bits = _BITS[field.type]
     item: Item = {"bits": bits, "name": field.name, "type": kind}
@@ -535,4 +537,4 @@ def _number(text: str) -> Any:
     # With the base 0, `int` rejects decimal numbers with zeros in front.
     value = int(match[1], 0) if "x" in match[1].lower() else int(match[1])
     power = int(match[3] or 0)
-    return value << power if match[2] == "<<" else value ** power if match[2] else value
+    return value << power if match[2] == "<<" else value**power if match[2] else value

@@ -138,7 +138,9 @@ def _number(text: str) -> int | float | str:
     return (
         text
         if "e" in text.lower() or len(text) > 30
-        else float(text) if "." in text else int(text)
+        else float(text)
+        if "." in text
+        else int(text)
     )
 
 

@@ -266,8 +266,9 @@ class Layout(Container[Part]):
 
         Raises `NotSupported`.
         """
-        bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get(
-            "binaryValue", ""
+        bits, text = (
+            number(entry.get("sizeInBits", ""), "a size"),
+            entry.get("binaryValue", ""),
         )
         if not 1 <= bits <= 8 * MOST_BYTES:
             raise NotSupported(f"a fixed value has {bits} bits")
@@ -412,9 +413,10 @@ class Layout(Container[Part]):
                     != 1
                 ):
                     raise NotSupported(f"{prefix} a comparison of two parameters")
-                operator, value = criterion.findtext(
-                    "ComparisonOperator", ""
-                ), criterion.findtext("Value", "")
+                operator, value = (
+                    criterion.findtext("ComparisonOperator", ""),
+                    criterion.findtext("Value", ""),
+                )
                 yield [self._compared(criterion, operator, value, seen_from, prefix)]
             else:
                 raise NotSupported(f"{prefix} a `{line(criterion.tag, 60)}`")

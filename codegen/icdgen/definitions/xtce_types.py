@@ -128,8 +128,9 @@ class Types(Reading):
             raise NotSupported(
                 f"{where} is an array of {len(listed) or 'no'} dimensions"
             )
-        first, last = fixed(listed[0].find("StartingIndex"), 0), fixed(
-            listed[0].find("EndingIndex")
+        first, last = (
+            fixed(listed[0].find("StartingIndex"), 0),
+            fixed(listed[0].find("EndingIndex")),
         )
         if (
             first == 0
@@ -318,10 +319,13 @@ class Types(Reading):
         if piece.bits == 1:
             piece.item["type"] = "bool"
             return
-        choices, called = {
-            0: line(label_of_0, 60),
-            1: line(label_of_1, 60),
-        }, _enumeration_name(element)
+        choices, called = (
+            {
+                0: line(label_of_0, 60),
+                1: line(label_of_1, 60),
+            },
+            _enumeration_name(element),
+        )
         self.enums.hold(
             piece.item,
             piece.bits,
@@ -349,7 +353,9 @@ class Types(Reading):
             keys = (
                 _time(piece.item, chain)
                 if is_time
-                else {} if encoding is None else calibration(encoding)
+                else {}
+                if encoding is None
+                else calibration(encoding)
             )
         except ValueError as error:
             self.raw_only(
@@ -442,7 +448,9 @@ def special_values(element: Element) -> Item:
             number = (
                 value
                 if value[-1] in "nf"
-                else float(value) if set(value) & set(".e") else int(value)
+                else float(value)
+                if set(value) & set(".e")
+                else int(value)
             )
             result.append({"value": number, "meaning": text})
     return {"special": result[:_MOST_NAMED]} if result else {}

@@ -365,8 +365,9 @@ def orders_text(field: NodePlace) -> str:
         "msb0": "bit 0 of a byte is the most significant",
         "lsb0": "bit 0 of a byte is the least significant",
     }
-    orders = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(
-        field.bit_order, ""
+    orders = (
+        f"{field.byte_order}-endian" if field.byte_order else "",
+        bit.get(field.bit_order, ""),
     )
     return ", ".join(filter(None, orders))
 

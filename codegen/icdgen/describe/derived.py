@@ -46,8 +46,13 @@ class Derived(NamedTuple):
                 for operand in operands
             )
             is_power = operator == "^"
-            yield name, (
-                power.format(left, right) if is_power else f"{left} {operator} {right}"
+            yield (
+                name,
+                (
+                    power.format(left, right)
+                    if is_power
+                    else f"{left} {operator} {right}"
+                ),
             )
 
 

@@ -162,8 +162,9 @@ def _resolution(curve: Curve, low: int, high: int) -> float:
     not count.
     """
     if curve.points:
-        low, high = max(low, math.ceil(curve.points[0][0])), min(
-            high, math.floor(curve.points[-1][0])
+        low, high = (
+            max(low, math.ceil(curve.points[0][0])),
+            min(high, math.floor(curve.points[-1][0])),
         )
     every = max(1, (high - low) // _SAMPLES)
     starts = range(low, max(high, low + 1), every)

@@ -48,8 +48,9 @@ def integer_scale(steps: Steps) -> IntegerScale | None:
     else in millionths; else None.
     """
     for per in (1000, 1_000_000):
-        factor, offset = Fraction(steps.p * per, steps.q), Fraction(
-            steps.c * per, steps.q
+        factor, offset = (
+            Fraction(steps.p * per, steps.q),
+            Fraction(steps.c * per, steps.q),
         )
         if factor.denominator == offset.denominator == 1:
             return _integer_scale(per, int(factor), int(offset), steps)

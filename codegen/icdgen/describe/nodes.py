@@ -366,8 +366,9 @@ class NodeDescription:
             (message, message.telecommand_id_name) for message in self.telecommands
         )
         telemetry = ((message, message.telemetry_id_name) for message in self.telemetry)
-        both_directions = Direction("telecommand", tuple(telecommands)), Direction(
-            "telemetry", tuple(telemetry)
+        both_directions = (
+            Direction("telecommand", tuple(telecommands)),
+            Direction("telemetry", tuple(telemetry)),
         )
         return tuple(direction for direction in both_directions if direction.messages)
 

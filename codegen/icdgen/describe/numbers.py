@@ -22,7 +22,7 @@ _OUTSIDE = {
 def exact_text(value: Fraction | int) -> str:
     """Return the exact decimal if it has few digits, else the nearest double."""
     if value.denominator == 1:
-        return str(int(value)) if abs(value) < 10 ** MOST_DIGITS else repr(float(value))
+        return str(int(value)) if abs(value) < 10**MOST_DIGITS else repr(float(value))
     # A decimal ends only if the denominator divides a power of ten.
     places = next(
         (n for n in range(1, MOST_DIGITS + 1) if 10**n % value.denominator == 0), 0

@@ -66,7 +66,9 @@ class ScalarDescription(Named[NodePlace]):
         unit = (
             "text"
             if self.is_text
-            else place.unit.identifier if place.unit else "physical"
+            else place.unit.identifier
+            if place.unit
+            else "physical"
         )
         self.physical_name = f"{self.declared_name}_{unit}"
 

@@ -72,7 +72,9 @@ class Change:
         return (
             "certain"
             if self.sure >= CERTAIN
-            else "likely" if self.sure >= LIKELY else "uncertain"
+            else "likely"
+            if self.sure >= LIKELY
+            else "uncertain"
         )
 
     @property

@@ -250,8 +250,9 @@ class Generated:
         # With --unchecked, an ICD may contain fields that backends reject.
         if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
-        before, after = self.before.field(pair.owner.old, pair.old), self.after.field(
-            pair.owner.new, pair.new
+        before, after = (
+            self.before.field(pair.owner.old, pair.old),
+            self.after.field(pair.owner.new, pair.new),
         )
         after = copy(after)
         enum = (

@@ -60,8 +60,9 @@ def moves(message: MessagePair) -> Moves:
     result = Moves()
     if not any(pair.moved for pair in message.common):
         return result
-    old, new = _Order(message.common, lambda pair: pair.old), _Order(
-        message.common, lambda pair: pair.new
+    old, new = (
+        _Order(message.common, lambda pair: pair.old),
+        _Order(message.common, lambda pair: pair.new),
     )
     groups: dict[int, list[FieldPair]] = {}
     # Fields that moved by the same distance may belong to one move.

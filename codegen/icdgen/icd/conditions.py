@@ -141,7 +141,9 @@ def _shown(value: object) -> str:
     return (
         str(value).lower()
         if isinstance(value, bool)
-        else f"`{value}`" if isinstance(value, str) else str(value)
+        else f"`{value}`"
+        if isinstance(value, str)
+        else str(value)
     )
 
 

@@ -182,10 +182,13 @@ def frame_fields(
     Caches the last results of each layout.
     """
     frames = _frames(layout)
-    key = orders, (
-        None
-        if sizes is None or not layout.sequence
-        else tuple(map(sizes.__getitem__, layout.parts_by_size))
+    key = (
+        orders,
+        (
+            None
+            if sizes is None or not layout.sequence
+            else tuple(map(sizes.__getitem__, layout.parts_by_size))
+        ),
     )
     fields = frames.get(key)
     if fields is None:

@@ -230,7 +230,9 @@ class _Loader:
             fix = (
                 Fix(finding.place, text)
                 if text
-                else violation.fix if violation else None
+                else violation.fix
+                if violation
+                else None
             )
             self.findings.append(finding._replace(fix=fix))
         places = {finding.place for finding in ambiguous}

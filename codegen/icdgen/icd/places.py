@@ -185,9 +185,9 @@ class NodePlace(OfScalar):
 
         For an array of structs, call it on an element.
         """
-        assert (
-            self.struct is not None and not self.count
-        ), f"{self.name} is not a single struct"
+        assert self.struct is not None and not self.count, (
+            f"{self.name} is not a single struct"
+        )
         return tuple(
             _place(node, self.declared_orders, self.at, self.steps)
             for node in self.struct.fixed

@@ -61,11 +61,13 @@ _SCIENTIFIC = re.compile(
 )
 # Text before a value and the value itself, in block style and in flow style (within
 # brackets).
-_BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(
-    r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)"
+_BEFORE_BLOCK, _BLOCK_VALUE = (
+    re.compile(r":[ ]+|-[ ]+(?=[^ \w])"),
+    re.compile(r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)"),
 )
-_BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(
-    r"[^'\"{}\[\],]+"
+_BEFORE_FLOW, _FLOW_VALUE = (
+    re.compile(r"(?<=[:,]) |[{\[]"),
+    re.compile(r"[^'\"{}\[\],]+"),
 )
 _RENAMED = re.compile(r"`(\w+):`")
 

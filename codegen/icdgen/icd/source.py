@@ -237,8 +237,9 @@ class Builder:
                     container.spots.append(spot)
                 elif key is None:
                     key, key_spot = (
-                        value if type(value) is str else self.key(value, event)
-                    ), spot
+                        (value if type(value) is str else self.key(value, event)),
+                        spot,
+                    )
                 else:
                     if key in container:
                         self.add_duplicate_key(

@@ -121,11 +121,13 @@ _PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
 # Signs of products and powers that are not ASCII.
 _OPERATORS = {ord("²"): "^2", ord("³"): "^3", ord("·"): ".", ord("\u22c5"): "."}
 # Units that are not built in, but whose symbols are similar to those of other units.
-_OTHER_UNITS = frozenset("""
+_OTHER_UNITS = frozenset(
+    """
     a As atm Ah bps Bq BTU cal cd dBc dBi dBV dBW degF eV F ft G gal Gy H hp in kat kph
     l L lb lbf lm lx mil mol mph Nm Ns Oe oz ppb ppt psi rev rps S Sv t ton var VA Vs Wb
     Ws
-    """.split())
+    """.split()
+)
 
 
 def similar_unit(symbol: str, declared: Iterable[str]) -> str:

@@ -84,9 +84,9 @@ def fixed_fields_after(message: Map) -> list[Map]:
         return []
     fixed = placed_fields(
         message,
-        lambda item: not is_variable(item)
-        and not item.get("view")
-        and "after" not in item,
+        lambda item: (
+            not is_variable(item) and not item.get("view") and "after" not in item
+        ),
     )
     return [item for item in fixed if item["at"] >= first["at"]]
 
@@ -208,8 +208,9 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
         yield Fault.at(item, key, text, help)
         return
     # The largest number of elements that the counter can express.
-    most, elements = (1 << counter["bits"]) - 1 + plus, (
-        "bytes" if key == "size" else "elements"
+    most, elements = (
+        (1 << counter["bits"]) - 1 + plus,
+        ("bytes" if key == "size" else "elements"),
     )
     if most < item["up_to"]:
         added = f" plus {plus}" if plus else ""

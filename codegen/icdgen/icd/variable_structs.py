@@ -177,8 +177,9 @@ def faults_of_inner_counts(
         # have.
         for other in _inner_arrays_before(message, inner, structs):
             other_name, other_plus = counting(other)
-            low, high = max(0, -plus, -other_plus), min(
-                inner.get("up_to", 0) - plus, other.get("up_to", 0) - other_plus
+            low, high = (
+                max(0, -plus, -other_plus),
+                min(inner.get("up_to", 0) - plus, other.get("up_to", 0) - other_plus),
             )
             if other_name == counter_name and low > high:
                 text = f"`{counter_name}` counts {array} and `{other['name']}`, and no value suits both"

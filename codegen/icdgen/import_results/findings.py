@@ -29,7 +29,9 @@ class SourcePlace(NamedTuple):
         within = (
             f"page {self.page}"
             if self.page is not None
-            else f"line {self.line}" if self.line is not None else ""
+            else f"line {self.line}"
+            if self.line is not None
+            else ""
         )
         return ", ".join(filter(None, (self.file, within)))
 

@@ -85,7 +85,9 @@ def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
         state = (
             "written"
             if target.changes is None
-            else "unchanged" if target.same else "updated"
+            else "unchanged"
+            if target.same
+            else "updated"
         )
         if dry and state != "unchanged":
             state = f"would be {state}{' with --update' if target.refused else ''}"

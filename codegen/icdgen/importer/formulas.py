@@ -132,7 +132,9 @@ def per_step(text: str, names: Words | None) -> Scaled | None:
         formula = (
             f"raw/{2**-exponent}"
             if exponent < 0
-            else f"raw*{2**exponent}" if exponent else ""
+            else f"raw*{2**exponent}"
+            if exponent
+            else ""
         )
     elif match["over"]:
         formula = f"raw/{match['over'].split('/')[1].strip()}"

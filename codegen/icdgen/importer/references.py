@@ -138,7 +138,9 @@ def _meant(
     numbered = (
         titled
         if titled in of_table
-        else None if is_ambiguous else next(iter(of_table), None)
+        else None
+        if is_ambiguous
+        else next(iter(of_table), None)
     )
     chosen = numbered or titled
     if (

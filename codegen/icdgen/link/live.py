@@ -257,8 +257,12 @@ class Monitor:
                     [*remarks, *row.remarks] if number == 0 else row.remarks
                 )
                 yield (
-                    name if number == 0 else ""
-                ), row.field.name, row.text, row.field.unit_symbol, of_row
+                    (name if number == 0 else ""),
+                    row.field.name,
+                    row.text,
+                    row.field.unit_symbol,
+                    of_row,
+                )
 
     def _names(self) -> list[str]:
         names = [message.name for message in self.messages]

@@ -193,7 +193,11 @@ class LogSurvey:
         times_array = seconds_array.astype(np.int64) * 1000 + milliseconds_array.astype(
             np.int64
         )
-        result: Sequence[int] = np.where((milliseconds_array < 1000) & (seconds_array <= LATEST_SECOND), times_array, -1)  # type: ignore[assignment]
+        result: Sequence[int] = np.where(
+            (milliseconds_array < 1000) & (seconds_array <= LATEST_SECOND),
+            times_array,
+            -1,
+        )  # type: ignore[assignment]
         return result
 
     def _anchor(self) -> int | None:
@@ -342,8 +346,9 @@ class LogSurvey:
         """
         size = self.entry_bytes
         before, previous = (
-            self._time(broken - 2 * size) if broken - 2 * size >= run else None
-        ), self._time(broken - size)
+            (self._time(broken - 2 * size) if broken - 2 * size >= run else None),
+            self._time(broken - size),
+        )
         here, next_, second = (
             self._time(broken + number * size) for number in range(3)
         )

@@ -18,9 +18,10 @@ Done = Callable[[int], None]  # called with the number of bytes read
 
 def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
     """Iterate over time and values of each entry."""
-    readers, size = [
-        reader(column) for column in source.plan.columns
-    ], source.plan.entry_bytes
+    readers, size = (
+        [reader(column) for column in source.plan.columns],
+        source.plan.entry_bytes,
+    )
     for piece in source.pieces(head):
         for at in range(0, len(piece), size):
             entry = piece[at : at + size]
@@ -38,9 +39,10 @@ def reader(column: Column) -> Callable[[bytes], Value]:
 def _derived(column: Column) -> Callable[[bytes], float]:
     """Return the function that computes a derived value from an entry."""
     assert column.field and column.field.derived
-    how, numbers = column.field.derived, [
-        _number(operand) for operand in column.operands
-    ]
+    how, numbers = (
+        column.field.derived,
+        [_number(operand) for operand in column.operands],
+    )
     return lambda entry: how.double([number(entry) for number in numbers])
 
 

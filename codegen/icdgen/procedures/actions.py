@@ -39,8 +39,9 @@ class Listing(Run):
             # (`end_if_zeros`).
             entries = self.entries[self._position : self._position + 1]
             return bytearray(entries[0] if entries else bytes(len(data)))
-        frame, keys = bytearray(len(data)), list(
-            self.device.objects.of(self.effect.kind)
+        frame, keys = (
+            bytearray(len(data)),
+            list(self.device.objects.of(self.effect.kind)),
         )
         for key in keys[self._position : self._position + 1]:
             for place, number in self.about(key, False):

@@ -187,8 +187,9 @@ class Reader:
         if algorithm is None:
             return None
         given = self.section("crc8")
-        telecommand, telemetry = given.get("telecommand", {}), given.get(
-            "telemetry", {}
+        telecommand, telemetry = (
+            given.get("telecommand", {}),
+            given.get("telemetry", {}),
         )
         return self.part(
             "crc8",

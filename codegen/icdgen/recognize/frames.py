@@ -268,8 +268,9 @@ def _no_packet_error(
     """Return the error for bytes without the framing that all messages of the node
     have.
     """
-    nodes, syncs = match.nodes_of(endpoints), dict.fromkeys(
-        map(envelopes.sync_of, endpoints)
+    nodes, syncs = (
+        match.nodes_of(endpoints),
+        dict.fromkeys(map(envelopes.sync_of, endpoints)),
     )
     begin = (
         f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""

@@ -90,7 +90,9 @@ def _reading(
     what = (
         message.kind
         if id is None
-        else TELECOMMAND if id == message.telecommand_id else TELEMETRY
+        else TELECOMMAND
+        if id == message.telecommand_id
+        else TELEMETRY
     )
     return Reading(endpoint, what, message, id, data, remarks=remarks)
 

@@ -118,9 +118,10 @@ class _Rows:
         if content is None:
             return ""
         line, marks = content
-        number, bar = self._paint(
-            "gutter", str(place.line).rjust(len(self.indent))
-        ), self._paint("gutter", "|")
+        number, bar = (
+            self._paint("gutter", str(place.line).rjust(len(self.indent))),
+            self._paint("gutter", "|"),
+        )
         below = marks.replace(
             marks.strip(), self._paint(role, f"{marks.strip()} {label}".rstrip())
         )

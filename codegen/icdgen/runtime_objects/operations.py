@@ -255,8 +255,9 @@ def _chosen(request: Request) -> dict[str, int]:
 
 
 def stream_events(link: AnyLink, request: Request) -> Response:
-    form, direction = need(link.stream, "stream"), choice(
-        request, "direction", DIRECTIONS
+    form, direction = (
+        need(link.stream, "stream"),
+        choice(request, "direction", DIRECTIONS),
     )
     # A decoder must have room for a packet without data.
     least = max(packet.overhead for packet in form.packets)

@@ -192,8 +192,9 @@ class Program:
             return self._refusal("parameter", self._index(telecommand, refused.place))
         if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
-        code, reset = self.facts.errors.get("none", 0), (
-            telecommand if telecommand.expects_reset else None
+        code, reset = (
+            self.facts.errors.get("none", 0),
+            (telecommand if telecommand.expects_reset else None),
         )
         return Outcome(
             code, acknowledge=telecommand.acknowledge and not reset, reset=reset

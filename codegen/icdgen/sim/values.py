@@ -80,8 +80,9 @@ class Values:
         ]
         counters: dict[str, int] = {}
         for part in message.layout.counted_parts:
-            octets, count = new.get(part.name), codec.size_of_values(
-                part, {**current, **raw}
+            octets, count = (
+                new.get(part.name),
+                codec.size_of_values(part, {**current, **raw}),
             )
             if isinstance(octets, bytes):
                 new[part.name], count = octets.ljust(part.most, b"\0"), len(octets)

@@ -50,8 +50,9 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
         return
     last = message.layout.parts[-1]
     counts, few = _counts(last), last.fewest
-    yield f"all zeros, {few or 'no'} element{'s' * (few > 1)}", cut(
-        message, node, bytes(message.length), few
+    yield (
+        f"all zeros, {few or 'no'} element{'s' * (few > 1)}",
+        cut(message, node, bytes(message.length), few),
     )
     for number, (why, frame) in enumerate(_longest(message)):
         yield why, cut(message, node, frame, last.most)
@@ -86,11 +87,15 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
                 )
                 if why not in yielded:
                     yielded.add(why)
-                    yield why, codec.frame_of(
-                        random_frame(message, f"alternative {why}"), values
+                    yield (
+                        why,
+                        codec.frame_of(
+                            random_frame(message, f"alternative {why}"), values
+                        ),
                     )
-                    yield f"{why}, all others ones", codec.frame_of(
-                        b"\xff" * message.length, values
+                    yield (
+                        f"{why}, all others ones",
+                        codec.frame_of(b"\xff" * message.length, values),
                     )
 
 
@@ -105,9 +110,10 @@ def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
         longest - 1,
     }
     for size in sorted(sizes - {0}):
-        yield f"ended early, bytes: {size}", random_frame(
-            message, f"ended early {size}"
-        )[:size]
+        yield (
+            f"ended early, bytes: {size}",
+            random_frame(message, f"ended early {size}")[:size],
+        )
     yield "ended early, zeros", bytes(longest - 1)
 
 
@@ -146,9 +152,10 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     counters: dict[str, int] = {}
     for part in message.layout.parts:
         for inner in part.inner:
-            low, high = message.layout.smallest_raw(
-                inner.counter
-            ), message.layout.largest_raw(inner.counter)
+            low, high = (
+                message.layout.smallest_raw(inner.counter),
+                message.layout.largest_raw(inner.counter),
+            )
             value = counters.setdefault(
                 inner.counter, max(low, min(choose(inner) - inner.plus, high))
             )
@@ -186,8 +193,9 @@ def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
     for number in range((length * 8 - 1).bit_length()):
         code = _position_code(length, number)
         yield f"bit {number} of each bit's position", code
-        yield f"bit {number} of each bit's position, inverted", bytes(
-            byte ^ 0xFF for byte in code
+        yield (
+            f"bit {number} of each bit's position, inverted",
+            bytes(byte ^ 0xFF for byte in code),
         )
     for number in range(RANDOM_FRAMES):
         yield f"random {number}", random_frame(message, f"vector {number}")
@@ -324,8 +332,9 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 
     Every second value is the maximum, so that all elements are tested.
     """
-    low, high = message.layout.smallest_raw(part.counter), message.layout.largest_raw(
-        part.counter
+    low, high = (
+        message.layout.smallest_raw(part.counter),
+        message.layout.largest_raw(part.counter),
     )
     return [
         max(low, min(number - part.plus, high))
@@ -337,8 +346,9 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 def unfit(message: Message, field: FrameField) -> list[int]:
     """Return raw values that encoding must refuse."""
     if any(field.name == part.counter for part in message.layout.counted_parts):
-        low, high = message.layout.smallest_raw(field.name), message.layout.largest_raw(
-            field.name
+        low, high = (
+            message.layout.smallest_raw(field.name),
+            message.layout.largest_raw(field.name),
         )
         return list(
             dict.fromkeys((high + 1, low - 1, field.raw_max + 1, field.raw_min - 1))

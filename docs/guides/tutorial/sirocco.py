@@ -36,8 +36,9 @@ FRAMES = [
 def draw(path: str) -> None:
     """Writes the PDF: a section for each frame, whose heading names it and its number."""
     style = getSampleStyleSheet()
-    text, small = style["BodyText"], style["BodyText"].clone(
-        "small", fontSize=8, leading=10
+    text, small = (
+        style["BodyText"],
+        style["BodyText"].clone("small", fontSize=8, leading=10),
     )
     story = [Paragraph("Sirocco fan: serial protocol", style["Title"])]
     story.append(

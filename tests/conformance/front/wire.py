@@ -74,8 +74,9 @@ def uart_decode(to: Asking, request: Request) -> Answer:
 
 def uart_events(to: Asking, request: Request) -> Answer:
     longest = to.link["longest"]
-    limit, chunks = number(request, "limit", 1, longest, longest), rows(
-        request, "chunks"
+    limit, chunks = (
+        number(request, "limit", 1, longest, longest),
+        rows(request, "chunks"),
     )
     reply = to.ask("uart_events", limit, *(hex_bytes(chunk).hex() for chunk in chunks))
     return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
@@ -250,8 +251,9 @@ def _chosen(request: Request) -> list[object]:
 
 def stream_events(to: Asking, request: Request) -> Answer:
     direction, longest = _direction(request), to.link["longest"]
-    limit, chunks = number(request, "limit", to.link["around"], longest, longest), rows(
-        request, "chunks"
+    limit, chunks = (
+        number(request, "limit", to.link["around"], longest, longest),
+        rows(request, "chunks"),
     )
     reply = to.ask(
         "stream_events", direction, limit, *(hex_bytes(chunk).hex() for chunk in chunks)

@@ -147,20 +147,25 @@ class CTesteeBackend:
             place: list(_procedures(description.node(name), links[name]))
             for place, name in linked.items()
         }
-        yield PurePosixPath("testee_nodes.c"), render(
-            "nodes.c.j2",
-            origin=origin(),
-            nodes=nodes,
-            linked=linked,
-            procedures=procedures,
+        yield (
+            PurePosixPath("testee_nodes.c"),
+            render(
+                "nodes.c.j2",
+                origin=origin(),
+                nodes=nodes,
+                linked=linked,
+                procedures=procedures,
+            ),
         )
-        yield PurePosixPath("testee_ops.c"), render(
-            "ops.c.j2", origin=origin(), linked=bool(linked)
+        yield (
+            PurePosixPath("testee_ops.c"),
+            render("ops.c.j2", origin=origin(), linked=bool(linked)),
         )
         for node in description.nodes:
             values = _Rows(node).all()
-            yield PurePosixPath(f"nodes/{node.name}.c"), render(
-                "node.c.j2", origin=origin(node.model), **values
+            yield (
+                PurePosixPath(f"nodes/{node.name}.c"),
+                render("node.c.j2", origin=origin(node.model), **values),
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
@@ -241,8 +246,9 @@ class _Rows:
     def dispatcher(
         self, direction: str, messages: list[tuple[MessageDescription, str]]
     ) -> Dispatcher:
-        name, is_shared = f"{self.node.name}_{direction}", self.node.shares_ids(
-            direction
+        name, is_shared = (
+            f"{self.node.name}_{direction}",
+            self.node.shares_ids(direction),
         )
         routes = [
             Route(

@@ -31,9 +31,10 @@ class JsTesteeBackend:
         for name in ("codec.js", "frames.js"):
             yield PurePosixPath(name), Renderer("html")(name)
         yield PurePosixPath("testee.js"), render("testee.js")
-        yield PurePosixPath("nodes.json"), json.dumps(
-            _plans(icd), separators=(",", ":")
-        ) + "\n"
+        yield (
+            PurePosixPath("nodes.json"),
+            json.dumps(_plans(icd), separators=(",", ":")) + "\n",
+        )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None: JSON strings may hold any name."""

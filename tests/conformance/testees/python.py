@@ -30,7 +30,10 @@ class PythonTesteeBackend:
         for name in render.runtime_files():
             yield root / name, render.source(name)
         nodes = "".join(f'    "{node.name}",\n' for node in icd.nodes)
-        yield root / "_testee_order.py", f'"""Nodes, after those that they include."""\n\nORDER = [\n{nodes}]\n'
+        yield (
+            root / "_testee_order.py",
+            f'"""Nodes, after those that they include."""\n\nORDER = [\n{nodes}]\n',
+        )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None that could clash: names of nodes do not begin with `_`."""

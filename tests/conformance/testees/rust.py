@@ -200,27 +200,32 @@ class RustTesteeBackend:
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         known = links_of(description)
-        yield PurePosixPath("src/main.rs"), render(
-            "main.rs.j2", wired=bool(known), **common
+        yield (
+            PurePosixPath("src/main.rs"),
+            render("main.rs.j2", wired=bool(known), **common),
         )
         for file in render.runtime_files():
             if known or PurePosixPath(file).stem not in WIRE:
                 yield PurePosixPath(file), render.source(file)
-        yield PurePosixPath("src/nodes/mod.rs"), render(
-            "nodes.rs.j2",
-            nodes=icd.nodes,
-            wired=bool(known),
-            links=list(known),
-            with_procedures=[
-                name for name, link in known.items() if link.facts.procedures
-            ],
-            longest=max(map(longest, known.values()), default=0),
-            **common,
+        yield (
+            PurePosixPath("src/nodes/mod.rs"),
+            render(
+                "nodes.rs.j2",
+                nodes=icd.nodes,
+                wired=bool(known),
+                links=list(known),
+                with_procedures=[
+                    name for name, link in known.items() if link.facts.procedures
+                ],
+                longest=max(map(longest, known.values()), default=0),
+                **common,
+            ),
         )
         for node in description.nodes:
             entry = NodeEntry(CRATE, node, description.id_bits)
-            yield PurePosixPath(f"src/nodes/{node.name}.rs"), render(
-                "node.rs.j2", node=entry, **common
+            yield (
+                PurePosixPath(f"src/nodes/{node.name}.rs"),
+                render("node.rs.j2", node=entry, **common),
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

@@ -29,9 +29,9 @@ class Edited:
 Edit = Callable[[Icd, random.Random], "Edited | None"]
 EDITS: dict[str, Edit] = {}
 TEXT: list[str] = []  # edits of words only
-BEYOND: list[str] = (
-    []
-)  # edits of what no message of the generated code shows: protocol facts, the log mask
+BEYOND: list[
+    str
+] = []  # edits of what no message of the generated code shows: protocol facts, the log mask
 STRANGE = "Zorkmid flux 7"
 
 

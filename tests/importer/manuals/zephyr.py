@@ -44,8 +44,9 @@ CODES = (
 def draw(path: Path) -> None:
     """Writes the PDF: A5, no vertical rules, captions below."""
     style = getSampleStyleSheet()
-    text, small = style["BodyText"], style["BodyText"].clone(
-        "small", fontSize=7, leading=9
+    text, small = (
+        style["BodyText"],
+        style["BodyText"].clone("small", fontSize=7, leading=9),
     )
     story: list = [
         Paragraph("Zephyr cold-gas thruster: orders and reports", style["Title"])

@@ -47,7 +47,8 @@ def shape(name: str, **keys) -> Callable:
 
 @shape(
     "an id in a sentence",
-    profile=NODE + r"""  - tables: {head: Byte | Name | Type}
+    profile=NODE
+    + r"""  - tables: {head: Byte | Name | Type}
     message: {heading: '^[\d.]+ {message}$', before: 'with the command {id} and', kind: telemetry}
     columns: {Byte: '^{byte}(?:-{last_byte})?$', Name: name, Type: type}
     width: unit
@@ -84,7 +85,8 @@ def _sentence() -> list:
 
 @shape(
     "data bytes as columns",
-    profile=NODE + r"""  - tables: {head: ID | Message | Data0}
+    profile=NODE
+    + r"""  - tables: {head: ID | Message | Data0}
     message: {kind: telemetry, length: 8}
     columns: {ID: id, Message: message, '*': name}
     melt: '^Data{byte}$'
@@ -125,7 +127,8 @@ def _columns() -> list:
 
 @shape(
     "registers with bit, name, reset and access",
-    profile=BIG + r"""  - tables: {head: BIT | NAME | RESET | ACCESS}
+    profile=BIG
+    + r"""  - tables: {head: BIT | NAME | RESET | ACCESS}
     what: registers
     transpose: true
     message: {caption: '^{message} \({id}\)$', kind: configuration}
@@ -181,7 +184,8 @@ def _registers() -> list:
 
 @shape(
     "lines of bytes in a cell",
-    profile=BIG + r"""  - tables: {head: Data Message | Data ID}
+    profile=BIG
+    + r"""  - tables: {head: Data Message | Data ID}
     message: {kind: telemetry, length: 8}
     columns: {Data Message: message, Data ID: id}
     ignore: [UPPER-BMS]
@@ -224,7 +228,8 @@ def _lines() -> list:
 
 @shape(
     "captions below",
-    profile=NODE + r"""  - tables: {head: Offset | Size | Field}
+    profile=NODE
+    + r"""  - tables: {head: Offset | Size | Field}
     message: {caption: '^{message}, id {id}$', kind: telecommand}
     columns: {Offset: byte, Size: bytes, Field: name}
     each: {type: uint}
@@ -248,7 +253,8 @@ def _below() -> list:
 
 @shape(
     "two levels of headings",
-    profile=NODE + r"""  - rule: reply
+    profile=NODE
+    + r"""  - rule: reply
     tables: {head: Byte | Content, heading: 'Replies'}
     message: {heading: '^[\d.]+ {message} \({id}\)', kind: telemetry}
     columns: {Byte: '^{byte}(?:\.\.{last_byte})?$', Content: name}
@@ -274,7 +280,8 @@ def _levels() -> list:
 
 @shape(
     "offsets in a column",
-    profile=NODE + r"""  - tables: {head: Num | Parameter | Starting position}
+    profile=NODE
+    + r"""  - tables: {head: Num | Parameter | Starting position}
     message: {heading: '\({message:\w+}\) ID:{id}$', kind: telemetry}
     columns:
       Parameter: name
@@ -370,7 +377,8 @@ def _groups() -> list:
 
 @shape(
     "a register map whose cells span bits",
-    profile=NODE + r"""  - tables: {head: Addr | Name | D7}
+    profile=NODE
+    + r"""  - tables: {head: Addr | Name | D7}
     what: registers
     message: {kind: configuration, length: 1}
     columns: {Addr: id, Name: message, '*': ['^{name}\[{last_part}:{part}\]$', name]}
@@ -410,7 +418,8 @@ def _map() -> list:
 
 @shape(
     "one cell with position, size, factor and unit",
-    profile=BIG + r"""  - tables: {head: Data content | Bytes | Mark}
+    profile=BIG
+    + r"""  - tables: {head: Data content | Bytes | Mark}
     message: {before: 'read {message} with {id}$', kind: telemetry}
     columns: {Data content: name, Bytes: '^{bytes} ?BYTE(?:,unit {scale}{unit})?$', Mark: text}
     each: {type: uint}
@@ -446,7 +455,8 @@ def _cell() -> list:
 
 @shape(
     "headings that nobody knows and no vertical rules, captions below",
-    profile=BIG + r"""  - tables: {head: Quantity | Where | Breadth | Coding}
+    profile=BIG
+    + r"""  - tables: {head: Quantity | Where | Breadth | Coding}
     message: {caption: '^{message} \[{id}\]$', kind: telemetry}
     columns: {Quantity: name, Where: byte, Breadth: bytes, Coding: type, Per step: '^{scale} {unit}$'}
 captions: [Listing]
@@ -477,7 +487,8 @@ def _unknown() -> list:
 
 @shape(
     "horizontal rules only, over two pages",
-    profile=NODE + r"""  - tables: {head: Byte | Name | Type | Description}
+    profile=NODE
+    + r"""  - tables: {head: Byte | Name | Type | Description}
     message: {caption: '^{message} \({id}\)$', kind: telemetry}
     columns: {Byte: byte, Name: name, Type: type, Description: text}
 """,

@@ -41,13 +41,16 @@ void motor_send(const motor_state_t *state);
 static inline int motor_twice(int a) { return 2 * a; }
 #endif
 """
-RULES = NODE + r"""types: {char: {type: text}}
+RULES = (
+    NODE
+    + r"""types: {char: {type: text}}
 rules:
   - tables: {head: Byte | Bit | Bits | Type | Name, before: id 0x}
     message: {caption: '^{message}_t$', before: ['id {id}$', '^sizeof {length}$'], kind: telemetry}
     columns: {Byte: byte, Bit: bit, Bits: bits, Type: type, Name: name, Count: count, Members: members, Comment: text}
   - {what: ignore, tables: {head: '~.'}}
 """
+)
 FIELDS = [
     (0, 3, "mode"), (4, 4, "fault"), (8, 16, "speed"), (24, 32, "position"), (120, 64, "name"), (184, 16, "field[0].x"),
     (200, 16, "field[0].y"), (216, 16, "field[1].x"), (232, 16, "field[1].y"), (248, 32, "current"),
@@ -103,11 +106,14 @@ def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
             text("The end."),
         ],
     )
-    rules = NODE + r"""rules:
+    rules = (
+        NODE
+        + r"""rules:
   - tables: {head: Byte | Bit}
     message: {heading: '^[\d.]+ {message} \({id}\)$', kind: telemetry}
     columns: {Byte: byte, Bit: bit, Bits: bits, Type: type, Name: name, Count: count, Members: members, Comment: text}
 """
+    )
     (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
     result, trees = run.run(
         tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1

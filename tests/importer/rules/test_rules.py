@@ -431,7 +431,9 @@ def test_each_row_of_a_table_of_commands_is_a_message_without_parameters(tmp_pat
 def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
     text = "List of Pump Telemetry\nID\tName\tLength\nState\t\t\n33\tMotor state\t1\n34\tTank\t2\n"
     text += "Motor state (0x21)\nByte\tName\tType\n0\tMode\tu8\nLogs\nMask\tFrame\n00 02\t33\n"
-    rules = RULE + r"""  - what: list
+    rules = (
+        RULE
+        + r"""  - what: list
     tables: {head: ID | Name | Length}
     message: {before: '^List of {node} Telemetry', kind: telemetry}
     columns: {ID: id, Name: message, Length: length}
@@ -440,6 +442,7 @@ def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
     tables: {head: Mask | Frame}
     columns: {Mask: mask, Frame: id}
 """
+    )
     (tmp_path / "motor.txt").write_text(text, encoding="utf-8")
     (tmp_path / "rules.yaml").write_text(NODE + rules, encoding="utf-8")
     _, trees = run.run(

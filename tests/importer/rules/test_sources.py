@@ -22,7 +22,9 @@ ROWS = [  # the message cells are merged over the rows of a message
     [None, None, None, "2-3", "int16", "0.5", "rpm", "Speed\nof the motor"],
     ["Set speed", "0x22", "TC", "1-2", "uint16", "0.5", "rpm", "Speed"],
 ]
-RULES = NODE + r"""rules:
+RULES = (
+    NODE
+    + r"""rules:
   - tables: {head: Message | ID | Dir}
     columns:
       Message: message
@@ -36,6 +38,7 @@ RULES = NODE + r"""rules:
     map: {kind: {TM: telemetry, TC: telecommand}}
     origin: 1
 """
+)
 
 
 def xlsx(path: Path) -> None:

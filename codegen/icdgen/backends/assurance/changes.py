@@ -105,18 +105,21 @@ def of_line(
     for step in (-8, 8) if scalar is None or scalar.is_bytes else (-8, -1, 1, 8):
         # A field outside of the frame would be reported by `icdgen check`.
         if 0 <= node.at + step <= size - bits * count:
-            yield _step("offset", source, "at", node.at, step), with_attributes(
-                node, at=node.at + step
+            yield (
+                _step("offset", source, "at", node.at, step),
+                with_attributes(node, at=node.at + step),
             )
     for step in _WIDER.get(scalar.type, ()) if scalar else ():
         if 0 < (bits + step) * count <= size - node.at:
-            yield _step("width", source, "bits", bits, step), with_attributes(
-                node, bits=bits + step
+            yield (
+                _step("width", source, "bits", bits, step),
+                with_attributes(node, bits=bits + step),
             )
     for step in (-1, 1) if isinstance(node, Array) else ():
         if 0 < count + step <= (size - node.at) // bits:
-            yield _step("count", source, "count", count, step), with_attributes(
-                node, size=count + step
+            yield (
+                _step("count", source, "count", count, step),
+                with_attributes(node, size=count + step),
             )
     if scalar is not None:
         yield from _types(node, scalar)
@@ -187,8 +190,11 @@ def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, Layou
             change = Change(
                 key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order]
             )
-            yield change, with_attributes(
-                node, orders=replace(node.orders, **{name: _OTHER_ORDER[order]})
+            yield (
+                change,
+                with_attributes(
+                    node, orders=replace(node.orders, **{name: _OTHER_ORDER[order]})
+                ),
             )
 
 
@@ -283,8 +289,9 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
             continue
         for step in (-1, 1):
             change = _step("limit", node.source, key, node.source[key], step)
-            yield change, with_attributes(
-                node, limits=replace(limits, **{key: value + step})
+            yield (
+                change,
+                with_attributes(node, limits=replace(limits, **{key: value + step})),
             )
 
 
@@ -299,12 +306,14 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             if value + step >= 0:
                 if key == "length":
                     layout = replace(message.layout, length=value + step)
-                    yield _step("length", source, key, value, step), replace(
-                        message, layout=layout
+                    yield (
+                        _step("length", source, key, value, step),
+                        replace(message, layout=layout),
                     )
                 else:
-                    yield _step("id", source, key, value, step), _with(
-                        message, key, value + step
+                    yield (
+                        _step("id", source, key, value, step),
+                        _with(message, key, value + step),
                     )
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
         if key in source:
@@ -312,9 +321,10 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             orders = replace(message.layout.orders, **{name: now})
             layout = replace(message.layout, orders=orders)
             if _places(message.layout, node.orders) != _places(layout, node.orders):
-                yield Change(
-                    key.replace("_", " "), source, key, source[key], now
-                ), replace(message, layout=layout)
+                yield (
+                    Change(key.replace("_", " "), source, key, source[key], now),
+                    replace(message, layout=layout),
+                )
 
 
 def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
@@ -323,8 +333,9 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
     for key in ("node_type", "interface_version"):
         value = getattr(node, key)
         for step in (-1, 1) if value is not None else ():
-            yield _step("node", source, key, value, step), _with(
-                node, key, value + step
+            yield (
+                _step("node", source, key, value, step),
+                _with(node, key, value + step),
             )
     for key in ("byte_order", "bit_order"):
         now = _OTHER_ORDER[getattr(node, key)]
@@ -334,9 +345,10 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
             _places(layout, node.orders) != _places(layout, other.orders)
             for layout in layouts
         ):
-            yield Change(
-                key.replace("_", " "), source, key, getattr(node, key), now
-            ), other
+            yield (
+                Change(key.replace("_", " "), source, key, getattr(node, key), now),
+                other,
+            )
 
 
 def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
@@ -350,8 +362,9 @@ def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
                     _with(member, key, value + step),
                     *enum.members[index + 1 :],
                 )
-                yield _step("enum value", member.source, key, value, step), replace(
-                    enum, members=members
+                yield (
+                    _step("enum value", member.source, key, value, step),
+                    replace(enum, members=members),
                 )
 
 

@@ -55,9 +55,18 @@ def papers(
             "Held",
             "Evidence",
         )
-        yield Page(
-            "errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)
-        ), errata_rows, ERRATA
+        yield (
+            Page(
+                "errata.html",
+                "Errata",
+                _OF_ERRATA,
+                columns,
+                groups,
+                data=("errata.csv",),
+            ),
+            errata_rows,
+            ERRATA,
+        )
     tables = (
         (
             "assumptions",
@@ -71,14 +80,18 @@ def papers(
     for name, title, says, keys, rows in tables:
         if rows:  # page and table have the same columns
             shown = tuple(map(str.capitalize, keys))
-            yield Page(
-                f"{name}.html",
-                title,
-                says,
-                shown,
-                [Group([*rows])],
-                data=(f"{name}.csv",),
-            ), rows, keys
+            yield (
+                Page(
+                    f"{name}.html",
+                    title,
+                    says,
+                    shown,
+                    [Group([*rows])],
+                    data=(f"{name}.csv",),
+                ),
+                rows,
+                keys,
+            )
 
 
 def _folded(row: list[Cell]) -> list[Cell]:
@@ -188,5 +201,7 @@ def _shown(value: object) -> str:
     return (
         "(absent)"
         if value is None
-        else str(value).lower() if isinstance(value, bool) else str(value)
+        else str(value).lower()
+        if isinstance(value, bool)
+        else str(value)
     )

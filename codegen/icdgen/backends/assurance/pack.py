@@ -89,8 +89,9 @@ def files(
         digests,
         (),
     )
-    yield PurePosixPath(home.file), render(
-        "index.html.j2", page=home, papers=pages, tables=list(tables), **foot
+    yield (
+        PurePosixPath(home.file),
+        render("index.html.j2", page=home, papers=pages, tables=list(tables), **foot),
     )
     for page in pages:
         yield PurePosixPath(page.file), render("paper.html.j2", page=page, **foot)

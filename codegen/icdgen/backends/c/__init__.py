@@ -75,8 +75,9 @@ class CBackend:
             for node in description.nodes
             for composite in node.composites
         ):
-            yield PurePosixPath("icdgen_wide.h"), first + assembled(
-                "icdgen_wide.h", render
+            yield (
+                PurePosixPath("icdgen_wide.h"),
+                first + assembled("icdgen_wide.h", render),
             )
         links = links_of(description)
         if links:
@@ -84,11 +85,13 @@ class CBackend:
 
             longest = procedure_sizes(links.values())
             sizes = {"wire/sizes.h": render("sizes.h.j2", sizes=longest)}
-            yield PurePosixPath("icdgen_wire.h"), first + assembled(
-                "icdgen_wire.h", render, sizes
+            yield (
+                PurePosixPath("icdgen_wire.h"),
+                first + assembled("icdgen_wire.h", render, sizes),
             )
-            yield PurePosixPath("icdgen_wire.c"), first + assembled(
-                "icdgen_wire.c", render
+            yield (
+                PurePosixPath("icdgen_wire.c"),
+                first + assembled("icdgen_wire.c", render),
             )
         for node in description.nodes:
             folder = PurePosixPath(node.name)
@@ -111,8 +114,9 @@ class CBackend:
             if node.name in links:
                 yield from _link(node, links[node.name], render, shared)
             id_type = f"uint{description.id_bits}_t"
-            yield PurePosixPath(f"{node.name}.h"), render(
-                "node.h.j2", node=node, id_type=id_type, **shared
+            yield (
+                PurePosixPath(f"{node.name}.h"),
+                render("node.h.j2", node=node, id_type=id_type, **shared),
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

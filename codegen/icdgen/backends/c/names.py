@@ -20,7 +20,8 @@ _HEADERS = """
 place.
 """
 
-RESERVED = frozenset("""
+RESERVED = frozenset(
+    """
     auto break case char const continue default do double else enum extern float for goto if inline int long register
     restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
     alignas alignof bool constexpr false nullptr static_assert thread_local true typeof typeof_unqual noreturn
@@ -34,7 +35,8 @@ RESERVED = frozenset("""
     uint_fast64_t size_t ptrdiff_t max_align_t nullptr_t
     complex imaginary offsetof errno assert stdin stdout stderr setjmp
     unix linux i386 mips sparc
-    """.split()) | {f"{name}.h" for name in _HEADERS}
+    """.split()
+) | {f"{name}.h" for name in _HEADERS}
 """Words that can't be identifiers in C99 to C23 or C++11 to C++20, or that the usual
 headers and compilers define.
 

@@ -66,7 +66,9 @@ def int64(value: int) -> str:
     return (
         "INT64_MIN"
         if value == -INT64 - 1
-        else f"INT64_C({value})" if abs(value) > INT32 else str(value)
+        else f"INT64_C({value})"
+        if abs(value) > INT32
+        else str(value)
     )
 
 

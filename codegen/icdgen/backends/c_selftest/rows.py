@@ -67,8 +67,9 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     for name in render.runtime_files():
         yield PurePosixPath(name), f"/* {origin()} */\n{render.source(name)}"
     nodes = [node.name for node in icd.nodes]
-    yield PurePosixPath("icdgen_selftest_nodes.c"), render(
-        "nodes.c.j2", origin=origin(), nodes=nodes
+    yield (
+        PurePosixPath("icdgen_selftest_nodes.c"),
+        render("nodes.c.j2", origin=origin(), nodes=nodes),
     )
     for node in describe(icd).nodes:
         text = render(
@@ -361,8 +362,9 @@ def _accessors(accessor: Accessor, settings: Settings | None) -> Accessors:
     elif accessor.kind == "integer":
         type, rows = f"int{accessor.integers.bits}_t", _integer_rows(accessor)
     else:
-        type, rows = "double", (
-            [] if settings is None else _double_rows(accessor.field, settings)
+        type, rows = (
+            "double",
+            ([] if settings is None else _double_rows(accessor.field, settings)),
         )
     stem = names.stem(accessor.field.declaration.message)
     return Accessors(

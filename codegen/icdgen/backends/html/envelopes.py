@@ -235,9 +235,12 @@ def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str
 def _boxes(rows: Iterable[Section]) -> Iterator[tuple[str, str, float, str]]:
     for row in sorted(rows, key=lambda row: int(row["at"])):
         # The minimum width leaves room for the name of the role.
-        yield row["role"], f"{row['bits']} bits", max(
-            1.0, row["bits"] / 16
-        ), f"{row['at']}"
+        yield (
+            row["role"],
+            f"{row['bits']} bits",
+            max(1.0, row["bits"] / 16),
+            f"{row['at']}",
+        )
 
 
 def places(packet: Packet, enum_urls: Mapping[str, str]) -> list[Place]:

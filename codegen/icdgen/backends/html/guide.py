@@ -125,8 +125,9 @@ def files() -> Iterator[tuple[str, str]]:
             ".toml",
             ".txt",
         ):
-            yield f"{FOLDER}/{path.relative_to(folder).as_posix()}", path.read_text(
-                "utf-8"
+            yield (
+                f"{FOLDER}/{path.relative_to(folder).as_posix()}",
+                path.read_text("utf-8"),
             )
 
 
@@ -186,7 +187,9 @@ def _tables_in_reach(html: str) -> str:
     )
     html = re.sub(
         "<table>",
-        lambda _: f'<section class="scroll wide-table" tabindex="0" aria-label="Table {next(numbers)}, scrollable"><table>',
+        lambda _: (
+            f'<section class="scroll wide-table" tabindex="0" aria-label="Table {next(numbers)}, scrollable"><table>'
+        ),
         html,
     )
     return html.replace("</table>", "</table></section>")

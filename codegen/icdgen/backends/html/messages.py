@@ -143,8 +143,10 @@ def _variable_parts(message: Message) -> Iterator[tuple[str, str, str]]:
         most = count(part.most, "element" if part.is_array else "byte")
         is_end = part is parts[-1] and not part.behind
         yield (
-            "Variable end" if is_end else "Variable part"
-        ), f"{part.name}: up to {most}, {until}", ""
+            ("Variable end" if is_end else "Variable part"),
+            f"{part.name}: up to {most}, {until}",
+            "",
+        )
         for inner in part.inner:
             until = f"as many as {count_text(inner.counter, inner.plus)} says"
             text = f"{inner.name} in each of {part.name}: up to {count(inner.most, 'element')}, {until}"

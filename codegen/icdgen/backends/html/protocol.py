@@ -221,8 +221,10 @@ def entries(
     node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
     for title, rows in lines(section):
         words = " ".join(f"{row.about} {row.value}" for row in rows)
-        yield f"line bus serial interface {words}", f"{title} settings", Place(
-            node.title, f"{url}#lines"
+        yield (
+            f"line bus serial interface {words}",
+            f"{title} settings",
+            Place(node.title, f"{url}#lines"),
         )
     crc = "crc checksum polynomial init reflect calculator"
     sections = [

@@ -99,8 +99,9 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
     if node_facts.i2c_address is not None:
         arrows = [Arrow(True, f"write to {node_facts.i2c_address:02X}: id, parameters")]
         if node_facts.polled:
-            polled, url = node_facts.polled, relations.links.message(
-                node_facts.polled.message
+            polled, url = (
+                node_facts.polled,
+                relations.links.message(node_facts.polled.message),
             )
             every = f"every {node_facts.client.poll_interval} ms, for {node_facts.client.poll_timeout} ms at most"
             arrows += [

@@ -67,8 +67,9 @@ class PythonBackend:
         linked = links_of(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
         yield PurePosixPath("README.md"), render("README.md.j2", **common)
-        yield root / "__init__.py", render(
-            "package.py.j2", public=nodes.public(description.nodes), **common
+        yield (
+            root / "__init__.py",
+            render("package.py.j2", public=nodes.public(description.nodes), **common),
         )
         yield root / "py.typed", ""
         for name in render.runtime_files(str(_RUNTIME)):
@@ -81,22 +82,27 @@ class PythonBackend:
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
             yield folder / "__init__.py", render("node.py.j2", **digested)
             if node.name in linked:
-                yield folder / "_link.py", render(
-                    "link.py.j2",
-                    **shared,
-                    link=literals.expression(link_call(linked[node.name])),
+                yield (
+                    folder / "_link.py",
+                    render(
+                        "link.py.j2",
+                        **shared,
+                        link=literals.expression(link_call(linked[node.name])),
+                    ),
                 )
             if node.procedures:
                 facts = linked[node.name].facts
                 classes = procedures.procedure_classes(description, node, facts)
-                yield folder / f"{names.PROCEDURES}.py", render(
-                    "procedures.py.j2", **shared, procedures=classes
+                yield (
+                    folder / f"{names.PROCEDURES}.py",
+                    render("procedures.py.j2", **shared, procedures=classes),
                 )
             folder /= names.TYPES
             yield folder / "__init__.py", render("types.py.j2", **shared)
             for enum in node.enums:
-                yield folder / f"{names.module_name(enum)}.py", render(
-                    "enum.py.j2", enum=enum, **shared
+                yield (
+                    folder / f"{names.module_name(enum)}.py",
+                    render("enum.py.j2", enum=enum, **shared),
                 )
             for struct in node.structs:
                 text = render("struct.py.j2", m=struct, **shared)

@@ -49,7 +49,9 @@ def _annotation(field: FieldDescription) -> str:
     return (
         PYTHON_NAMES.symbol(field.enum, "class")
         if field.enum
-        else "int" if field.model.type == "uint" else field.model.type
+        else "int"
+        if field.model.type == "uint"
+        else field.model.type
     )
 
 
@@ -75,7 +77,9 @@ def _default(field: FieldDescription) -> str:
         return (
             str(bool(value))
             if kind == "bool"
-            else "0.0" if kind == "float" else str(value)
+            else "0.0"
+            if kind == "float"
+            else str(value)
         )
     name, member = PYTHON_NAMES.symbol(field.enum, "class"), field.enum.member(value)
     return f"{name}.{constant_name(member.name)}" if member else f"{name}({value})"
@@ -255,15 +259,19 @@ def accessors(field: FieldDescription) -> Iterator[tuple[str, str]]:
     """List the declarations of the physical value of a field, with their comments."""
     for accessor in accessors_in_python(field):
         if accessor.kind == "text":
-            yield _text(
-                field
-            ), f"{accessor.comment} A byte that is none reads as U+FFFD."
+            yield (
+                _text(field),
+                f"{accessor.comment} A byte that is none reads as U+FFFD.",
+            )
         else:
             yield (
-                _scaled(field)
-                if accessor.scale is None
-                else _whole(accessor, accessor.scale)
-            ), accessor.comment
+                (
+                    _scaled(field)
+                    if accessor.scale is None
+                    else _whole(accessor, accessor.scale)
+                ),
+                accessor.comment,
+            )
 
 
 def _scaled(field: FieldDescription) -> str:

@@ -76,15 +76,18 @@ class RustBackend:
             if link and link.facts.procedures:
                 procedures = NodeProcedures(link, description, known, self.crate)
                 known[node.name] = procedures
-                yield folder / "procedures.rs", render(
-                    "procedures.rs.j2", procedures=procedures, **shared
+                yield (
+                    folder / "procedures.rs",
+                    render("procedures.rs.j2", procedures=procedures, **shared),
                 )
-            yield folder / "mod.rs", render(
-                "node.rs.j2", node=node, link=link, **digested
+            yield (
+                folder / "mod.rs",
+                render("node.rs.j2", node=node, link=link, **digested),
             )
             if node.enums:
-                yield folder / "enums.rs", render(
-                    "enums.rs.j2", enums=node.enums, **shared
+                yield (
+                    folder / "enums.rs",
+                    render("enums.rs.j2", enums=node.enums, **shared),
                 )
             for struct in node.structs:
                 text = render("struct.rs.j2", m=struct, **shared)
@@ -143,15 +146,23 @@ def _wire(
 
     yield from _runtime("src/wire", render, str(common["crate"]))
     folder = PurePosixPath(LINKS)
-    yield folder / "mod.rs", render(
-        "links.rs.j2",
-        nodes=list(linked),
-        sizes=procedures.sizes(linked.values()),
-        **common,
+    yield (
+        folder / "mod.rs",
+        render(
+            "links.rs.j2",
+            nodes=list(linked),
+            sizes=procedures.sizes(linked.values()),
+            **common,
+        ),
     )
     for name, link in linked.items():
-        yield folder / f"{name}.rs", render(
-            "node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node)
+        yield (
+            folder / f"{name}.rs",
+            render(
+                "node_link.rs.j2",
+                link=links.values(link),
+                origin=origin(link.facts.node),
+            ),
         )
 
 

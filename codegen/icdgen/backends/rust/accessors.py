@@ -64,8 +64,9 @@ def _code(accessor: Accessor) -> AccessorCode:
         return AccessorCode(accessor.name, "f32", accessor.comment, single(field))
     if accessor.kind == "integer":
         type, refused = f"i{accessor.integers.bits}", "if it does not fit"
-        value, raw = integer_value(field, accessor.integers), integer_raw(
-            field, accessor.integers
+        value, raw = (
+            integer_value(field, accessor.integers),
+            integer_raw(field, accessor.integers),
         )
     else:
         type, value, raw = "f64", double_value(field), double_raw(field)

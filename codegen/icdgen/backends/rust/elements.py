@@ -38,8 +38,9 @@ def array_functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
 
 
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
-    tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(
-        struct, struct.using_node
+    tables, type = (
+        bytes_of_flags(struct, bits.FLAGS_FROM),
+        struct_path(struct, struct.using_node),
     )
     value = literal(
         struct.members,

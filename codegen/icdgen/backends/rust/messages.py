@@ -15,11 +15,13 @@ from icdgen.describe.description import Composite, Into, VariablePartDescription
 from icdgen.describe.groups import bytes_of_flags
 from icdgen.describe.lengths import ElementBytes
 
-_SUPPORT = frozenset("""
+_SUPPORT = frozenset(
+    """
     array arrays beginning counted each element_of elements exact first flags longest message number power present put put_array
     put_each put_element put_rounds put_words quiet rounds spread spread_elements structure take text text_array there told
     valid whole words Big Coded Curve Error Frame Scale Wide
-    """.split())
+    """.split()
+)
 # Names that code calls or uses as types. Comments and texts are matched first, so that
 # names in them do not count.
 _USED = re.compile(

@@ -7,11 +7,13 @@ from icdgen.naming import camel
 
 # Strict, reserved and weak keywords of the editions 2015 to 2024 that no item, field or
 # variant may be called without `r#`.
-RESERVED = frozenset("""
+RESERVED = frozenset(
+    """
     as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move
     mut pub ref return self Self static struct super trait true try type unsafe use where while
     abstract become box do final macro override priv typeof unsized virtual yield _
-    """.split())
+    """.split()
+)
 
 # Those of them that cannot be written with `r#` either.
 NEVER = frozenset(("self", "Self", "super", "crate", "_"))

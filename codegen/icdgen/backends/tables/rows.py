@@ -67,12 +67,15 @@ def _fields(message: Message) -> Iterator[dict[str, object]]:
         # explicit.
         starts = line.starts(first_only=True)
         for index, at in enumerate(starts, 1):
-            yield _field(
-                line,
-                at,
-                f"{name} {index}" if len(starts) > 1 else name,
-                is_element=True,
-            ) | group
+            yield (
+                _field(
+                    line,
+                    at,
+                    f"{name} {index}" if len(starts) > 1 else name,
+                    is_element=True,
+                )
+                | group
+            )
 
 
 def _repeats(source: Map) -> dict[str, object]:

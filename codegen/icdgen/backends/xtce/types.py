@@ -126,12 +126,16 @@ def type_of(field: NodePlace, is_little: bool = False) -> Type:
     order = (
         ""
         if field.is_bytes
-        else "leastSignificantByteFirst" if is_little else most_first(field.bits)
+        else "leastSignificantByteFirst"
+        if is_little
+        else most_first(field.bits)
     )
     encoding = (
         ""
         if field.type == "float" or field.is_bytes
-        else "twosComplement" if field.is_signed else "unsigned"
+        else "twosComplement"
+        if field.is_signed
+        else "unsigned"
     )
     field_type = Type(
         _KINDS[field.type], field.bits, encoding, order, field.unit_symbol

@@ -73,6 +73,8 @@ def _plain(value: object) -> str:
     text = (
         "(absent)"
         if value is None
-        else str(value).lower() if isinstance(value, bool) else str(value)
+        else str(value).lower()
+        if isinstance(value, bool)
+        else str(value)
     )
     return text if len(text) <= 40 else text[:37] + "..."

@@ -143,8 +143,9 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         return
     if old.length == new.length:
         return
-    shorter, by = min(old.length, new.length), count(
-        abs(new.length - old.length), "byte"
+    shorter, by = (
+        min(old.length, new.length),
+        count(abs(new.length - old.length), "byte"),
     )
     tail = [p.any.name for p in ctx.at_the_end(pair)]
     if new.length > old.length:

@@ -25,9 +25,10 @@ def _short(text: str) -> str:
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
 def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    changed_packet_formats, have_packet_formats = ctx.changed_packet_formats(
-        pair
-    ), ctx.have_packet_formats(pair)
+    changed_packet_formats, have_packet_formats = (
+        ctx.changed_packet_formats(pair),
+        ctx.have_packet_formats(pair),
+    )
     for fact in facts(pair.old, pair.new):
         if RESPONSES.fullmatch(fact.path) and not fact.is_word:
             continue  # DIF216
@@ -46,7 +47,9 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
             gone = (
                 "DIF134"
                 if PART.fullmatch(fact.path)
-                else "DIF120" if is_around else "DIF121"
+                else "DIF120"
+                if is_around
+                else "DIF121"
             )
             if fact.new is None:
                 code, what = gone, f"is no longer stated; it was {was}"

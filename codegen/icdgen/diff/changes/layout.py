@@ -41,7 +41,9 @@ def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         where = (
             causes[0].where()
             if causes
-            else first.where() if first is last else pair.where()
+            else first.where()
+            if first is last
+            else pair.where()
         )
         was, now = f"bit {first.old.at}", f"bit {first.new.at}"
         yield CheckResult(
@@ -61,8 +63,9 @@ def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
     old, new = first.places(("at",))
     for cause in causes:
         before, after = cause.places(("at", "bits"))
-        old, new = (before if cause.before is not None else old), (
-            after if cause.after is not None else new
+        old, new = (
+            (before if cause.before is not None else old),
+            (after if cause.after is not None else new),
         )
     return old, new
 

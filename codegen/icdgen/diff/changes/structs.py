@@ -88,8 +88,9 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
         {struct.name: struct for struct in node.structs}
         for node in (pair.old, pair.new)
     )
-    was, now = _declared(ctx.generated.before, pair.old), _declared(
-        ctx.generated.after, pair.new
+    was, now = (
+        _declared(ctx.generated.before, pair.old),
+        _declared(ctx.generated.after, pair.new),
     )
     for name in dict.fromkeys((*new, *old)):
         before, after = was.get(name, _NOTHING), now.get(name, _NOTHING)
@@ -106,7 +107,9 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
         what = (
             "is gone"
             if name not in new
-            else "is new" if name not in old else "has other generated names or types"
+            else "is new"
+            if name not in old
+            else "has other generated names or types"
         )
         breaks = retyped or any(old_name for old_name, _ in renamed)
         places = [
@@ -176,9 +179,10 @@ def _declared(names: NamesOfIcd, node: Node) -> dict[str, _Declared]:
 @rule("DIF314", "message")
 def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     was, now = (list(_uses_of_structs(side)) for side in (pair.old, pair.new))
-    removed, added = [text for text in was if text not in now], [
-        text for text in now if text not in was
-    ]
+    removed, added = (
+        [text for text in was if text not in now],
+        [text for text in now if text not in was],
+    )
     if not removed and not added:
         return
     number, what = len(removed or added), "declared otherwise" if removed else "new"

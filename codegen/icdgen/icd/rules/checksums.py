@@ -89,8 +89,9 @@ def checksums_have_an_effect(ctx: Context) -> Iterator[Fault]:
         telemetry = section_of(node, "crc8", "telemetry")
         if telemetry is None:
             continue
-        size, other = telemetry.get("extra_bytes"), own_fact(
-            node, "crc8", "telecommand", "extra_bytes"
+        size, other = (
+            telemetry.get("extra_bytes"),
+            own_fact(node, "crc8", "telecommand", "extra_bytes"),
         )
         if size is not None and other is not None and size != other:
             message = f"the checksum adds {count(size, 'byte')} to telemetry and {other} to telecommands"

@@ -594,9 +594,10 @@ def _seeds(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
     seeds = checksum.get("seeds")
     if not isinstance(seeds, Map):
         return
-    names, broken = [
-        message.name for message in ctx.messages_of(link.node)
-    ], ctx.broken_messages(link.node)
+    names, broken = (
+        [message.name for message in ctx.messages_of(link.node)],
+        ctx.broken_messages(link.node),
+    )
     for name in seeds:
         if name not in names and name not in broken:
             help = suggestion(name, names, "correct the name")

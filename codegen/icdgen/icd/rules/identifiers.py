@@ -115,8 +115,7 @@ def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
             if first is identifier or (
                 # Two names of the generator itself, which no change of the ICD can
                 # separate.
-                first.source is None
-                and identifier.source is None
+                first.source is None and identifier.source is None
             ):
                 continue
             # Lines with equal names have a finding of their own, which explains the

@@ -63,8 +63,9 @@ def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
         end = node.at + bits_of_node(node)
         # ICD121 reports fields of fixed size after a variable-length field.
         if end > room and id(source) not in ctx.behind_variable_fields:
-            is_array, size_key = isinstance(node, Array), (
-                "struct" if struct_layout_of(node) else "bits"
+            is_array, size_key = (
+                isinstance(node, Array),
+                ("struct" if struct_layout_of(node) else "bits"),
             )
             # Point to the key that is most likely wrong: `at` if the field begins
             # behind the end, otherwise what makes it too long.
@@ -217,8 +218,9 @@ def _mask(begin: int, bits: int, bit_order: str) -> int:
 def _fault(overlap: Overlap) -> Fault:
     """Return the fault of an overlap, at its second field."""
     first, second, bits = overlap
-    start, end = max(first.at, second.at), min(
-        first.at + first.bits, second.at + second.bits
+    start, end = (
+        max(first.at, second.at),
+        min(first.at + first.bits, second.at + second.bits),
     )
     bits = bits or (
         f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}"

@@ -80,8 +80,9 @@ def _bit(
 
 def _overlap(telecommands: Map, telemetry: Map) -> Iterator[Fault]:
     """Yield a fault if the ranges of ids of the two directions overlap."""
-    first, last = max(telecommands["first"], telemetry["first"]), min(
-        telecommands["last"], telemetry["last"]
+    first, last = (
+        max(telecommands["first"], telemetry["first"]),
+        min(telecommands["last"], telemetry["last"]),
     )
     if first <= last:
         ids = f"ids {first} to {last} are" if first < last else f"id {first} is"

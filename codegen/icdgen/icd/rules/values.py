@@ -34,7 +34,9 @@ def members_fit_their_fields(ctx: Context) -> Iterator[Fault]:
             also = (
                 f" (nor do {misfits - 1} others)"
                 if misfits > 2
-                else " (nor does another)" if misfits == 2 else ""
+                else " (nor does another)"
+                if misfits == 2
+                else ""
             )
             member = f"{quote(top.name)} = {top.values} of the enumeration {quote(field.enum.name)}"
             text = f"{member} does not fit the {count(field.bits, 'bit')} of the field {quote(field.name)}{also}"

@@ -330,8 +330,9 @@ class _Flow:
             )
         start = length + header.lines
         end = self.end(page, following, start, header)
-        x0, x1 = min(line.x0 for line in following[:start]), max(
-            line.x1 for line in following[:start]
+        x0, x1 = (
+            min(line.x0 for line in following[:start]),
+            max(line.x1 for line in following[:start]),
         )
         body = self.cells(following[start:end], header)
         piece = Piece(

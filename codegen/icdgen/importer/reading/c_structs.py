@@ -264,8 +264,9 @@ class _Reader:
             )
         rows = [list(COLUMNS)]
         for member in layout.members:
-            count, bit = str(member.count) if member.count else "", (
-                "" if member.bit is None else str(member.bit)
+            count, bit = (
+                str(member.count) if member.count else "",
+                ("" if member.bit is None else str(member.bit)),
             )
             comment = self.source.beside(member.line)
             rows.append(
@@ -406,7 +407,9 @@ class _Reader:
                 prefix = (
                     f"{declaration.name}[{index}]."
                     if counts
-                    else f"{declaration.name}." if declaration.name else ""
+                    else f"{declaration.name}."
+                    if declaration.name
+                    else ""
                 )
                 for member in layout.members:
                     byte, name = member.byte + index * layout.size, prefix + member.name
@@ -475,7 +478,9 @@ class _Reader:
         sign = (
             "unsigned "
             if "unsigned" in spelled.split()
-            else "signed " if words == ["char"] and "signed" in spelled.split() else ""
+            else "signed "
+            if words == ["char"] and "signed" in spelled.split()
+            else ""
         )
         key = (sign + " ".join(words or ["int"])).strip()
         if key not in _SIZES:

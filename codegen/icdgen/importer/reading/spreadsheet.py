@@ -133,8 +133,9 @@ class _Sheet:
         """Return the rows up to the last one with a value, without cells merged into
         others.
         """
-        height, width = min(self.sheet.max_row, MOST_ROWS), min(
-            self.sheet.max_column, MOST_COLUMNS
+        height, width = (
+            min(self.sheet.max_row, MOST_ROWS),
+            min(self.sheet.max_column, MOST_COLUMNS),
         )
         spans = {}
         covered = set()

@@ -278,8 +278,9 @@ class RoleReader:
                     n for printed in texts if (n := whole_number(printed)) is not None
                 ]
                 if positions:
-                    position[role], position[f"last_{role}"] = str(min(positions)), str(
-                        max(positions)
+                    position[role], position[f"last_{role}"] = (
+                        str(min(positions)),
+                        str(max(positions)),
                     )
             roles = {**shared, **self.translated(position)}
             _add(roles, self.taken(row, title, star.patterns, text))

@@ -94,6 +94,8 @@ def _finding(import_finding: ImportFinding) -> str:
     row = (
         f" (line {import_finding.spot.line})"
         if import_finding.spot.line
-        else f" (page {import_finding.spot.page})" if import_finding.spot.page else ""
+        else f" (page {import_finding.spot.page})"
+        if import_finding.spot.page
+        else ""
     )
     return f"  {import_finding.severity}[{import_finding.code}]{row}: {import_finding.message}"

@@ -49,7 +49,9 @@ def _block(group: list[SourceTable]) -> list[str]:
     where = (
         f", pages {pages[0]} to {pages[-1]}"
         if len(pages) > 1
-        else f", page {pages[0]}" if pages else ""
+        else f", page {pages[0]}"
+        if pages
+        else ""
     )
     lines = [
         f"  # {len(group)} table{'s' if len(group) != 1 else ''}: {numbers}{where}"

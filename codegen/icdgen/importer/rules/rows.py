@@ -173,7 +173,9 @@ def _transposed(
                 values[name] = (
                     texts[0]
                     if len(texts) == 1
-                    else f"{texts[0]}:{texts[-1]}" if texts else ""
+                    else f"{texts[0]}:{texts[-1]}"
+                    if texts
+                    else ""
                 )
             data_rows.append(
                 DataRow(

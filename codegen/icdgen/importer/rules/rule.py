@@ -238,8 +238,9 @@ class _Reader:
     def read(self, tree: Map, name: str, place: Place) -> Rule:
         """Return the rule; what cannot be read of it is left out, with a finding."""
         rule = Rule(name, place, tree.get("what", "message"))
-        rule.head_rows, rule.transpose = tree.get("head_rows", 1), tree.get(
-            "transpose", False
+        rule.head_rows, rule.transpose = (
+            tree.get("head_rows", 1),
+            tree.get("transpose", False),
         )
         rule.also, rule.origin, rule.base = (
             tree.get("also", False),

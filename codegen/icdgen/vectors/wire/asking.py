@@ -136,11 +136,14 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
     if not form.telecommands and form.request is None:
         return
     for why, rows in _single_requests(form, sample) if form.telecommands else ():
-        yield f"client: {why}", {
-            "op": "stream_client",
-            "settings": SETTINGS,
-            "script": rows,
-        }
+        yield (
+            f"client: {why}",
+            {
+                "op": "stream_client",
+                "settings": SETTINGS,
+                "script": rows,
+            },
+        )
     for why, rows in _simultaneous_requests(form, sample) if form.telecommands else ():
         for requests in (1, 2, 3):
             request = {
@@ -167,12 +170,15 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
             yield f"client: {row.name}, {why}", request
         if row.is_requested and form.packets[row.packet].content == REQUESTED:
             for why, rows in _nameless_responses(form, row, sample):
-                yield f"client: {row.name}, {why}", {
-                    "op": "stream_client",
-                    "requests": 3,
-                    "settings": {**SETTINGS, "in_flight": 3},
-                    "script": rows,
-                }
+                yield (
+                    f"client: {row.name}, {why}",
+                    {
+                        "op": "stream_client",
+                        "requests": 3,
+                        "settings": {**SETTINGS, "in_flight": 3},
+                        "script": rows,
+                    },
+                )
         # These have the times of the ICD.
         for why, rows in _declared_times(row, exchange, sample, facts.client):
             request = {"op": "stream_client", "requests": 3, "script": rows}
@@ -208,39 +214,52 @@ def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
     known_ids = {row_.id for row_ in (*form.telecommands, *form.telemetry)}
     # The smallest unused id fits into the id field whenever possible.
     unknown = next(id for id in range(len(known_ids) + 1) if id not in known_ids)
-    yield "unknown ids", [
-        {"at": 0, "telecommand": unknown, "bytes": ""},
-        {"at": 0, "telemetry": unknown},
-    ]
+    yield (
+        "unknown ids",
+        [
+            {"at": 0, "telecommand": unknown, "bytes": ""},
+            {"at": 0, "telemetry": unknown},
+        ],
+    )
     yield "a reply of an unknown id", [s.ask(0, row, reply=unknown)]
     for size in {row.least - 1, row.most + 1} - {-1}:
         yield f"{size} bytes", [{"at": 0, "telecommand": row.id, "bytes": "00" * size}]
     silent = next((row_ for row_ in form.telecommands if row_.exchange is None), None)
     if silent:
-        yield "without a reply it is done when it is sent", [
-            s.ask(0, silent),
-            {"at": 500},
-            s.ask(500, silent),
-        ]
+        yield (
+            "without a reply it is done when it is sent",
+            [
+                s.ask(0, silent),
+                {"at": 500},
+                s.ask(500, silent),
+            ],
+        )
     for frame in form.telemetry[:1]:
         reply_argument: dict[str, object] = {"reply": frame.id}
-        yield "what comes unasked", [
-            s.come(0, frame),
-            s.come(1, frame),
-            s.come(2, frame, lost=3),
-        ]
+        yield (
+            "what comes unasked",
+            [
+                s.come(0, frame),
+                s.come(1, frame),
+                s.come(2, frame, lost=3),
+            ],
+        )
         yield from _requests_with_reply(form, s, row, frame, reply_argument)
     for frame in form.telemetry:
         asks = {"telemetry": frame.id}
-        yield f"{frame.name} is requested", [
-            {"at": 0, **asks},
-            s.come(30, frame),
-            {"at": 31, **asks},
-            {"at": 131},
-        ]
-        yield f"{frame.name} never comes", [
-            {"at": at, **asks} if not at else {"at": at} for at in range(0, 400, 100)
-        ]
+        yield (
+            f"{frame.name} is requested",
+            [
+                {"at": 0, **asks},
+                s.come(30, frame),
+                {"at": 31, **asks},
+                {"at": 131},
+            ],
+        )
+        yield (
+            f"{frame.name} never comes",
+            [{"at": at, **asks} if not at else {"at": at} for at in range(0, 400, 100)],
+        )
     for row in form.telecommands:
         frame = next(
             (
@@ -251,10 +270,13 @@ def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
             row,
         )
         if frame is not row:
-            yield f"{row.name} is answered as the ICD says", [
-                s.ask(0, row),
-                s.come(30, frame),
-            ]
+            yield (
+                f"{row.name} is answered as the ICD says",
+                [
+                    s.ask(0, row),
+                    s.come(30, frame),
+                ],
+            )
 
 
 def _requests_with_reply(
@@ -269,17 +291,23 @@ def _requests_with_reply(
     # Delimited formats end with a delimiter, so a byte in the middle is damaged
     # instead.
     bad[-1 if form.delimited_by in ("length", "datagram") else len(bad) // 2] ^= 1
-    yield "the reply comes", [
-        s.ask(0, row, **reply),
-        s.come(30, frame),
-        s.come(31, frame),
-        {"at": 500},
-    ]
-    yield "another message comes first", [
-        s.ask(0, row, **reply),
-        s.come(5, other),
-        s.come(6, frame),
-    ]
+    yield (
+        "the reply comes",
+        [
+            s.ask(0, row, **reply),
+            s.come(30, frame),
+            s.come(31, frame),
+            {"at": 500},
+        ],
+    )
+    yield (
+        "another message comes first",
+        [
+            s.ask(0, row, **reply),
+            s.come(5, other),
+            s.come(6, frame),
+        ],
+    )
     yield "the reply is damaged, then right", [
         s.ask(0, row, **reply), {"at": 5, "receive": bad.hex()}, s.come(6, frame), s.come(7, frame), s.come(8, frame),
     ]  # fmt: skip
@@ -339,12 +367,15 @@ def _simultaneous_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Scrip
         return
     first, second = form.telemetry[0], form.telemetry[-1]
     reply_a, reply_b = ({"reply": frame.id} for frame in (first, second))
-    yield "two, answered in turn", [
-        s.ask(0, row, **reply_a),
-        s.ask(1, last, **reply_b),
-        s.come(5, first),
-        s.come(6, second),
-    ]
+    yield (
+        "two, answered in turn",
+        [
+            s.ask(0, row, **reply_a),
+            s.ask(1, last, **reply_b),
+            s.come(5, first),
+            s.come(6, second),
+        ],
+    )
     yield "two, answered the other way round", [
         s.ask(0, row, **reply_a), s.ask(1, last, **reply_b), s.come(5, second), s.come(6, first), s.come(7, second),
     ]  # fmt: skip

@@ -99,8 +99,9 @@ def scripts(link: AnyLink, facts: Facts) -> Requests:
     if facts.polled and facts.i2c_address is not None:
         for checked in (False, True) if facts.checksum else (False,):
             for why, rows in _i2c(facts, sample, checked):
-                yield f"I2C{' with checksum' * checked}: {why}", _op(
-                    I2C, rows, **({"crc": True} if checked else {})
+                yield (
+                    f"I2C{' with checksum' * checked}: {why}",
+                    _op(I2C, rows, **({"crc": True} if checked else {})),
                 )
     if facts.can:
         for why, rows in _can(facts, sample):
@@ -129,29 +130,38 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
     )
     escape = f"{framing.escape:02x}"
     begin, finish = f"{escape}{framing.start:02x}", f"{escape}{framing.end:02x}"
-    yield "a telecommand and its acknowledge", [
-        s.ask(0, plain),
-        ack(30, plain),
-        s.ask(30, plain),
-        ack(40, plain),
-    ]
+    yield (
+        "a telecommand and its acknowledge",
+        [
+            s.ask(0, plain),
+            ack(30, plain),
+            s.ask(30, plain),
+            ack(40, plain),
+        ],
+    )
     for name, code in facts.errors.items():
         if name != "none":
             yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
     yield "refused with a code that has no name", [s.ask(0, plain), ack(30, plain, 200)]
-    yield "the next before the acknowledge", [
-        s.ask(0, plain),
-        s.ask(5, plain),
-        s.request(5, frame),
-        ack(30, plain),
-    ]
-    yield "no acknowledge", [
-        s.ask(0, plain),
-        {"at": 99},
-        {"at": 100},
-        s.request(101, frame),
-        reply(102, frame),
-    ]
+    yield (
+        "the next before the acknowledge",
+        [
+            s.ask(0, plain),
+            s.ask(5, plain),
+            s.request(5, frame),
+            ack(30, plain),
+        ],
+    )
+    yield (
+        "no acknowledge",
+        [
+            s.ask(0, plain),
+            {"at": 99},
+            {"at": 100},
+            s.request(101, frame),
+            reply(102, frame),
+        ],
+    )
     yield "no acknowledge, and it may be repeated", [
         s.ask(0, plain, repeat=True), {"at": 100}, {"at": 200}, {"at": 299}, {"at": 300}, {"at": 1000},
     ]  # fmt: skip
@@ -171,55 +181,79 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         reply(5, frame),
     ]  # fmt: skip
     yield from _many_late(s, reply)
-    yield "an unexpected acknowledge", [
-        ack(0, plain),
-        s.request(1, frame),
-        ack(2, plain),
-        reply(3, frame),
-    ]
-    yield "the acknowledge of another telecommand", [
-        s.ask(0, plain),
-        ack(1, other),
-        ack(2, plain),
-    ]
+    yield (
+        "an unexpected acknowledge",
+        [
+            ack(0, plain),
+            s.request(1, frame),
+            ack(2, plain),
+            reply(3, frame),
+        ],
+    )
+    yield (
+        "the acknowledge of another telecommand",
+        [
+            s.ask(0, plain),
+            ack(1, other),
+            ack(2, plain),
+        ],
+    )
     yield "a frame", [s.request(0, frame), reply(30, frame)]
-    yield "the longest frame and the longest telecommand", [
-        s.request(0, s.wide),
-        reply(90, s.wide),
-        s.ask(91, s.long),
-    ]
+    yield (
+        "the longest frame and the longest telecommand",
+        [
+            s.request(0, s.wide),
+            reply(90, s.wide),
+            s.ask(91, s.long),
+        ],
+    )
     yield "a frame that comes in pieces, after noise", [
         s.request(0, frame), {"at": 1, "receive": "0055" + reply(1, frame)["receive"][:6]}, {"at": 2},
         {"at": 3, "receive": "00" * (frame.length - 1) + finish},
     ]  # fmt: skip
-    yield "a frame that comes at the third try", [
-        s.request(0, frame),
-        {"at": 100},
-        {"at": 200},
-        reply(250, frame),
-    ]
-    yield "a frame that never comes", [
-        s.request(0, frame),
-        {"at": 100},
-        {"at": 200},
-        {"at": 300},
-    ]
-    yield "time stands still, then jumps", [
-        s.request(0, frame),
-        {"at": 5000},
-        {"at": 5000},
-        reply(5001, frame),
-    ]
-    yield "a frame that is too long", [
-        s.request(0, frame),
-        reply(1, frame, 1),
-        reply(2, frame),
-    ]
-    yield "a frame that was not asked for", [
-        s.request(0, frame),
-        reply(1, s.wide),
-        reply(2, frame),
-    ]
+    yield (
+        "a frame that comes at the third try",
+        [
+            s.request(0, frame),
+            {"at": 100},
+            {"at": 200},
+            reply(250, frame),
+        ],
+    )
+    yield (
+        "a frame that never comes",
+        [
+            s.request(0, frame),
+            {"at": 100},
+            {"at": 200},
+            {"at": 300},
+        ],
+    )
+    yield (
+        "time stands still, then jumps",
+        [
+            s.request(0, frame),
+            {"at": 5000},
+            {"at": 5000},
+            reply(5001, frame),
+        ],
+    )
+    yield (
+        "a frame that is too long",
+        [
+            s.request(0, frame),
+            reply(1, frame, 1),
+            reply(2, frame),
+        ],
+    )
+    yield (
+        "a frame that was not asked for",
+        [
+            s.request(0, frame),
+            reply(1, s.wide),
+            reply(2, frame),
+        ],
+    )
     yield "errors in the stream", [
         s.request(0, frame), {"at": 1, "receive": f"{begin}90{escape}00"},
         {"at": 2, "receive": f"{begin}{finish}{begin}90"}, reply(3, frame),
@@ -239,32 +273,44 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         s.request(500, frame), reply(501, frame),
     ]  # fmt: skip
     if s.setting:
-        yield "a setting is repeated", [
-            s.ask(0, s.setting),
-            {"at": 100},
-            ack(110, s.setting),
-        ]
+        yield (
+            "a setting is repeated",
+            [
+                s.ask(0, s.setting),
+                {"at": 100},
+                ack(110, s.setting),
+            ],
+        )
     if s.silent:
-        yield "not acknowledged", [
-            s.ask(0, s.silent),
-            s.ask(0, s.silent),
-            s.request(0, frame),
-            reply(9, frame),
-        ]
+        yield (
+            "not acknowledged",
+            [
+                s.ask(0, s.silent),
+                s.ask(0, s.silent),
+                s.request(0, frame),
+                reply(9, frame),
+            ],
+        )
     if s.reset:
         yield "a reset", [s.ask(0, s.reset), ack(5, s.reset)]
     unknown = next(id for id in range(256) if id not in facts.telecommands)
-    yield "an unknown id", [
-        {"at": 0, "telecommand": unknown, "bytes": ""},
-        {"at": 0, "telemetry": 0},
-    ]
-    yield "a wrong length", [
-        {
-            "at": 0,
-            "telecommand": plain.telecommand_id,
-            "bytes": "00" * (plain.length + 1),
-        }
-    ]
+    yield (
+        "an unknown id",
+        [
+            {"at": 0, "telecommand": unknown, "bytes": ""},
+            {"at": 0, "telemetry": 0},
+        ],
+    )
+    yield (
+        "a wrong length",
+        [
+            {
+                "at": 0,
+                "telecommand": plain.telecommand_id,
+                "bytes": "00" * (plain.length + 1),
+            }
+        ],
+    )
     for head, id in facts.unsolicited.items():
         data = bytes([head]) + s.source.randbytes(facts.telemetry[id].length)
         yield "download packets", [{"at": 0, "receive": s.line(data) * 2}]
@@ -302,15 +348,21 @@ def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]
         return
     bad = {"receive": s.acknowledge(s.plain, code)}
     good = {"receive": s.acknowledge(s.plain)}
-    yield "sent again after a wrong checksum", [
-        s.ask(0, s.plain),
-        {"at": 1, **bad},
-        {"at": 2, **good},
-    ]
-    yield "always a wrong checksum", [
-        s.ask(0, s.plain),
-        *({"at": at, **bad} for at in range(1, 5)),
-    ]
+    yield (
+        "sent again after a wrong checksum",
+        [
+            s.ask(0, s.plain),
+            {"at": 1, **bad},
+            {"at": 2, **good},
+        ],
+    )
+    yield (
+        "always a wrong checksum",
+        [
+            s.ask(0, s.plain),
+            *({"at": at, **bad} for at in range(1, 5)),
+        ],
+    )
 
 
 def _checked_frames(
@@ -323,31 +375,43 @@ def _checked_frames(
         {"receive": s.line(checked)} for checked in (right, wrong, bare)
     )
     yield "a frame with its checksum", [s.request(0, s.frame), {"at": 1, **good}]
-    yield "a wrong checksum, then the right one", [
-        s.request(0, s.frame),
-        {"at": 1, **bad},
-        {"at": 2, **good},
-    ]
-    yield "a frame without its checksum, then with it", [
-        s.request(0, s.frame),
-        {"at": 1, **missing},
-        {"at": 2, **good},
-    ]
-    yield "always a wrong checksum", [
-        s.request(0, s.frame),
-        *({"at": at, **bad} for at in (1, 101, 201)),
-        {"at": 301},
-    ]
+    yield (
+        "a wrong checksum, then the right one",
+        [
+            s.request(0, s.frame),
+            {"at": 1, **bad},
+            {"at": 2, **good},
+        ],
+    )
+    yield (
+        "a frame without its checksum, then with it",
+        [
+            s.request(0, s.frame),
+            {"at": 1, **missing},
+            {"at": 2, **good},
+        ],
+    )
+    yield (
+        "always a wrong checksum",
+        [
+            s.request(0, s.frame),
+            *({"at": at, **bad} for at in (1, 101, 201)),
+            {"at": 301},
+        ],
+    )
     longer = {
         "receive": s.line(
             bare + bytes(facts.checksum.bytes + 1 if facts.checksum else 1)
         )
     }
-    yield "more than a checksum behind a frame", [
-        s.request(0, s.frame),
-        {"at": 1, **longer},
-        {"at": 2, **good},
-    ]
+    yield (
+        "more than a checksum behind a frame",
+        [
+            s.request(0, s.frame),
+            {"at": 1, **longer},
+            {"at": 2, **good},
+        ],
+    )
 
 
 def _i2c(
@@ -390,55 +454,73 @@ def _i2c(
         s.ask(0, plain), written, {"at": 11}, state(12, other, 1), {"at": 22}, state(23, plain, 1),
     ]  # fmt: skip
     for name, code in facts.errors.items():
-        yield f"outcome {name}", [
-            s.ask(0, plain),
-            written,
-            {"at": 11},
-            state(12, plain, 1, code),
-        ]
+        yield (
+            f"outcome {name}",
+            [
+                s.ask(0, plain),
+                written,
+                {"at": 11},
+                state(12, plain, 1, code),
+            ],
+        )
     yield "never processed", [
         s.ask(0, plain), written, *(row for at in range(11, 100, 11) for row in ({"at": at}, state(at + 1, plain, 0))),
     ]  # fmt: skip
-    yield "polling fails once", [
-        s.ask(0, plain),
-        written,
-        {"at": 11},
-        {"at": 12, **failed},
-        {"at": 22},
-        state(23, plain, 1),
-    ]
+    yield (
+        "polling fails once",
+        [
+            s.ask(0, plain),
+            written,
+            {"at": 11},
+            {"at": 12, **failed},
+            {"at": 22},
+            state(23, plain, 1),
+        ],
+    )
     yield "the write fails", [s.ask(0, plain), {"at": 1, **failed}]
     yield "the write fails, and it may be repeated", [
         s.ask(0, plain, repeat=True), {"at": 1, **failed}, {"at": 11}, {"at": 12, **failed}, {"at": 22}, {"at": 23, **failed},
     ]  # fmt: skip
-    yield "the driver says nothing", [
-        s.request(0, wide),
-        {"at": 100},
-        {"at": 110},
-        {"at": 210},
-        {"at": 220},
-        {"at": 320},
-    ]
-    yield "a frame", [
-        s.request(0, wide),
-        {"at": 1, "receive": frame(wide, bytes(range(wide.length)))},
-    ]
+    yield (
+        "the driver says nothing",
+        [
+            s.request(0, wide),
+            {"at": 100},
+            {"at": 110},
+            {"at": 210},
+            {"at": 220},
+            {"at": 320},
+        ],
+    )
+    yield (
+        "a frame",
+        [
+            s.request(0, wide),
+            {"at": 1, "receive": frame(wide, bytes(range(wide.length)))},
+        ],
+    )
     yield "a frame of the wrong length, then the right one", [
         s.request(0, wide), {"at": 1, "receive": "00"}, {"at": 11}, {"at": 12, "receive": frame(wide, bytes(wide.length))},
     ]  # fmt: skip
     if checked_frames:
         broken = bytes([1]).hex() + frame(wide, bytes(wide.length))[2:]
-        yield "a frame with a wrong checksum", [
-            s.request(0, wide),
-            *({"at": at, "receive": broken} for at in (1, 12)),
-        ]
+        yield (
+            "a frame with a wrong checksum",
+            [
+                s.request(0, wide),
+                *({"at": at, "receive": broken} for at in (1, 12)),
+            ],
+        )
     if s.silent:
-        yield "not acknowledged", [
-            s.ask(0, s.silent),
-            written,
-            s.ask(2, s.silent),
-            {"at": 3, "receive": ""},
-        ]
+        yield (
+            "not acknowledged",
+            [
+                s.ask(0, s.silent),
+                written,
+                s.ask(2, s.silent),
+                {"at": 3, "receive": ""},
+            ],
+        )
     yield "a transfer that was not asked for", [{"at": 0, "receive": "00"}]
     second = next(
         (m for m in facts.telecommands.values() if m.acknowledge and m is not plain),
@@ -517,45 +599,66 @@ def _can(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
 
     plain, frame, wide = s.plain, s.frame, s.wide
     id, frame_id = plain.telecommand_id, frame.telemetry_id
-    yield "a telecommand and its acknowledge", [
-        s.ask(0, plain),
-        *come(5, "acknowledge", id),
-    ]
-    yield "a long telecommand", [
-        s.ask(0, s.long),
-        *come(5, "acknowledge", s.long.telecommand_id),
-    ]
+    yield (
+        "a telecommand and its acknowledge",
+        [
+            s.ask(0, plain),
+            *come(5, "acknowledge", id),
+        ],
+    )
+    yield (
+        "a long telecommand",
+        [
+            s.ask(0, s.long),
+            *come(5, "acknowledge", s.long.telecommand_id),
+        ],
+    )
     yield "refused", [s.ask(0, plain), *come(5, "refusal", id)]
-    yield "a request refused", [
-        s.request(0, frame),
-        *come(5, "request_refusal", frame_id),
-    ]
-    yield "a frame", [
-        s.request(0, frame),
-        *come(5, "reply", frame_id, bytes(frame.length)),
-    ]
+    yield (
+        "a request refused",
+        [
+            s.request(0, frame),
+            *come(5, "request_refusal", frame_id),
+        ],
+    )
+    yield (
+        "a frame",
+        [
+            s.request(0, frame),
+            *come(5, "reply", frame_id, bytes(frame.length)),
+        ],
+    )
     data = s.source.randbytes(wide.length)
     packets = come(5, "reply", wide.telemetry_id, data)
     yield "a long frame", [s.request(0, wide), *packets]
     if len(packets) > 1:
         yield "a long frame, turned round", [s.request(0, wide), *packets[::-1]]
         repeated = [{**row, "at": 105} for row in packets]
-        yield "a lost packet, and the repeated frame", [
-            s.request(0, wide),
-            *packets[1:],
+        yield (
+            "a lost packet, and the repeated frame",
+            [
+                s.request(0, wide),
+                *packets[1:],
+                {"at": 100},
+                *repeated,
+            ],
+        )
+    yield (
+        "a frame that is too short",
+        [
+            s.request(0, frame),
+            *come(5, "reply", frame_id, bytes(1)),
             {"at": 100},
-            *repeated,
-        ]
-    yield "a frame that is too short", [
-        s.request(0, frame),
-        *come(5, "reply", frame_id, bytes(1)),
-        {"at": 100},
-    ]
-    yield "from another node", [
-        s.ask(0, plain),
-        *come(5, "acknowledge", id, source=node ^ 2),
-        *come(6, "acknowledge", id),
-    ]
+        ],
+    )
+    yield (
+        "from another node",
+        [
+            s.ask(0, plain),
+            *come(5, "acknowledge", id, source=node ^ 2),
+            *come(6, "acknowledge", id),
+        ],
+    )
     yield "to somebody else", [
         s.ask(0, plain), {"at": 1, "receive": {"id": come(1, "acknowledge", id)[0]["receive"]["id"] ^ 1, "bytes": ""}},
     ]  # fmt: skip

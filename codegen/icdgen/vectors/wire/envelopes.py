@@ -89,8 +89,9 @@ def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests
             for how, chunks in pieces("packets of all formats", stream, source):
                 yield how, _events(direction, chunks)
         for why, damaged in _damaged(sent[0], source):
-            yield f"a packet without a message, {why}", _events(
-                direction, [damaged, *sent]
+            yield (
+                f"a packet without a message, {why}",
+                _events(direction, [damaged, *sent]),
             )
 
 
@@ -101,8 +102,9 @@ def _packets(form: Stream, source: Random) -> Requests:
     for number, packet in enumerate(form.packets):
         for direction in DIRECTIONS:
             if packet.content != NOTHING or direction not in packet.directions:
-                yield f"{packet.name} of the {direction} is no packet without a message", _encode_packet(
-                    direction, number, 0
+                yield (
+                    f"{packet.name} of the {direction} is no packet without a message",
+                    _encode_packet(direction, number, 0),
                 )
                 continue
             id_bits = sum(field.bits for field in packet.fields if field.role == "id")
@@ -110,20 +112,25 @@ def _packets(form: Stream, source: Random) -> Requests:
             for id in sorted({0, source.randint(0, greatest), greatest}):
                 yield f"{packet.name} of id {id}", _encode_packet(direction, number, id)
             if 0 < id_bits < 32:
-                yield f"{packet.name} of an id that does not fit", _encode_packet(
-                    direction, number, greatest + 1
+                yield (
+                    f"{packet.name} of an id that does not fit",
+                    _encode_packet(direction, number, greatest + 1),
                 )
             for field in packet.fields:
                 if field.role not in GIVEN:
                     continue
                 for value in sorted({0, 1, field.mask}):
-                    yield f"{packet.name}: {field.role} {value}", _encode_packet(
-                        direction, number, greatest, **{field.role: value}
+                    yield (
+                        f"{packet.name}: {field.role} {value}",
+                        _encode_packet(
+                            direction, number, greatest, **{field.role: value}
+                        ),
                     )
                 if field.bits < 32:
                     too_large = {field.role: field.mask + 1}
-                    yield f"{packet.name}: a {field.role} that does not fit", (
-                        _encode_packet(direction, number, 0, **too_large)
+                    yield (
+                        f"{packet.name}: a {field.role} that does not fit",
+                        (_encode_packet(direction, number, 0, **too_large)),
                     )
     yield "no such packet", _encode_packet(DIRECTIONS[1], len(form.packets), 0)
 
@@ -162,12 +169,14 @@ def _data(form: Stream, row: StreamRow, source: Random) -> Iterator[tuple[str, b
         yield f"{size} random bytes", source.randbytes(size)
     yield "zeros", bytes(row.most)
     yield "ones", b"\xff" * row.most
-    yield "what delimiters are made of", bytes(
-        source.choices(_markers(form), k=row.most)
+    yield (
+        "what delimiters are made of",
+        bytes(source.choices(_markers(form), k=row.most)),
     )
     if row.most > 2:
-        yield "zeros at the end", source.randbytes(row.most // 2) + bytes(
-            row.most - row.most // 2
+        yield (
+            "zeros at the end",
+            source.randbytes(row.most // 2) + bytes(row.most - row.most // 2),
         )
         yield "one byte, then zeros", b"\x01" + bytes(row.most - 1)
 
@@ -182,8 +191,9 @@ def _encoded(
             line = stream_encode(link, row.id, data, direction)
             yield f"{row.name}: {why}, and back", _events(direction, [line])
         for size in {row.least - 1, row.most + 1} - {-1}:
-            yield f"{row.name}: a length that it does not have", _encode(
-                direction, row.id, bytes(size)
+            yield (
+                f"{row.name}: a length that it does not have",
+                _encode(direction, row.id, bytes(size)),
             )
     for row in form.rows(direction)[:1]:
         data = source.randbytes(row.most)
@@ -191,8 +201,9 @@ def _encoded(
         for field in packet.fields:
             if field.role in GIVEN:
                 for value in sorted({0, 1, field.mask // 3, field.mask}):
-                    yield f"{field.role} {value}", _encode(
-                        direction, row.id, data, **{field.role: value}
+                    yield (
+                        f"{field.role} {value}",
+                        _encode(direction, row.id, data, **{field.role: value}),
                     )
                     line = stream_encode(
                         link, row.id, data, direction, **{field.role: value}
@@ -200,13 +211,15 @@ def _encoded(
                     yield f"{field.role} {value}, and back", _events(direction, [line])
                 if field.bits < 32:
                     too_large = {field.role: field.mask + 1}
-                    yield f"a {field.role} that does not fit", _encode(
-                        direction, row.id, data, **too_large
+                    yield (
+                        f"a {field.role} that does not fit",
+                        _encode(direction, row.id, data, **too_large),
                     )
         absent = next((role for role in GIVEN if packet.of(role) is None), None)
         if absent:
-            yield "a value that no field takes", _encode(
-                direction, row.id, data, **{absent: 7}
+            yield (
+                "a value that no field takes",
+                _encode(direction, row.id, data, **{absent: 7}),
             )
 
 
@@ -268,15 +281,17 @@ def _streams(
     two_messages = b"\x01" + good + good
     # Each split position once: a decoder must keep its state between two calls.
     for at in range(1, min(len(two_messages), _SPLITS)):
-        yield f"two messages after noise, cut behind byte {at}", _events(
-            direction, [two_messages[:at], two_messages[at:]]
+        yield (
+            f"two messages after noise, cut behind byte {at}",
+            _events(direction, [two_messages[:at], two_messages[at:]]),
         )
     for more in (-1, 0):
         limit = form.packets[short.packet].overhead + short.most + more
         if limit >= max(each.overhead for each in form.packets):
             why = "that it just fits" if more == 0 else "too small by one"
-            yield f"a buffer {why}", _events(
-                direction, [good + lines[-1] + good + good], limit=limit
+            yield (
+                f"a buffer {why}",
+                _events(direction, [good + lines[-1] + good + good], limit=limit),
             )
 
 
@@ -299,9 +314,10 @@ def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
         flipped = good[at] ^ 1 << source.randrange(8)
         yield f"byte {at} is damaged", good[:at] + bytes([flipped]) + good[at + 1 :]
     yield "a byte is lost", good[: len(good) // 2] + good[len(good) // 2 + 1 :]
-    yield "a byte comes twice", good[: len(good) // 2] + good[
-        max(0, len(good) // 2 - 1) :
-    ]
+    yield (
+        "a byte comes twice",
+        good[: len(good) // 2] + good[max(0, len(good) // 2 - 1) :],
+    )
 
 
 def _nested(
@@ -315,9 +331,10 @@ def _nested(
         return
     line = stream_encode(link, outer.id, (good * outer.most)[: outer.most], direction)
     yield "a message within another one", line + good
-    yield "a message within a damaged one", line[:-1] + bytes(
-        [line[-1] ^ 0x10]
-    ) + good + good
+    yield (
+        "a message within a damaged one",
+        line[:-1] + bytes([line[-1] ^ 0x10]) + good + good,
+    )
     yield "messages within a truncated message", line[:-3] + good + good
 
 
@@ -343,9 +360,10 @@ def _escapes(form: Stream, good: bytes) -> Iterator[tuple[str, bytes]]:
         good[:-2] + escape + escape + good + good,
     )
     yield "an empty packet", good[:2] + escape + end + good
-    yield "a message that is too long", good[:-2] + bytes(3 * form.longest) + good[
-        -2:
-    ] + good
+    yield (
+        "a message that is too long",
+        good[:-2] + bytes(3 * form.longest) + good[-2:] + good,
+    )
     yield (
         "escape bytes in a message that is too long",
         good[:-2] + 2 * form.longest * (escape + data) + good[-2:] + good,
@@ -399,8 +417,9 @@ def _gaps(
         ("the sequence restarts", (7, 0, 1)),
     ):
         fitting = [number & place.mask for number in numbers]
-        yield why, b"".join(
-            _line(link, direction, row, source, number) for number in fitting
+        yield (
+            why,
+            b"".join(_line(link, direction, row, source, number) for number in fitting),
         )
     sequence_rows = form.rows(direction)[:2]
     turns = [

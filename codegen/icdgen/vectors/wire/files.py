@@ -16,8 +16,9 @@ from icdgen.vectors.wire import Requests
 def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield requests on packed times and the index file."""
     if facts.time:
-        bits, some = (1 << bit for bit in range(32)), (
-            source.getrandbits(32) for _ in range(20)
+        bits, some = (
+            (1 << bit for bit in range(32)),
+            (source.getrandbits(32) for _ in range(20)),
         )
         for value in (0, 0xFFFFFFFF, 0x00210000, *bits, *some):
             yield f"{value:08x}", {"op": "dos_time", "value": value}
@@ -32,10 +33,13 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             (2108, 1, 1, 24, 60, 0), (1979, 13, 32, 0, 0, 0), (2021, 2, 30, 0, 0, 60), (2108, 1, 1, 23, 0, 0),
         ]  # fmt: skip
         for date in dates:
-            yield "a date", {
-                "op": "dos_time",
-                **dict(zip(DosTime._fields, date, strict=True)),
-            }
+            yield (
+                "a date",
+                {
+                    "op": "dos_time",
+                    **dict(zip(DosTime._fields, date, strict=True)),
+                },
+            )
     if facts.index:
         index = facts.index
         sizes = {role: place.bytes for role, place in index.fields.items()}
@@ -46,18 +50,27 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         data = write_index(link, index_entries)
         yield "three entries", {"op": "index_encode", "entries": entries}
         for size in (0, 1, index.entry_bytes, len(data) - 1, len(data)):
-            yield f"{size} of {len(data)} bytes", {
-                "op": "index_decode",
-                "bytes": data[:size].hex(),
-            }
-        yield "meta-data that are too short", {
-            "op": "index_encode",
-            "entries": [{**entries[0], "meta": "00"}],
-        }
-        yield "a number that does not fit", {
-            "op": "index_encode",
-            "entries": [{**entries[0], "counter": 256}],
-        }
+            yield (
+                f"{size} of {len(data)} bytes",
+                {
+                    "op": "index_decode",
+                    "bytes": data[:size].hex(),
+                },
+            )
+        yield (
+            "meta-data that are too short",
+            {
+                "op": "index_encode",
+                "entries": [{**entries[0], "meta": "00"}],
+            },
+        )
+        yield (
+            "a number that does not fit",
+            {
+                "op": "index_encode",
+                "entries": [{**entries[0], "counter": 256}],
+            },
+        )
 
 
 def _random_entry(sizes: dict[str, int], source: Random) -> dict[str, Any]:

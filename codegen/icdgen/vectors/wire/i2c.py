@@ -27,20 +27,26 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
     for id, message in list(facts.telemetry.items())[:3]:
         frame = source.randbytes(message.length)
         for checked in (False, True) if facts.checksum else (False,):
-            yield f"telemetry {id}", {
-                "op": "i2c_request",
-                "kind": "telemetry",
-                "id": id,
-                "crc": checked,
-            }
+            yield (
+                f"telemetry {id}",
+                {
+                    "op": "i2c_request",
+                    "kind": "telemetry",
+                    "id": id,
+                    "crc": checked,
+                },
+            )
             data = i2c_write(link, id, frame, checked)[1:]
             about = {"op": "i2c_reply", "id": id, "crc": checked}
             yield f"telemetry {id}", {**about, "bytes": data.hex()}
             yield f"telemetry {id}, too short", {**about, "bytes": data[:-1].hex()}
-            yield f"telemetry {id}, one bit wrong", {
-                **about,
-                "bytes": (bytes([data[0] ^ 1]) + data[1:]).hex(),
-            }
+            yield (
+                f"telemetry {id}, one bit wrong",
+                {
+                    **about,
+                    "bytes": (bytes([data[0] ^ 1]) + data[1:]).hex(),
+                },
+            )
     step = facts.identification
     if step:
         for change in range(2):
@@ -51,8 +57,11 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
                     facts.node.interface_version or 0,
                 ]
             )
-            yield "who the node is", {
-                "op": "identify",
-                "bytes": frame.ljust(step.message.length, b"\0").hex(),
-            }
+            yield (
+                "who the node is",
+                {
+                    "op": "identify",
+                    "bytes": frame.ljust(step.message.length, b"\0").hex(),
+                },
+            )
         yield "a frame that is too short", {"op": "identify", "bytes": "00"}

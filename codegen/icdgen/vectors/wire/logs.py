@@ -45,31 +45,43 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             rows = [(s, ms, row) for (s, ms), row in zip(times, data, strict=True)]
             writer = LogWriter(link, mask)
             file = writer.header() + b"".join(writer.entry(*row) for row in rows)
-            yield "two entries", {
-                "op": "log_encode",
-                "mask": mask.hex(),
-                "entries": [_entry(*row) for row in rows],
-            }
+            yield (
+                "two entries",
+                {
+                    "op": "log_encode",
+                    "mask": mask.hex(),
+                    "entries": [_entry(*row) for row in rows],
+                },
+            )
             for size in sorted(
                 {0, len(mask) - 1, len(mask), len(mask) + 1, len(file) - 1, len(file)}
             ):
-                yield f"{size} of {len(file)} bytes", {
-                    "op": "log_decode",
-                    "bytes": file[:size].hex(),
-                }
+                yield (
+                    f"{size} of {len(file)} bytes",
+                    {
+                        "op": "log_decode",
+                        "bytes": file[:size].hex(),
+                    },
+                )
         if facts.log_message:
             message = LogMessage.encode(link, mask, data[0])
             frames = [frame.hex() for frame in data[0]]
-            yield "an unsolicited log", {
-                "op": "log_message_encode",
-                "mask": mask.hex(),
-                "frames": frames,
-            }
+            yield (
+                "an unsolicited log",
+                {
+                    "op": "log_message_encode",
+                    "mask": mask.hex(),
+                    "frames": frames,
+                },
+            )
             for size in (len(message), len(message) - 1, 3):
-                yield f"{size} of {len(message)} bytes", {
-                    "op": "log_message_decode",
-                    "bytes": message[:size].hex(),
-                }
+                yield (
+                    f"{size} of {len(message)} bytes",
+                    {
+                        "op": "log_message_decode",
+                        "bytes": message[:size].hex(),
+                    },
+                )
     mask_of_one = (
         (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()
     )
@@ -79,11 +91,14 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         ("a frame too short", ["00"]),
     ]
     for why, data_ in invalid:
-        yield why, {
-            "op": "log_encode",
-            "mask": mask_of_one,
-            "entries": [{"seconds": 1, "milliseconds": 2, "frames": data_}],
-        }
+        yield (
+            why,
+            {
+                "op": "log_encode",
+                "mask": mask_of_one,
+                "entries": [{"seconds": 1, "milliseconds": 2, "frames": data_}],
+            },
+        )
     yield "a mask that is too short", {"op": "log_encode", "mask": "01", "entries": []}
 
 

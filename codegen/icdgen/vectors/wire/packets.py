@@ -43,10 +43,13 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             "destination": message.destination,
         }
         yield why, {"op": "can_split", **about, "bytes": message.data.hex()}
-        yield why, {
-            "op": "can_join",
-            "packets": [_row(packet) for packet in can_split(link, message)],
-        }
+        yield (
+            why,
+            {
+                "op": "can_join",
+                "packets": [_row(packet) for packet in can_split(link, message)],
+            },
+        )
     if form.extended:
         most = form.extended.bytes
         about = {
@@ -56,17 +59,23 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             "destination": node,
         }
         for size in (most, most + 1):
-            yield f"{size} bytes", {
+            yield (
+                f"{size} bytes",
+                {
+                    "op": "can_split",
+                    **about,
+                    "bytes": source.randbytes(size).hex(),
+                },
+            )
+        yield (
+            "data where none is expected",
+            {
                 "op": "can_split",
                 **about,
-                "bytes": source.randbytes(size).hex(),
-            }
-        yield "data where none is expected", {
-            "op": "can_split",
-            **about,
-            "kind": "request",
-            "bytes": "00",
-        }
+                "kind": "request",
+                "bytes": "00",
+            },
+        )
         yield from _joins(link, facts, source, other, third)
 
 
@@ -136,26 +145,38 @@ def _joins(
         ),
     ]
     for why, row in rows:
-        yield why, {
+        yield (
+            why,
+            {
+                "op": "can_join",
+                "packets": [_row(packet) for packet in row],
+                "end": late,
+            },
+        )
+    yield (
+        "no receiver for them",
+        {
             "op": "can_join",
-            "packets": [_row(packet) for packet in row],
-            "end": late,
-        }
-    yield "no receiver for them", {
-        "op": "can_join",
-        "address": node ^ 1,
-        "packets": [_row(p) for p in first],
-    }
+            "address": node ^ 1,
+            "packets": [_row(p) for p in first],
+        },
+    )
     paused = [_row(packet, late - 1) for packet in first[1:]]
-    yield "a pause just short enough", {
-        "op": "can_join",
-        "packets": [_row(first[0]), *paused],
-    }
+    yield (
+        "a pause just short enough",
+        {
+            "op": "can_join",
+            "packets": [_row(first[0]), *paused],
+        },
+    )
     paused = [_row(packet, late) for packet in first]
-    yield "a pause that is too long", {
-        "op": "can_join",
-        "packets": [_row(first[0]), *paused],
-    }
+    yield (
+        "a pause that is too long",
+        {
+            "op": "can_join",
+            "packets": [_row(first[0]), *paused],
+        },
+    )
     # One sender more than a joiner can handle by default.
     crowd = [sent(sender, str(sender)) for sender in range(5)]
     turns = [packet for turn in zip(*crowd, strict=True) for packet in turn]

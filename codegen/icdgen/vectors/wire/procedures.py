@@ -242,8 +242,9 @@ class _Scripts:
         for each in self.procedure.numbers:
             allowed = each.values or (0, each.most)
             for number in allowed:
-                yield f"{each.name} is {number}", _request(
-                    self.call(**{each.name: number})
+                yield (
+                    f"{each.name} is {number}",
+                    _request(self.call(**{each.name: number})),
                 )
             near = {number + step for number in allowed for step in (-1, 1)}
             for number in sorted(near):
@@ -254,8 +255,9 @@ class _Scripts:
                     why = f"{each.name} is {number}, which is not supported"
                     yield why, _request(self.call(**{each.name: number}))
             if each.is_optional:
-                yield f"{each.name} is not given", _request(
-                    self.call(**{each.name: None})
+                yield (
+                    f"{each.name} is not given",
+                    _request(self.call(**{each.name: None})),
                 )
 
     def _lists(self) -> Requests:

@@ -42,19 +42,22 @@ def _messages(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "an id alone", b"\x80"
     yield "an id that is the escape byte", bytes([escape, 0])
     yield "nothing but escape bytes", bytes([escape] * 5)
-    yield "what looks like an end within the data", bytes(
-        [1, escape, escape, end, escape, end, 2]
+    yield (
+        "what looks like an end within the data",
+        bytes([1, escape, escape, end, escape, end, 2]),
     )
-    yield "what looks like a start within the data", bytes(
-        [1, escape, start, 2, escape]
+    yield (
+        "what looks like a start within the data",
+        bytes([1, escape, start, 2, escape]),
     )
     yield "the markers as data", bytes([end, start, end])
     yield "every byte", bytes([0x90, *range(256)])[: facts.longest]
     for id in sorted(
         {min(facts.telecommands), max(facts.telecommands)} if facts.telecommands else ()
     ):
-        yield f"telecommand {id}", bytes([id]) + source.randbytes(
-            facts.telecommands[id].length
+        yield (
+            f"telecommand {id}",
+            bytes([id]) + source.randbytes(facts.telecommands[id].length),
         )
     yield "the longest message", bytes([0x80]) + source.randbytes(facts.longest - 1)
     yield "the longest message, all escaped", bytes([escape] * facts.longest)
@@ -65,10 +68,13 @@ def encoded(link: AnyLink, facts: Facts, source: Random) -> Requests:
     yield "no id", {"op": "uart_encode", "bytes": ""}
     for why, message in _messages(facts, source):
         yield why, {"op": "uart_encode", "bytes": message.hex()}
-        yield why, {
-            "op": "uart_decode",
-            "bytes": uart_encode(link, message).hex(),
-        }
+        yield (
+            why,
+            {
+                "op": "uart_decode",
+                "bytes": uart_encode(link, message).hex(),
+            },
+        )
 
 
 def streams(link: AnyLink, facts: Facts, source: Random) -> Requests:
@@ -113,30 +119,42 @@ def streams(link: AnyLink, facts: Facts, source: Random) -> Requests:
     for why, stream in streams_to_decode:
         yield why, {"op": "uart_decode", "bytes": stream.hex()}
         for how, chunks in pieces(why, stream, source):
-            yield how, {
-                "op": "uart_events",
-                "chunks": [chunk.hex() for chunk in chunks],
-            }
+            yield (
+                how,
+                {
+                    "op": "uart_events",
+                    "chunks": [chunk.hex() for chunk in chunks],
+                },
+            )
     # Ten bytes after unescaping: one more than the smaller buffer.
     long = line(0x90, *range(1, 9), escape)
     # No buffer is longer than the longest message
     for limit in (9, 10) if facts.longest >= 10 else ():
         cut = [(long + good[:-2]).hex(), finish.hex()]
-        yield f"ten bytes in a buffer of {limit}", {
-            "op": "uart_events",
-            "limit": limit,
-            "chunks": cut,
-        }
+        yield (
+            f"ten bytes in a buffer of {limit}",
+            {
+                "op": "uart_events",
+                "limit": limit,
+                "chunks": cut,
+            },
+        )
     too_long = uart_encode(link, bytes([0x90]) * (facts.longest + 1))
-    yield "a message that is too long by one", {
-        "op": "uart_events",
-        "chunks": [(too_long + good).hex()],
-    }
-    for why, message in _kinds(link, facts, source):
-        yield why, {
+    yield (
+        "a message that is too long by one",
+        {
             "op": "uart_events",
-            "chunks": [uart_encode(link, message).hex()],
-        }
+            "chunks": [(too_long + good).hex()],
+        },
+    )
+    for why, message in _kinds(link, facts, source):
+        yield (
+            why,
+            {
+                "op": "uart_events",
+                "chunks": [uart_encode(link, message).hex()],
+            },
+        )
 
 
 def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
@@ -149,11 +167,13 @@ def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, b
             }
         )
         for id in ids:
-            yield f"the acknowledge of telecommand {id}", bytes(
-                [id, *bytes(facts.acknowledge.length - 1)]
+            yield (
+                f"the acknowledge of telecommand {id}",
+                bytes([id, *bytes(facts.acknowledge.length - 1)]),
             )
-        yield "an acknowledge that is too long", bytes(
-            [ids[0], *bytes(facts.acknowledge.length)]
+        yield (
+            "an acknowledge that is too long",
+            bytes([ids[0], *bytes(facts.acknowledge.length)]),
         )
     for head, id in facts.unsolicited.items():
         for more in (-1, 0, 1):

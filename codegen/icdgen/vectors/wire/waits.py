@@ -29,11 +29,14 @@ def scripts(link: AnyLink, facts: Facts) -> Requests:
         rows = [
             {"at": patience * n + late} for n in range(1, tries + 1) for late in (-1, 0)
         ]
-        yield f"{bus}: silence", {
-            "op": "client",
-            "bus": bus,
-            "script": [request_row, *rows, {"at": patience * (tries + 1)}],
-        }
+        yield (
+            f"{bus}: silence",
+            {
+                "op": "client",
+                "bus": bus,
+                "script": [request_row, *rows, {"at": patience * (tries + 1)}],
+            },
+        )
     sent = next((m for m in facts.telecommands.values() if m.acknowledge), None)
     if sent is not None and facts.polled and facts.i2c_address is not None:
         for early in (1, 0):
@@ -42,11 +45,14 @@ def scripts(link: AnyLink, facts: Facts) -> Requests:
                 if early
                 else "when its time is over"
             )
-            yield f"{I2C}: not processed {why}", {
-                "op": "client",
-                "bus": I2C,
-                "script": list(_polls(link, facts, sent, early)),
-            }
+            yield (
+                f"{I2C}: not processed {why}",
+                {
+                    "op": "client",
+                    "bus": I2C,
+                    "script": list(_polls(link, facts, sent, early)),
+                },
+            )
 
 
 def _polls(
