@@ -110,10 +110,10 @@ def checksums_logs_and_can(acp, wire, rounds: int) -> None:
     print("\n| other | MB/s |\n|---|---|")
     read = in_pieces(lambda: wire.LogReader(link), log, 65536)
     print(
-        f"| CRC-16 of a block | {rate(lambda: wire.crc16(link, block), len(block), rounds * 3):.1f} |"
+        f"| CRC-16 of a block | {rate(lambda: wire.checksum(link, 'crc16', block), len(block), rounds * 3):.1f} |"
     )
     print(
-        f"| CRC-8 of 20 kB | {rate(lambda: wire.crc8(link, block), len(block), rounds * 3):.1f} |"
+        f"| CRC-8 of 20 kB | {rate(lambda: wire.checksum(link, 'crc8', block), len(block), rounds * 3):.1f} |"
     )
     print(
         f"| log of {len(lengths)} frames an entry, 64 kB a piece | {rate(read, len(log), rounds):.1f} |"

@@ -107,7 +107,6 @@ class _LinkBuilder:
     def link(self) -> Call:
         """Return the call of ``Link``."""
         facts, node = self.facts, self.facts.node
-        files = facts.checksums.get("crc16")
         parts: dict[str, object] = {
             "node": node.name,
             "order": "little" if facts.little else "big",
@@ -127,6 +126,8 @@ class _LinkBuilder:
             "TELECOMMANDS": Verbatim("TELECOMMANDS"),
             "TELEMETRY": Verbatim("TELEMETRY"),
         }
+        # Before the checksums: the reasons for assumptions about its use are here.
+        checksum = self.checksum()
         time = {name: _flat("TimePart", part) for name, part in facts.time.items()}
         optional = {
             "framing": self.part(facts.framing),
@@ -136,8 +137,8 @@ class _LinkBuilder:
             # True is the default of the runtime.
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
-            "checksum": self.checksum(),
-            "crc16": self.part(files.crc if files else None),
+            "checksums": self.checksums() or None,
+            "checksum": checksum,
             "mask": self.mask(),
             "log_file": self.part(facts.log_file),
             "log_message": self.part(facts.log_message),
@@ -223,14 +224,19 @@ class _LinkBuilder:
         computed |= {"extended": self.part(can.extended)} if can.extended else {}
         return self.part(can, **computed)
 
+    def checksums(self) -> dict[str, object]:
+        """Return the calls for the checksums by name."""
+        calls: dict[str, object] = {}
+        for name, algorithm in self.facts.checksums.items():
+            crc = _call("CrcForm", **self.declared(algorithm.crc))
+            call = _call("ChecksumAlgorithm", kind=algorithm.kind, crc=crc)
+            calls[name] = _commented(call, self.assumed.of_section(algorithm.section))
+        return calls
+
     def checksum(self) -> object:
         """Return the call for the checksum of messages."""
         form = self.facts.checksum
-        return (
-            self.part(form, crc=_call("CrcForm", **self.declared(form.algorithm.crc)))
-            if form
-            else None
-        )
+        return self.part(form, name=form.algorithm.name) if form else None
 
     def mask(self) -> object:
         """Return the call for the log mask."""
@@ -518,7 +524,7 @@ def _step_row(step: object) -> Call:
             name = "telecommand" if is_sent else "telemetry"
             member = member.telecommand_id if is_sent else member.telemetry_id
         if isinstance(member, ChecksumAlgorithm):
-            name, member = "crc", member.crc
+            name, member = "checksum", member.name
         if name not in _STEP_DEFAULTS or member != _STEP_DEFAULTS[name]:
             members[name] = _step_part(member)
     # A step with several fields has a line for each.

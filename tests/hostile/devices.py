@@ -13,7 +13,7 @@ from random import Random
 from typing import Any
 
 from icdgen_runtime.wire.awaited import Request
-from icdgen_runtime.wire.crc import Crc
+from icdgen_runtime.wire.checks import checksum
 from icdgen_runtime.wire.events import (
     Arrived,
     Busy,
@@ -174,7 +174,7 @@ class Device:
             is_whole = step.covers_fill
             size = packets * self.blocks.packet_bytes if is_whole else self.loaded
             data = bytes(size)
-        return Crc(step.crc).feed(data).result()
+        return checksum(self.link, step.checksum, data)
 
     def read(self, position: int) -> list[Event]:
         """Return a packet that the client reads."""

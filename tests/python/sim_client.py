@@ -19,7 +19,7 @@ from icdgen_messages.wire import (
     RefusedError,
     ReplyTimeoutError,
     Session,
-    crc16,
+    checksum,
     identify,
 )
 
@@ -79,10 +79,10 @@ def started(device: Session, boot: Session, data: bytes) -> None:
     transfer(boot, lambda: Procedure(BOOT, "program_copy", program))
     running = {"program": RUNNING}
     told = transfer(boot, lambda: Procedure(BOOT, "program_information", running))
-    size, checksum = told.output("size"), told.output("checksum")
-    if (size, checksum) != (len(data), crc16(BOOT, data)):
+    size, value = told.output("size"), told.output("checksum")
+    if (size, value) != (len(data), checksum(BOOT, "crc16", data)):
         raise Failed(
-            f"the program that can run has {size} bytes and the checksum {checksum:#x}"
+            f"the program that can run has {size} bytes and the checksum {value:#x}"
         )
     boot.send(bootloader.RunSelectedProgram())
     if not identity(device).matches:

@@ -107,7 +107,7 @@ def test_a_node_of_which_the_icd_says_little(tmp_path):
         {"op": "client", "bus": bus, "script": script} for bus in ("uart", "can", "i2c")
     ]
     asked += [
-        {"op": "crc8", "bytes": ""},
+        {"op": "checksum", "name": "crc8", "bytes": ""},
         {"op": "procedure", "name": "list", "script": []},
         {"op": "dos_time", "value": 3},
     ]

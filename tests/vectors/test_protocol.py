@@ -131,15 +131,22 @@ def test_the_reference_answers_as_its_vectors_say(icd, files, tmp_path):
 
 def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
     ask = Reference(icd).answer
-    assert ask(b'{"op": "crc8", "bytes": "313233343536373839"}') == {
+    assert ask(
+        b'{"op": "checksum", "name": "crc8", "bytes": "313233343536373839"}'
+    ) == {
         "ok": True,
         "crc": 0x25,
     }
-    assert ask(b'{"op": "crc16", "bytes": "313233343536373839"}') == {
+    assert ask(
+        b'{"op": "checksum", "name": "crc16", "bytes": "313233343536373839"}'
+    ) == {
         "ok": True,
         "crc": 0x31C3,
     }
-    assert ask(b'{"op": "crc8", "bytes": ""}') == {"ok": True, "crc": 0xFF}
+    assert ask(b'{"op": "checksum", "name": "crc8", "bytes": ""}') == {
+        "ok": True,
+        "crc": 0xFF,
+    }
     assert ask(b'{"op": "uart_encode", "bytes": "1f00"}') == {
         "ok": True,
         "bytes": "1f7f1f1f001fff",
@@ -148,7 +155,9 @@ def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
         "ok": True,
         "frames": ["1f00"],
     }
-    assert ask(b'{"op": "crc8", "node": "bootloader", "bytes": ""}') == {
+    assert ask(
+        b'{"op": "checksum", "name": "crc8", "node": "bootloader", "bytes": ""}'
+    ) == {
         "ok": False,
         "error": "unsupported",
     }

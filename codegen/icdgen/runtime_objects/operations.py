@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, get_args
 
-from icdgen_runtime.wire import crc, stream
+from icdgen_runtime.wire import checks, stream
 from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 from icdgen_runtime.wire.can import can_split as split
 from icdgen_runtime.wire.errors import need
@@ -33,6 +33,7 @@ from icdgen.runtime_objects.request_keys import (
     number,
     octets,
     rows,
+    text,
 )
 
 CAN_BYTES = 8  # of a classic CAN frame
@@ -43,12 +44,9 @@ Response = dict[str, Any]
 Operation = Callable[[AnyLink, Request], Response]
 
 
-def crc8(link: AnyLink, request: Request) -> Response:
-    return {"crc": crc.crc8(link, octets(request))}
-
-
-def crc16(link: AnyLink, request: Request) -> Response:
-    return {"crc": crc.crc16(link, octets(request))}
+def checksum(link: AnyLink, request: Request) -> Response:
+    name = text(request, "name")
+    return {"crc": checks.checksum(link, name, octets(request))}
 
 
 def uart_encode(link: AnyLink, request: Request) -> Response:
@@ -288,7 +286,7 @@ def _stream_row(event: stream.StreamEvent) -> Response:
 
 
 OPERATIONS: tuple[Operation, ...] = (
-    crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
+    checksum, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
     log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
     link_data, stream_encode, stream_encode_packet, stream_events,
 )  # fmt: skip

@@ -55,12 +55,9 @@ def event(kind: str, facts: Facts) -> Answer:
     return answer
 
 
-def crc8(to: Asking, request: Request) -> Answer:
-    return typed(to.ask("crc8", octets(request).hex()).facts)
-
-
-def crc16(to: Asking, request: Request) -> Answer:
-    return typed(to.ask("crc16", octets(request).hex()).facts)
+def checksum(to: Asking, request: Request) -> Answer:
+    name = text(request, "name")
+    return typed(to.ask("checksum", name, octets(request).hex()).facts)
 
 
 def uart_encode(to: Asking, request: Request) -> Answer:
@@ -281,7 +278,7 @@ def _hex_rows(request: Request, key: str) -> list[str]:
 OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     op.__name__: op
     for op in (
-        crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
+        checksum, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
         link_data, stream_encode, stream_encode_packet, stream_events,
     )

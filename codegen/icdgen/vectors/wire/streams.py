@@ -30,9 +30,9 @@ def checksums(facts: Facts, source: Random) -> Requests:
         (f"{size} random bytes", source.randbytes(size))
         for size in (2, 7, 22, 255, 1000)
     ]
-    for name in [each for each in ("crc8", "crc16") if each in facts.checksums]:
+    for name in facts.checksums:
         for why, content in data:
-            yield why, {"op": name, "bytes": content.hex()}
+            yield why, {"op": "checksum", "name": name, "bytes": content.hex()}
 
 
 def _messages(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:

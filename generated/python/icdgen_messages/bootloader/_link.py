@@ -176,14 +176,19 @@ LINK: link.Link[_Node] = link.Link(
             packet_timeout=1000,
         ),
     ),
-    crc16=link.CrcForm(
-        width=16,
-        polynomial=4129,
-        init=0,
-        reflect_in=False,
-        reflect_out=False,
-        xor_out=0,
-    ),
+    checksums={
+        "crc16": link.ChecksumAlgorithm(
+            kind="crc",
+            crc=link.CrcForm(
+                width=16,
+                polynomial=4129,
+                init=0,
+                reflect_in=False,
+                reflect_out=False,
+                xor_out=0,
+            ),
+        ),
+    },
     time={
         "second": link.TimePart(at=0, bits=5, factor=2, offset=0),
         "minute": link.TimePart(at=5, bits=6, factor=1, offset=0),
@@ -344,7 +349,7 @@ LINK: link.Link[_Node] = link.Link(
                     requested_on=("i2c", "can"),
                 ),
                 link.Jump(to=4),
-                link.VerifyChecksum(crc=link.CrcForm(width=16, polynomial=4129, init=0, reflect_in=False, reflect_out=False, xor_out=0), of_block=True, covers_fill=False, value=link.Value(11, True), again=True),
+                link.VerifyChecksum(checksum="crc16", of_block=True, covers_fill=False, value=link.Value(11, True), again=True),
                 link.Jump(to=0),
             ),
             blocks=link.Blocks(
@@ -436,7 +441,7 @@ LINK: link.Link[_Node] = link.Link(
                         link.Take(link.NumberPlace(0, 2, 0, 16, True), 7),
                     ),
                 ),
-                link.VerifyChecksum(crc=link.CrcForm(width=16, polynomial=4129, init=0, reflect_in=False, reflect_out=False, xor_out=0), of_block=True, covers_fill=True, value=link.Value(7, True), again=True),
+                link.VerifyChecksum(checksum="crc16", of_block=True, covers_fill=True, value=link.Value(7, True), again=True),
                 link.Send(
                     telecommand=116,
                     data=bytes.fromhex("00000000000000"),

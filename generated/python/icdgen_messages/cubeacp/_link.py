@@ -308,6 +308,31 @@ LINK: link.Link[_Node] = link.Link(
             packet_timeout=1000,
         ),
     ),
+    checksums={
+        "crc8": link.ChecksumAlgorithm(
+            kind="crc",
+            crc=link.CrcForm(
+                width=8,
+                polynomial=18,
+                init=0,
+                reflect_in=True,
+                reflect_out=True,
+                xor_out=0,
+                empty=255,
+            ),
+        ),
+        "crc16": link.ChecksumAlgorithm(
+            kind="crc",
+            crc=link.CrcForm(
+                width=16,
+                polynomial=4129,
+                init=0,
+                reflect_in=False,
+                reflect_out=False,
+                xor_out=0,
+            ),
+        ),
+    },
     checksum=link.Checksum(
         # Assumed: Whether the id counts among the bytes of a command is not said. The
         #   extra byte of a frame can cover the frame only.
@@ -320,23 +345,7 @@ LINK: link.Link[_Node] = link.Link(
         telecommand_always=(),
         telemetry_always=(),
         bytes=1,
-        crc=link.CrcForm(
-            width=8,
-            polynomial=18,
-            init=0,
-            reflect_in=True,
-            reflect_out=True,
-            xor_out=0,
-            empty=255,
-        ),
-    ),
-    crc16=link.CrcForm(
-        width=16,
-        polynomial=4129,
-        init=0,
-        reflect_in=False,
-        reflect_out=False,
-        xor_out=0,
+        name="crc8",
     ),
     # Assumed, frame_order: The order of the frames in an entry is not said. They
     #   follow the bits of the mask, bit 0 of the first byte first.
@@ -591,7 +600,7 @@ LINK: link.Link[_Node] = link.Link(
                     requested_on=("i2c", "can"),
                 ),
                 link.Jump(to=4),
-                link.VerifyChecksum(crc=link.CrcForm(width=16, polynomial=4129, init=0, reflect_in=False, reflect_out=False, xor_out=0), of_block=True, covers_fill=False, value=link.Value(11, True), again=True),
+                link.VerifyChecksum(checksum="crc16", of_block=True, covers_fill=False, value=link.Value(11, True), again=True),
                 link.Jump(to=0),
             ),
             blocks=link.Blocks(

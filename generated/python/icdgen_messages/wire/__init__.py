@@ -65,8 +65,7 @@ __all__ = [
     "UartEvent",
     "UnsupportedError",
     "can_split",
-    "crc8",
-    "crc16",
+    "checksum",
     "dos_time_pack",
     "dos_time_unpack",
     "i2c_read_length",
@@ -95,10 +94,9 @@ if TYPE_CHECKING:
     from .can import CanMessage as CanMessage
     from .can import CanPacket as CanPacket
     from .can import can_split as can_split
+    from .checks import checksum as checksum
     from .client import Client as Client
     from .crc import Crc as Crc
-    from .crc import crc8 as crc8
-    from .crc import crc16 as crc16
     from .device import PacketData as PacketData
     from .device import TelemetryData as TelemetryData
     from .device import response_to as response_to
@@ -165,7 +163,8 @@ _HOMES = {
     "awaited": ("Request",),
     "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
     "client": ("Client",),
-    "crc": ("Crc", "crc16", "crc8"),
+    "checks": ("checksum",),
+    "crc": ("Crc",),
     "device": ("PacketData", "TelemetryData", "response_to"),
     "errors": (
         "BusyError",

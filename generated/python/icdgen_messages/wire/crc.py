@@ -7,8 +7,7 @@ from binascii import crc_hqx
 from functools import cache
 
 from .._hints import Buffer
-from .errors import need
-from .link import CrcForm, Link
+from .envelope import CrcForm
 
 
 class Crc:
@@ -57,16 +56,6 @@ class Crc:
         if form.reflect_in != form.reflect_out:
             value = _reversed(value, form.width)
         return value ^ form.xor_out
-
-
-def crc8(link: Link, data: Buffer) -> int:
-    """Return the checksum of telecommands and frames. Raise `UnsupportedError`."""
-    return Crc(need(link.checksum, "crc8").crc).feed(data).result()
-
-
-def crc16(link: Link, data: Buffer) -> int:
-    """Return the checksum of files and blocks. Raise `UnsupportedError`."""
-    return Crc(need(link.crc16, "crc16")).feed(data).result()
 
 
 @cache

@@ -79,6 +79,13 @@ class EnvelopeField(NamedTuple):
         return value * self.unit - self.plus
 
 
+class ChecksumAlgorithm(NamedTuple):
+    """A checksum; kinds other than a CRC use init, xor_out and width of the form."""
+
+    kind: CheckKind
+    crc: CrcForm
+
+
 class CheckForm(NamedTuple):
     """A checksum; kinds other than a CRC use init, xor_out and width of the form."""
 

@@ -12,6 +12,7 @@ from .._hints import N
 from .._lazy import Messages
 from .envelope import BusExchanges as BusExchanges  # noqa: PLC0414
 from .envelope import CheckForm as CheckForm  # noqa: PLC0414
+from .envelope import ChecksumAlgorithm as ChecksumAlgorithm  # noqa: PLC0414
 from .envelope import CrcForm as CrcForm  # noqa: PLC0414
 from .envelope import Echo as Echo  # noqa: PLC0414
 from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
@@ -154,7 +155,8 @@ class Checksum(NamedTuple):
     """Buses on which telemetry always has a checksum."""
     bytes: int
     """Length of the checksum."""
-    crc: CrcForm
+    name: str
+    """Its name in the checksums of the link."""
 
 
 class CanPart(NamedTuple):
@@ -312,8 +314,10 @@ class Facts(NamedTuple):
     i2c_repeated_start: bool = True
     """Whether a read may follow its write without a stop."""
     can: Optional[Can] = None
+    checksums: dict[str, ChecksumAlgorithm] = {}  # noqa: RUF012
+    """Checksums by their names in the ICD."""
     checksum: Optional[Checksum] = None
-    crc16: Optional[CrcForm] = None
+    """Checksum of messages on UART, I2C and CAN."""
     mask: Optional[LogMask] = None
     log_file: Optional[LogFileForm] = None
     log_message: Optional[LogMessageForm] = None

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Optional, Union
 
-from .envelope import CrcForm, NumberPlace
+from .envelope import NumberPlace
 
 BLOCK_OFFSET, BLOCK_LENGTH, BLOCK_IS_EMPTY, PACKET_NUMBER, PACKET_OFFSET = range(5)
 FIRST_INPUT = 5
@@ -151,7 +151,8 @@ class VerifyChecksum(NamedTuple):
     If they differ, transfer the block again, or end with ``checksum``.
     """
 
-    crc: CrcForm
+    checksum: str
+    """Its name in the checksums of the link."""
     of_block: bool
     covers_fill: bool
     """Whether it covers the fill of the last packet."""

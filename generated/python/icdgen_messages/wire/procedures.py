@@ -9,7 +9,7 @@ from typing import Any, Literal, Optional
 from .._base import Message
 from .._errors import RangeError
 from .awaited import Request
-from .crc import Crc
+from .checks import checksum
 from .errors import TooLongError, UnsupportedError, need
 from .events import Arrived, Busy, Done, Event, Outcome, Refused, Reply, Sent, Timeout
 from .link import Bus, Link
@@ -544,7 +544,7 @@ class Procedure:
                 data = data.ljust(size, bytes((blocks.fill,)))
             else:
                 data = bytes(self._contents)
-        if Crc(step.crc).feed(data).result() == step.value.of(self._registers):
+        if checksum(self.link, step.checksum, data) == step.value.of(self._registers):
             self._proceed()
         else:
             self._transfer_again(step.again, "checksum")

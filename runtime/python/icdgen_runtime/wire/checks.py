@@ -1,15 +1,28 @@
-"""Checksums of messages with header and trailer."""
+"""Checksums of all kinds."""
 
 from __future__ import annotations
 
 from functools import reduce
 from operator import xor
+from typing import Union
 
+from .._hints import Buffer
 from .crc import Crc
-from .envelope import CheckForm
+from .envelope import CheckForm, ChecksumAlgorithm
+from .errors import need
+from .link import Link
 
 
-def check(form: CheckForm, data: bytes) -> int:
+def checksum(link: Link, name: str, data: Buffer) -> int:
+    """Return the checksum with this name in the ICD. Raise `UnsupportedError`.
+
+    ``data`` ends with the seed of the message if the checksum has ``seeds``.
+    """
+    algorithm = need(link.checksums.get(name), f"link: checksums: {name}")
+    return check(algorithm, bytes(data))
+
+
+def check(form: Union[CheckForm, ChecksumAlgorithm], data: bytes) -> int:
     """Return the checksum of ``data`` as a number."""
     crc = form.crc
     if form.kind == "crc":

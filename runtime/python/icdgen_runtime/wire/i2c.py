@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .._errors import LengthError, UnknownIdError
-from .crc import Crc
+from .checks import checksum
 from .errors import ChecksumError, need
 from .link import Link
 
@@ -34,7 +34,7 @@ def i2c_read_length(link: Link, id: int, crc: bool = False) -> int:
     Raise `UnknownIdError` and `UnsupportedError`.
     """
     length = _length(link, id)
-    return length + (need(link.checksum, "crc8").bytes if crc else 0)
+    return length + (need(link.checksum, "checksums of messages").bytes if crc else 0)
 
 
 def i2c_reply(link: Link, id: int, data: bytes, crc: bool = False) -> bytes:
@@ -48,9 +48,7 @@ def i2c_reply(link: Link, id: int, data: bytes, crc: bool = False) -> bytes:
     frame = data[:length]
     if crc and data[length:] != _checksum(link, id, frame):
         numbers = (_checksum(link, id, frame), data[length:])
-        raise ChecksumError(
-            *(int.from_bytes(checksum, link.order) for checksum in numbers)
-        )
+        raise ChecksumError(*(int.from_bytes(number, link.order) for number in numbers))
     return frame
 
 
@@ -61,8 +59,6 @@ def _length(link: Link, id: int) -> int:
 
 
 def _checksum(link: Link, id: int, data: bytes) -> bytes:
-    form = need(link.checksum, "crc8")
-    register = Crc(form.crc)
-    if form.covers_id:
-        register.feed(bytes((id,)))
-    return register.feed(data).result().to_bytes(form.bytes, link.order)
+    form = need(link.checksum, "checksums of messages")
+    covered = bytes((id,)) + data if form.covers_id else data
+    return checksum(link, form.name, covered).to_bytes(form.bytes, link.order)

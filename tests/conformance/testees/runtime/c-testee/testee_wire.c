@@ -24,23 +24,20 @@ const char *event_name(icd_event_kind_t kind)
     return names[kind];
 }
 
-static void crc8(void)
+static void checksum(void)
 {
     const icd_link_t *link = next_link();
+    const char *name = next_word();
     const octets_t octets = next_octets();
-    uint32_t crc = 0;
-    if (answers(icd_crc8(link, octets.data, octets.length, &crc))) {
-        put_number("crc", crc);
+    icd_status_t status = ICD_ERROR_UNSUPPORTED;
+    uint32_t value = 0;
+    if (is_word(name, "crc8")) {
+        status = icd_crc8(link, octets.data, octets.length, &value);
+    } else if (is_word(name, "crc16")) {
+        status = icd_crc16(link, octets.data, octets.length, &value);
     }
-}
-
-static void crc16(void)
-{
-    const icd_link_t *link = next_link();
-    const octets_t octets = next_octets();
-    uint32_t crc = 0;
-    if (answers(icd_crc16(link, octets.data, octets.length, &crc))) {
-        put_number("crc", crc);
+    if (answers(status)) {
+        put_number("crc", value);
     }
 }
 
@@ -77,5 +74,5 @@ static void identify(void)
 }
 
 const testee_op_t testee_wire_ops[] = {
-    {"crc8", crc8}, {"crc16", crc16}, {"link_data", link_data}, {"identify", identify}, {NULL, NULL},
+    {"checksum", checksum}, {"link_data", link_data}, {"identify", identify}, {NULL, NULL},
 };

@@ -19,7 +19,7 @@ from .._testee_words import (
 from . import _testee_scripts
 from ._testee_scripts import packet
 from .can import CanEvent, CanJoiner, CanMessage, can_split
-from .crc import crc8, crc16
+from .checks import checksum
 from .envelope import CHOSEN_ROLES, Direction
 from .errors import ChecksumError, TooLongError, UnsupportedError
 from .files import IndexEntry, read_index, write_index
@@ -67,12 +67,8 @@ def answer(name: str, node: Any, words: Words) -> str:
         raise Refusal(f"range field={error.field.encode().hex()}") from None
 
 
-def _crc8(link: Link, words: Words) -> str:
-    return f" crc={crc8(link, octets(words))}"
-
-
-def _crc16(link: Link, words: Words) -> str:
-    return f" crc={crc16(link, octets(words))}"
+def _checksum(link: Link, words: Words) -> str:
+    return f" crc={checksum(link, next(words), octets(words))}"
 
 
 def _uart_encode(link: Link, words: Words) -> str:
@@ -261,8 +257,7 @@ def _stream_event(event: StreamEvent) -> str:
 
 
 _OPERATIONS = {
-    "crc8": _crc8,
-    "crc16": _crc16,
+    "checksum": _checksum,
     "uart_encode": _uart_encode,
     "uart_events": _uart_events,
     "can_split": _can_split,

@@ -34,8 +34,7 @@ pub fn explained(error: &Error) -> String {
 /// The answer to a request.
 pub fn answer(op: &str, words: &mut Words) -> Answer {
     let answer: fn(&'static Link, &mut Words) -> Answer = match op {
-        "crc8" => |link, words| Ok(format!(" crc={}", crc8(link, &words.octets())?)),
-        "crc16" => |link, words| Ok(format!(" crc={}", crc16(link, &words.octets())?)),
+        "checksum" => checksum,
         "uart_encode" => uart_encode,
         "uart_events" => uart_events,
         "can_split" => can_split,
@@ -70,6 +69,15 @@ pub fn bus(words: &mut Words) -> Bus {
         "i2c" => Bus::I2c,
         _ => Bus::Can,
     }
+}
+
+fn checksum(link: &'static Link, words: &mut Words) -> Answer {
+    let value = match words.word() {
+        "crc8" => crc8(link, &words.octets()),
+        "crc16" => crc16(link, &words.octets()),
+        _ => Err(Error::Unsupported),
+    };
+    Ok(format!(" crc={}", value?))
 }
 
 fn link_data(link: &'static Link) -> String {
