@@ -6,7 +6,7 @@ use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, EstimatedAttitudeAngles,
 use icd::common::enums::FileType;
 use icd::cubeacp::procedures::{Download, DOWNLOAD_MEMORY};
 use icd::wire::procedure::End;
-use icd::wire::{can, crc16, identify, uart, Client, Crc, Direction, Event, Link, Reason, Table};
+use icd::wire::{can, checksum, identify, uart, Client, Crc, Direction, Event, Link, Reason, Table};
 
 type Uart = Client<icd::cubeacp::Node, uart::Line<{ icd::cubeacp::LONGEST }>, 1>;
 
@@ -216,7 +216,7 @@ impl Node {
                 self.block = self.file[offset..offset + length].to_vec();
             }
             [242] => {
-                let [low, high, ..] = crc16(link, &self.block).unwrap().to_le_bytes();
+                let [low, high, ..] = checksum(link, "crc16", &self.block).unwrap().to_le_bytes();
                 let length = self.block.len() as u16;
                 return vec![[&[242, 1, low, high][..], &length.to_le_bytes()].concat()];
             }
@@ -286,18 +286,18 @@ fn downloading() {
 
 fn checking() {
     let link = &icd::cubeacp::LINK;
-    let form = link.crc16.unwrap();
+    let form = link.checksums[1].1.crc;
     let table = Table::new(&form);
     let mut fast = Crc::with_table(&form, &table);
     fast.feed(b"1234");
     fast.feed(b"56789");
-    assert_eq!((fast.result(), crc16(link, b"123456789")), (0x31c3, Ok(0x31c3)));
-    let form = link.checksum.unwrap().crc;
+    assert_eq!((fast.result(), checksum(link, "crc16", b"123456789")), (0x31c3, Ok(0x31c3)));
+    let form = link.checksum.unwrap().algorithm.crc;
     let table = Table::new(&form);
     for bytes in [&b""[..], b"1", b"123456789"] {
         let mut fast = Crc::with_table(&form, &table);
         fast.feed(bytes);
-        assert_eq!(Ok(fast.result()), icd::wire::crc8(link, bytes));
+        assert_eq!(Ok(fast.result()), checksum(link, "crc8", bytes));
     }
     let node = identify(link, &[10, 7, 0, 0, 0, 0, 0, 0]).unwrap();
     assert!(node.matches && node.node_type == 10);

@@ -14,8 +14,7 @@ type Can = Client<Node, can::Line<LONGEST>, 2>;
 type LinkOf = NodeLink<icd::cubeacp::Node>;
 type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 
-#[no_mangle] pub fn wire_crc8(link: &Link, bytes: &[u8]) -> Result<u32, Error> { icd::wire::crc8(link, bytes) }
-#[no_mangle] pub fn wire_crc16(link: &Link, bytes: &[u8]) -> Result<u32, Error> { icd::wire::crc16(link, bytes) }
+#[no_mangle] pub fn wire_checksum(link: &Link, name: &str, bytes: &[u8]) -> Result<u32, Error> { icd::wire::checksum(link, name, bytes) }
 #[no_mangle] pub fn wire_crc(crc: &mut Crc<'_>, bytes: &[u8]) -> u32 { crc.feed(bytes); crc.result() }
 #[no_mangle] pub fn wire_table(form: &icd::wire::link::CrcForm) -> Table { Table::new(form) }
 #[no_mangle] pub fn wire_uart_encode(link: &Link, message: &[u8], out: &mut [u8]) -> Result<usize, Error> { uart::encode(link, message, out) }

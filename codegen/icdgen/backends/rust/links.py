@@ -4,6 +4,8 @@ of buffers for all nodes.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust import procedures
 from icdgen.backends.rust.facts import member_name, type_name, value_of
@@ -19,7 +21,12 @@ from icdgen.backends.rust.literals import (
     struct,
 )
 from icdgen.backends.rust.names import variant
-from icdgen.backends.rust.streams import bus_exchanges_of, crc_tables, stream_of
+from icdgen.backends.rust.streams import (
+    algorithm_of,
+    bus_exchanges_of,
+    crc_tables,
+    stream_of,
+)
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
@@ -88,7 +95,8 @@ class _Literal:
 
     def link(self) -> Brackets:
         facts, link = self.facts, self.description
-        files = facts.checksums.get("crc16")
+        # Before the checksums: it shows the assumptions about its use.
+        checksum = self.checksum()
         codes = (
             f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})"
             for key, code in link.error_codes
@@ -119,8 +127,8 @@ class _Literal:
             part("i2c_address", some(facts.i2c_address)),
             part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),
             part("can", some(self.can())),
-            part("checksum", some(self.checksum())),
-            part("crc16", some(self.struct(files.crc if files else None))),
+            part("checksums", rows(self.checksums())),
+            part("checksum", some(checksum)),
             part("mask", some(self.mask())),
             part("log_file", some(self.struct(facts.log_file))),
             part(
@@ -170,10 +178,14 @@ class _Literal:
             part("extended", some(extended)),
         )
 
+    def checksums(self) -> Iterator[str]:
+        for name, algorithm in self.facts.checksums.items():
+            yield f"({string(name)}, {written(algorithm_of(algorithm), _note)})"
+
     def checksum(self) -> Brackets | None:
         form = self.facts.checksum
         return (
-            self.struct(form, part("crc", self.struct(form.algorithm.crc) or ""))
+            self.struct(form, part("algorithm", algorithm_of(form.algorithm)))
             if form
             else None
         )

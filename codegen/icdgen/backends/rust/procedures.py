@@ -9,7 +9,6 @@ from functools import singledispatch
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.literals import Brackets, written
-from icdgen.backends.rust.facts import member_name, value_of
 from icdgen.backends.rust.literals import (
     Expression,
     flat,
@@ -21,6 +20,7 @@ from icdgen.backends.rust.literals import (
     spelled,
 )
 from icdgen.backends.rust.names import RESERVED, constant_name, memory_constant
+from icdgen.backends.rust.streams import algorithm_of
 from icdgen.backends.rust.symbols import RUST_NAMES, procedure_type
 from icdgen.backends.rust.text import code, doc, integer, prose, signature, string
 from icdgen.backends.rust.types import reason_number
@@ -32,10 +32,9 @@ from icdgen.describe.storage import holding
 from icdgen.frozen import dataclass
 from icdgen.icd.enumeration import Enum
 from icdgen.protocol import procedures as model
-from icdgen.protocol.declared import facts_of
 from icdgen.protocol.exchange import NumberPlace
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import BUSES, Crc
+from icdgen.protocol.sections import BUSES
 
 SECTION = "procedures."
 """Beginning of the names of sections with assumptions about procedures."""
@@ -510,14 +509,9 @@ def _(step: model.Receive) -> Brackets:
 def _(step: model.VerifyChecksum) -> Brackets:
     return _of(
         "Step::VerifyChecksum",
-        crc=_crc(step.algorithm.crc),
+        algorithm=algorithm_of(step.algorithm).within("&", ""),
         of_block=step.of_block,
         covers_fill=step.covers_fill,
         value=_value(step.value),
         again=step.again,
     )
-
-
-def _crc(crc: Crc) -> Brackets:
-    facts = {member_name(fact): value_of(fact, crc) for fact in facts_of(crc)}
-    return flat("CrcForm", **facts).within("&", "")

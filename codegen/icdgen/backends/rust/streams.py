@@ -33,7 +33,7 @@ from icdgen.protocol.envelope import (
     StreamRow,
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Poll, Response
-from icdgen.protocol.sections import BUSES
+from icdgen.protocol.sections import BUSES, ChecksumAlgorithm, Crc
 
 _CONTENTS = {NOTHING: "Nothing"}
 
@@ -120,7 +120,11 @@ def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
 def crc_tables(form: Stream | None) -> dict[Brackets, str]:
     """Return the name of the lookup table of each CRC of the packets."""
     checks = [packet.check for packet in (form.packets if form else ())]
-    crcs = [_crc(check) for check in checks if check and check.algorithm.kind == CRC]
+    crcs = [
+        _crc(check.algorithm.crc)
+        for check in checks
+        if check and check.algorithm.kind == CRC
+    ]
     return {
         crc: f"TABLE_{number}" if number > 1 else "TABLE"
         for number, crc in enumerate(dict.fromkeys(crcs), 1)
@@ -128,11 +132,10 @@ def crc_tables(form: Stream | None) -> dict[Brackets, str]:
 
 
 def _check(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
-    crc = _crc(check)
+    crc = _crc(check.algorithm.crc)
     return struct(
         "CheckForm",
-        part("kind", f"link::CheckKind::{variant(check.algorithm.kind)}"),
-        part("crc", crc),
+        part("algorithm", algorithm_of(check.algorithm)),
         part("table", some(f"&{tables[crc]}" if check.algorithm.kind == CRC else None)),
         part("covered_from", spelled(check.covered_from)),
         part("covered_trailer", spelled(check.covered_trailer)),
@@ -140,8 +143,16 @@ def _check(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
     )
 
 
-def _crc(check: Check) -> Brackets:
-    crc = check.algorithm.crc
+def algorithm_of(algorithm: ChecksumAlgorithm) -> Brackets:
+    """Return the expression of the algorithm of a checksum."""
+    return flat(
+        "ChecksumAlgorithm",
+        kind=f"link::CheckKind::{variant(algorithm.kind)}",
+        crc=_crc(algorithm.crc),
+    )
+
+
+def _crc(crc: Crc) -> Brackets:
     return flat(
         "CrcForm",
         **{member_name(fact): value_of(fact, crc) for fact in facts_of(crc)},

@@ -234,7 +234,7 @@ pub static DOWNLOAD: procedure::Form = procedure::Form {
         procedure::Step::Send { id: 119, data: &[0; 2], puts: &[procedure::Put { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: true }, value: procedure::Value::Constant(20) }, procedure::Put { place: link::NumberPlace { at: 1, size: 1, shift: 0, bits: 1, little: true }, value: procedure::Value::Register(2) }], packet_at: None, repeats: false, ignores_timeout: true },
         procedure::Step::Receive { id: 241, number: &link::NumberPlace { at: 0, size: 2, shift: 0, bits: 16, little: true }, data_at: 2, silence_ms: 500, requested_on: link::PerBus { uart: false, i2c: true, can: true } },
         procedure::Step::Jump { to: 4 },
-        procedure::Step::VerifyChecksum { crc: &link::CrcForm { width: 16, polynomial: 0x1021, init: 0x0000, reflect_in: false, reflect_out: false, xor_out: 0x0000, empty: None }, of_block: true, covers_fill: false, value: procedure::Value::Register(11), again: true },
+        procedure::Step::VerifyChecksum { algorithm: &link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 16, polynomial: 0x1021, init: 0x0000, reflect_in: false, reflect_out: false, xor_out: 0x0000, empty: None } }, of_block: true, covers_fill: false, value: procedure::Value::Register(11), again: true },
         procedure::Step::Jump { to: 0 },
     ],
 };

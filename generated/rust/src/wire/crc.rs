@@ -2,8 +2,7 @@
 
 //! CRCs: streaming, without a table or with one.
 
-use super::link::{CrcForm, Link};
-use super::Error;
+use super::link::CrcForm;
 
 /// State of a CRC that is computed piece by piece.
 ///
@@ -185,31 +184,4 @@ impl<'a> Crc<'a> {
         };
         value ^ self.form.xor_out
     }
-}
-
-/// The CRC of the bytes.
-pub(crate) fn whole(form: &CrcForm, bytes: &[u8]) -> u32 {
-    let mut crc = Crc::new(form);
-    crc.feed(bytes);
-    crc.result()
-}
-
-/// Compute the checksum of a message.
-///
-/// # Errors
-///
-/// [`Error::Unsupported`] if the ICD has none.
-pub fn crc8(link: &Link, bytes: &[u8]) -> Result<u32, Error> {
-    let form = link.checksum.as_ref().ok_or(Error::Unsupported)?;
-    Ok(whole(&form.crc, bytes))
-}
-
-/// Compute the checksum of a file or block.
-///
-/// # Errors
-///
-/// [`Error::Unsupported`] if the ICD has none.
-pub fn crc16(link: &Link, bytes: &[u8]) -> Result<u32, Error> {
-    let form = link.crc16.as_ref().ok_or(Error::Unsupported)?;
-    Ok(whole(form, bytes))
 }

@@ -3,7 +3,7 @@
 //! I2C: the bytes that the master writes and reads.
 
 use super::bits::{copy, number, part, part_mut, put_number};
-use super::crc::Crc;
+use super::checksum::Check;
 use super::link::{Checksum, Link};
 use super::Error;
 
@@ -102,10 +102,10 @@ fn form(link: &Link, checked: bool) -> Result<Option<&Checksum>, Error> {
 }
 
 fn checksum(form: &Checksum, id: u8, data: &[u8]) -> u32 {
-    let mut crc = Crc::new(&form.crc);
+    let mut check = Check::new(&form.algorithm, None);
     if form.covers_id {
-        crc.feed(&[id]);
+        check.feed(&[id]);
     }
-    crc.feed(data);
-    crc.result()
+    check.feed(data);
+    check.result()
 }

@@ -15,6 +15,7 @@
 
 mod bits;
 pub mod can;
+mod checksum;
 mod client;
 mod crc;
 mod error;
@@ -36,9 +37,10 @@ pub mod stream;
 mod time;
 pub mod uart;
 
+pub use self::checksum::checksum;
 pub use self::client::bus::{ACKNOWLEDGE, OTHER, REFUSAL, REQUEST_REFUSAL};
 pub use self::client::{ByteLine, Client, Line};
-pub use self::crc::{crc16, crc8, Crc, Table};
+pub use self::crc::{Crc, Table};
 pub use self::error::Error;
 pub use self::event::{Event, NodeEvent};
 pub use self::identity::{identify, Identity};

@@ -310,6 +310,10 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
             },
         }),
     }),
+    checksums: &[
+        ("crc8", link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 8, polynomial: 0x12, init: 0x00, reflect_in: true, reflect_out: true, xor_out: 0x00, empty: Some(0xff) } }),
+        ("crc16", link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 16, polynomial: 0x1021, init: 0x0000, reflect_in: false, reflect_out: false, xor_out: 0x0000, empty: None } }),
+    ],
     checksum: Some(link::Checksum {
         // Assumed. Whether the id counts among the bytes of a command is not said. The extra byte
         // of a frame can cover the frame only.
@@ -322,24 +326,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         telecommand_always: link::PerBus { uart: false, i2c: false, can: false },
         telemetry_always: link::PerBus { uart: false, i2c: false, can: false },
         bytes: 1,
-        crc: link::CrcForm {
-            width: 8,
-            polynomial: 0x12,
-            init: 0x00,
-            reflect_in: true,
-            reflect_out: true,
-            xor_out: 0x00,
-            empty: Some(0xff),
-        },
-    }),
-    crc16: Some(link::CrcForm {
-        width: 16,
-        polynomial: 0x1021,
-        init: 0x0000,
-        reflect_in: false,
-        reflect_out: false,
-        xor_out: 0x0000,
-        empty: None,
+        algorithm: link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 8, polynomial: 0x12, init: 0x00, reflect_in: true, reflect_out: true, xor_out: 0x00, empty: Some(0xff) } },
     }),
     mask: Some(link::LogMask {
         size: 10,

@@ -9,8 +9,8 @@ use super::engine::{
 use super::sink::Sink;
 use super::tables::{Blocks, Input, PacketMap, Value, UNKNOWN};
 use crate::wire::bits::{copy, count, head, index, part, part_mut, pieces};
-use crate::wire::crc::Crc;
-use crate::wire::link::CrcForm;
+use crate::wire::checksum::Check;
+use crate::wire::link::ChecksumAlgorithm;
 use crate::wire::Error;
 
 impl Input {
@@ -276,25 +276,30 @@ impl Engine<'_> {
     }
 
     /// Compute the checksum of the block, or of all bytes that are sent.
-    pub(super) fn checksum(&self, crc: &CrcForm, of_block: bool, covers_fill: bool) -> u32 {
-        let mut crc = Crc::new(crc);
+    pub(super) fn checksum(
+        &self,
+        algorithm: &ChecksumAlgorithm,
+        of_block: bool,
+        covers_fill: bool,
+    ) -> u32 {
+        let mut check = Check::new(algorithm, None);
         let length = index(self.registers[BLOCK_LENGTH]);
         let whole = self.packets().wrapping_mul(self.blocks.packet_bytes);
         if !of_block {
-            crc.feed(self.bytes);
+            check.feed(self.bytes);
         } else if self.blocks.sends {
-            crc.feed(part(
+            check.feed(part(
                 self.bytes,
                 index(self.registers[BLOCK_OFFSET]),
                 length,
             ));
             if covers_fill {
-                (length..whole).for_each(|_| crc.feed(&[self.blocks.fill]));
+                (length..whole).for_each(|_| check.feed(&[self.blocks.fill]));
             }
         } else {
-            crc.feed(head(self.block, if covers_fill { whole } else { length }));
+            check.feed(head(self.block, if covers_fill { whole } else { length }));
         }
-        crc.result()
+        check.result()
     }
 
     /// Go on if a check succeeded; otherwise transfer the block again, or end with this result.

@@ -4,7 +4,7 @@
 //!
 //! Times are milliseconds, sizes bytes. After a step follows the next one, or the one at index `to`.
 
-use crate::wire::link::{CrcForm, NumberPlace, PerBus};
+use crate::wire::link::{ChecksumAlgorithm, NumberPlace, PerBus};
 
 /// Number of registers.
 pub(super) const MOST_REGISTERS: usize = 24;
@@ -168,7 +168,7 @@ pub enum Step {
     /// Compare a checksum with a value.
     VerifyChecksum {
         /// How it is computed.
-        crc: &'static CrcForm,
+        algorithm: &'static ChecksumAlgorithm,
         /// Whether it covers the block; otherwise it covers all bytes that are sent.
         of_block: bool,
         /// Whether it covers the fill of the last packet.

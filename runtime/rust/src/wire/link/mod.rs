@@ -11,9 +11,9 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::places::{Identification, Piece, Place};
 pub use self::stream::{
-    BusExchanges, CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole,
-    Escaping, Exchange, NumberPlace, PacketForm, Poll, RequestForm, Response, ResponseKind, Stream,
-    StreamRow, Verdict,
+    BusExchanges, CheckForm, CheckKind, ChecksumAlgorithm, Content, Delimiter, Echo, EnvelopeField,
+    EnvelopeRole, Escaping, Exchange, NumberPlace, PacketForm, Poll, RequestForm, Response,
+    ResponseKind, Stream, StreamRow, Verdict,
 };
 
 pub(crate) use self::places::get;
@@ -53,10 +53,10 @@ pub struct Link {
     pub i2c_repeated_start: bool,
     /// CAN.
     pub can: Option<Can>,
+    /// All checksums, by their names in the ICD.
+    pub checksums: &'static [(&'static str, ChecksumAlgorithm)],
     /// The optional checksum of messages.
     pub checksum: Option<Checksum>,
-    /// Compute the checksum of a file or block.
-    pub crc16: Option<CrcForm>,
     /// The mask of a telemetry log.
     pub mask: Option<LogMask>,
     /// The file form of a log.
@@ -277,6 +277,6 @@ pub struct Checksum {
     pub telemetry_always: PerBus<bool>,
     /// Length of the checksum.
     pub bytes: usize,
-    /// Its parameters.
-    pub crc: CrcForm,
+    /// How it is computed.
+    pub algorithm: ChecksumAlgorithm,
 }

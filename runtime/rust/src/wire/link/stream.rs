@@ -120,13 +120,20 @@ pub enum CheckKind {
     Xor,
 }
 
-/// The checksum. Kinds other than a CRC use `init`, `xor_out` and `width` of the form.
-#[derive(Clone, Copy, Debug)]
-pub struct CheckForm {
-    /// How it is computed.
+/// How a checksum is computed. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChecksumAlgorithm {
+    /// Its kind.
     pub kind: CheckKind,
     /// Its parameters.
     pub crc: CrcForm,
+}
+
+/// The checksum of a packet.
+#[derive(Clone, Copy, Debug)]
+pub struct CheckForm {
+    /// How it is computed.
+    pub algorithm: ChecksumAlgorithm,
     /// Lookup table of a CRC.
     pub table: Option<&'static Table>,
     /// First byte of the header that it covers.

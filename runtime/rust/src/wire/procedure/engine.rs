@@ -471,13 +471,13 @@ impl<'a> Engine<'a> {
                 Ok(Flow::Next)
             }
             Step::VerifyChecksum {
-                crc,
+                algorithm,
                 of_block,
                 covers_fill,
                 value,
                 again,
             } => {
-                let is_right = self.checksum(crc, of_block, covers_fill) == self.value(value);
+                let is_right = self.checksum(algorithm, of_block, covers_fill) == self.value(value);
                 self.verified(is_right, again, End::Checksum)
             }
             Step::Verify { test, again } => self.verified(self.holds(&test), again, End::Failed),

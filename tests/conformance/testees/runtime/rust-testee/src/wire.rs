@@ -5,7 +5,7 @@ use crate::nodes::{link, LONGEST};
 use crate::{logs, procedures, scripts, stream};
 use icd::wire::files::{IndexEntries, IndexEntry};
 use icd::wire::uart::{Decoder, Kind};
-use icd::wire::{can, crc16, crc8, i2c, identify, uart, Bus, DosTime, Error, Link};
+use icd::wire::{can, checksum, i2c, identify, uart, Bus, DosTime, Error, Link};
 use std::fmt::Write;
 
 const SENDERS: usize = 16;
@@ -34,7 +34,7 @@ pub fn explained(error: &Error) -> String {
 /// The answer to a request.
 pub fn answer(op: &str, words: &mut Words) -> Answer {
     let answer: fn(&'static Link, &mut Words) -> Answer = match op {
-        "checksum" => checksum,
+        "checksum" => checksum_of,
         "uart_encode" => uart_encode,
         "uart_events" => uart_events,
         "can_split" => can_split,
@@ -71,13 +71,9 @@ pub fn bus(words: &mut Words) -> Bus {
     }
 }
 
-fn checksum(link: &'static Link, words: &mut Words) -> Answer {
-    let value = match words.word() {
-        "crc8" => crc8(link, &words.octets()),
-        "crc16" => crc16(link, &words.octets()),
-        _ => Err(Error::Unsupported),
-    };
-    Ok(format!(" crc={}", value?))
+fn checksum_of(link: &'static Link, words: &mut Words) -> Answer {
+    let value = checksum(link, words.word(), &words.octets())?;
+    Ok(format!(" crc={value}"))
 }
 
 fn link_data(link: &'static Link) -> String {
