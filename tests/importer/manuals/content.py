@@ -74,9 +74,8 @@ def shipped(*names: str, most: int | None = None, skip: int = 0) -> dict[str, di
     """The vendor layer of shipped nodes; ``most`` messages of each, after ``skip``."""
     made = {}
     for name in names:
-        tree = yaml.safe_load(
-            Path(ROOT, "icd", f"{name}.yaml").read_text(encoding="utf-8")
-        )
+        text = Path(ROOT, "icd", f"{name}.yaml").read_text(encoding="utf-8")
+        tree = yaml.load(text, yaml.CSafeLoader)
         tree["messages"] = tree["messages"][skip : skip + most if most else None]
         made[name] = tree
     known = {e["name"] for tree in made.values() for e in tree.get("enums", [])}
