@@ -10,7 +10,7 @@ sends, receives and decodes it. It is compiled once with its own functions and t
 and once with ICDGEN_SHARED, where `icdgen_wire.c` and `link.c` contain them. Complete
 programs of this kind follow for each bus, linked with --gc-sections, with the memory
 functions of the C library and without start-up code: with the tables of all messages,
-and with only the requested message.
+with lookup tables of checksums too, and with only the requested message.
 """
 
 from __future__ import annotations
@@ -250,9 +250,8 @@ def main() -> None:
         for bus in OUTPUT:
             for options in (
                 (),
-                ("-DICDGEN_NO_TABLES",),
+                ("-DICDGEN_TABLES",),
                 CHOSEN,
-                ("-DICDGEN_NO_TABLES", *CHOSEN),
             ):
                 print(
                     f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes"
@@ -260,7 +259,7 @@ def main() -> None:
         framed = folder / "framed"
         generate(BENCH.parent / "examples" / "links" / "ubx.yaml", framed)
         (framed / "program.c").write_text(FRAMED, encoding="utf-8")
-        for option in ("-UICDGEN_NO_TABLES", "-DICDGEN_NO_TABLES"):
+        for option in ("-UICDGEN_TABLES", "-DICDGEN_TABLES"):
             size = text_bytes(cc, framed, "program.c", option)
             print(f"a client of a framed link {option}: {size} bytes")
 

@@ -124,20 +124,41 @@ icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_id
     return ICD_OK;
 }
 
-static inline icd_event_t icdgen_event(icd_event_kind_t kind)
+static inline void icdgen_event_init(icd_event_t *event, icd_event_kind_t kind)
 {
-    icd_event_t event;
-    (void)memset(&event, 0, sizeof event);
-    event.kind = kind;
-    return event;
+    (void)memset(event, 0, sizeof *event);
+    event->kind = kind;
 }
 
-static inline icd_event_t icdgen_event_of(icd_event_kind_t kind, uint32_t id)
+static inline void icdgen_event_of(icd_event_t *event, icd_event_kind_t kind, uint32_t id)
 {
-    icd_event_t event = icdgen_event(kind);
-    event.has_id = true;
-    event.id = id;
-    return event;
+    icdgen_event_init(event, kind);
+    event->has_id = true;
+    event->id = id;
+}
+
+/* The event callback of a caller. */
+typedef struct {
+    icd_event_fn *on_event;
+    void *context;
+} icdgen_caller_t;
+
+/* What a decoder calls for each event. A client completes the event, and hands it over to the caller. */
+typedef struct {
+    void (*tell)(const void *context, icd_event_t *event);
+    const void *context;
+} icdgen_listener_t;
+
+static inline void icdgen_tell(const icdgen_listener_t *listener, icd_event_t *event)
+{
+    listener->tell(listener->context, event);
+}
+
+/* Hand an event over to the caller, without a client. */
+static inline void icdgen_tell_caller(const void *context, icd_event_t *event)
+{
+    const icdgen_caller_t *const caller = ICDGEN_CAST(const icdgen_caller_t *, context);
+    caller->on_event(caller->context, event);
 }
 
 /* Return whether a time is reached. Times may wrap around. */
@@ -194,13 +215,11 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     }
 #endif
     for (; i < length; ++i) {
-        const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
-        uint32_t entry = reflect ? row : row << 24;
+        value ^= reflect ? bytes[i] : ICDGEN_U32(bytes[i]) << 24;
         for (unsigned bit = 0; bit < 8u; ++bit) {
-            const bool out = (reflect ? entry & 1u : entry >> 31) != 0u;
-            entry = (reflect ? entry >> 1 : entry << 1) ^ (out ? polynomial : 0u);
+            const bool out = (reflect ? value & 1u : value >> 31) != 0u;
+            value = (reflect ? value >> 1 : value << 1) ^ (out ? polynomial : 0u);
         }
-        value = (reflect ? value >> 8 : value << 8) ^ entry;
     }
     crc->value = value;
     crc->fed = crc->fed || length != 0u;
@@ -323,7 +342,7 @@ icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8
 
 static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
 {
-    decoder->discarded += decoder->pending - 2u; /* all except the two bytes of the start sequence */
+    decoder->discarded += ICDGEN_U32(decoder->pending - 2u); /* all except the two bytes of the start sequence */
     decoder->pending = 2;
     decoder->inside = true;
     decoder->escaped = false;
@@ -333,96 +352,104 @@ static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
 /* Drop bytes that are not part of a message. A final escape byte is kept because it may start one. */
 static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
 {
-    decoder->discarded += decoder->pending - (escaped ? 1u : 0u);
+    decoder->discarded += ICDGEN_U32(decoder->pending - (escaped ? 1u : 0u));
     decoder->pending = escaped ? 1u : 0u;
     decoder->inside = false;
     decoder->escaped = escaped;
     decoder->length = 0;
 }
 
-static inline void icdgen_uart_tell(
-    const icd_uart_decoder_t *decoder, icd_event_kind_t kind, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(kind);
-    if (kind == ICD_EVENT_MESSAGE) {
-        event.has_id = true;
-        event.id = decoder->buffer[0];
-        event.data = decoder->buffer;
-        event.length = decoder->length;
-    }
-    on_event(context, &event);
-}
-
-static inline void icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
+/* Process a byte of a message. Return whether there is an event, and set its kind. */
+static inline bool icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     if (decoder->length < decoder->capacity) {
         decoder->buffer[decoder->length] = byte;
         decoder->length++;
-    } else {
-        icdgen_uart_tell(decoder, ICD_EVENT_OVERRUN, on_event, context);
-        icdgen_uart_outside(decoder, false);
+        return false;
     }
-}
-
-static inline void icdgen_uart_end(icd_uart_decoder_t *decoder, icd_event_fn *on_event, void *context)
-{
-    if (decoder->length != 0u) {
-        icdgen_uart_tell(decoder, ICD_EVENT_MESSAGE, on_event, context);
-        decoder->pending = 0;
-    } else {
-        icdgen_uart_tell(decoder, ICD_EVENT_EMPTY, on_event, context);
-    }
+    *kind = ICD_EVENT_OVERRUN;
     icdgen_uart_outside(decoder, false);
+    return true;
 }
 
-/* Process the byte after an escape byte within a message. */
-static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
+/* Process the byte after an escape byte within a message. Return whether there is an event, and set its kind. */
+static inline bool icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     const icd_framing_t *const framing = decoder->framing;
     decoder->escaped = false;
+    if (byte == framing->escaped) {
+        return icdgen_uart_data(decoder, framing->escape, kind);
+    }
     if (byte == framing->start) {
-        icdgen_uart_tell(decoder, ICD_EVENT_UNEXPECTED_START, on_event, context);
+        *kind = ICD_EVENT_UNEXPECTED_START;
         icdgen_uart_start(decoder);
     } else if (byte == framing->end) {
-        icdgen_uart_end(decoder, on_event, context);
-    } else if (byte == framing->escaped) {
-        icdgen_uart_data(decoder, framing->escape, on_event, context);
+        *kind = decoder->length != 0u ? ICD_EVENT_MESSAGE : ICD_EVENT_EMPTY;
+        decoder->pending = decoder->length != 0u ? 0u : decoder->pending;
+        icdgen_uart_outside(decoder, false);
     } else if (!framing->ignores_other) {
-        icdgen_uart_tell(decoder, ICD_EVENT_PROTOCOL_ERROR, on_event, context);
+        *kind = ICD_EVENT_PROTOCOL_ERROR;
         icdgen_uart_outside(decoder, byte == framing->escape);
     } else {
-        /* both bytes are skipped */
+        return false; /* both bytes are skipped */
+    }
+    return true;
+}
+
+/* Process a byte. Return whether there is an event, and set its kind. */
+static inline bool icdgen_uart_byte(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
+{
+    const icd_framing_t *const framing = decoder->framing;
+    decoder->pending++;
+    if (!decoder->inside) {
+        if (decoder->escaped && byte == framing->start) {
+            icdgen_uart_start(decoder);
+        } else {
+            icdgen_uart_outside(decoder, byte == framing->escape);
+        }
+    } else if (decoder->escaped) {
+        return icdgen_uart_escaped(decoder, byte, kind);
+    } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
+        decoder->escaped = true;
+    } else {
+        return icdgen_uart_data(decoder, byte, kind);
+    }
+    return false;
+}
+
+static inline void icdgen_uart_feed(
+    icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
+{
+    for (size_t i = 0; i < count; ++i) {
+        const size_t length = decoder->length;
+        icd_event_kind_t kind = ICD_EVENT_MESSAGE;
+        if (icdgen_uart_byte(decoder, bytes[i], &kind)) {
+            icd_event_t event;
+            icdgen_event_init(&event, kind);
+            if (kind == ICD_EVENT_MESSAGE) {
+                event.has_id = true;
+                event.id = decoder->buffer[0];
+                event.data = decoder->buffer;
+                event.length = length;
+            }
+            icdgen_tell(listener, &event);
+        }
     }
 }
 
 ICDGEN_API void icd_uart_feed(
     icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
-    const icd_framing_t *const framing = decoder->framing;
-    for (size_t i = 0; i < count; ++i) {
-        const uint8_t byte = bytes[i];
-        decoder->pending++;
-        if (!decoder->inside) {
-            if (decoder->escaped && byte == framing->start) {
-                icdgen_uart_start(decoder);
-            } else {
-                icdgen_uart_outside(decoder, byte == framing->escape);
-            }
-        } else if (decoder->escaped) {
-            icdgen_uart_escaped(decoder, byte, on_event, context);
-        } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
-            decoder->escaped = true;
-        } else {
-            icdgen_uart_data(decoder, byte, on_event, context);
-        }
-    }
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_uart_feed(decoder, bytes, count, &listener);
 }
 
-/* Return the number of slots that a mask selects. Missing bytes of an incomplete mask count as 0. */
-static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
+/* Return the number of slots that a mask selects. */
+static inline size_t icdgen_log_slots(const uint8_t *mask, size_t size)
 {
     size_t count = 0;
-    for (size_t i = 0; i < length && i < link->log_mask->size; ++i) {
+    for (size_t i = 0; i < size; ++i) {
         for (unsigned bits = mask[i]; bits != 0u; bits &= bits - 1u) {
             count++;
         }
@@ -447,9 +474,9 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     const uint8_t id = message[0];
     const icd_log_message_form_t *const log = link->log_message;
     if (log != NULL && id == log->id) {
-        const size_t given = length > log->mask_at ? length - log->mask_at : 0u;
-        const size_t slots = icdgen_log_slots(link, given != 0u ? message + log->mask_at : message, given);
-        return length == log->frames_at + (slots * link->log_mask->slot_bytes) ? ICD_UART_LOG : ICD_UART_OTHER;
+        const bool has_mask = length >= ICDGEN_SIZE(log->mask_at) + log->mask_bytes;
+        const size_t slots = has_mask ? icdgen_log_slots(message + log->mask_at, log->mask_bytes) : 0u;
+        return has_mask && length == log->frames_at + (slots * log->slot_bytes) ? ICD_UART_LOG : ICD_UART_OTHER;
     }
     if (id >= link->telemetry_first && id <= link->telemetry_last) {
         return ICD_UART_REPLY;
@@ -461,6 +488,23 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
 }
 
 #define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
+
+/*
+ * Whether a value of an enumeration is this member. `kinds` are the members that the links have, as a mask: the
+ * compiler knows the result for all others, and also if there is only one.
+ */
+#define ICDGEN_IS(value, member, kinds)                                                                                \
+    (((kinds) & ICDGEN_BIT(member)) != 0u && ((kinds) == ICDGEN_BIT(member) || (value) == (member)))
+#define ICDGEN_IS_DELIMITED_BY(form, delimiter) ICDGEN_IS((form)->delimited_by, delimiter, ICDGEN_DELIMITERS)
+#define ICDGEN_HAS_ROLE(field, member) ICDGEN_IS((field)->role, member, ICDGEN_ROLES)
+#define ICDGEN_CONTAINS(packet, member) ICDGEN_IS((packet)->content, member, ICDGEN_CONTENTS)
+#define ICDGEN_IS_CHECK(form, member) ICDGEN_IS((form)->kind, member, ICDGEN_CHECKS)
+#define ICDGEN_IS_VERDICT(verdict, member) ICDGEN_IS(verdict, member, ICDGEN_VERDICTS)
+#define ICDGEN_HAS_FLAG(row, flag) (((row)->flags & (flag) & ICDGEN_STREAM_FLAGS) != 0u)
+
+/* Whether the sender chooses the value of a field. */
+#define ICDGEN_IS_OF_SENDER(field)                                                                                     \
+    ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_ENVELOPE_VALUES) - 1u)) != 0u && (field)->role < ICD_ENVELOPE_CONSTANT)
 
 /* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
@@ -504,7 +548,7 @@ static inline uint32_t icdgen_envelope_id(
     uint32_t id = packet->ids[direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
-        if (field->role == ICD_ENVELOPE_ID && !field->in_trailer) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID) && !field->in_trailer) {
             id |= icdgen_envelope_get(field, header) << field->values[0];
         }
     }
@@ -562,27 +606,34 @@ typedef struct {
     uint32_t second;
 } icdgen_check_t;
 
+static inline bool icdgen_is_pair(const icd_check_form_t *form)
+{
+    return ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER) || ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255);
+}
+
 static inline void icdgen_check_begin(icdgen_check_t *check, const icd_check_form_t *form)
 {
-    const bool pair = form->kind == ICD_CHECK_FLETCHER || form->kind == ICD_CHECK_FLETCHER_255;
     check->form = form;
-    icd_crc_init(&check->crc, &form->crc);
-    check->first = pair ? form->crc.init & 0xFFu : form->crc.init;
-    check->second = form->crc.init >> 8;
+    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
+        icd_crc_init(&check->crc, &form->crc);
+    } else {
+        check->first = icdgen_is_pair(form) ? form->crc.init & 0xFFu : form->crc.init;
+        check->second = form->crc.init >> 8;
+    }
 }
 
 static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
 {
-    const icd_check_kind_t kind = check->form->kind;
-    const uint32_t modulus = kind == ICD_CHECK_FLETCHER_255 ? 255u : 256u;
-    if (kind == ICD_CHECK_CRC) {
+    const icd_check_form_t *const form = check->form;
+    const uint32_t modulus = ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255) ? 255u : 256u;
+    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
         icd_crc_feed(&check->crc, bytes, length);
         return;
     }
     for (size_t i = 0; i < length; ++i) {
-        if (kind == ICD_CHECK_SUM) {
+        if (ICDGEN_IS_CHECK(form, ICD_CHECK_SUM)) {
             check->first += bytes[i];
-        } else if (kind == ICD_CHECK_XOR) {
+        } else if (ICDGEN_IS_CHECK(form, ICD_CHECK_XOR)) {
             check->first ^= bytes[i];
         } else {
             check->first = (check->first + bytes[i]) % modulus;
@@ -594,17 +645,12 @@ static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes
 static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
 {
     const icd_crc_form_t *const form = &check->form->crc;
-    switch (check->form->kind) {
-    case ICD_CHECK_CRC:
+    if (ICDGEN_IS_CHECK(check->form, ICD_CHECK_CRC)) {
         return icd_crc_result(&check->crc);
-    case ICD_CHECK_SUM:
-    case ICD_CHECK_XOR:
-        return (check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width))) ^ form->xor_out;
-    case ICD_CHECK_FLETCHER:
-    case ICD_CHECK_FLETCHER_255:
-    default:
-        return ((check->second << 8) | check->first) ^ form->xor_out;
     }
+    const uint32_t value = icdgen_is_pair(check->form) ? (check->second << 8) | check->first
+                                                       : check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width));
+    return value ^ form->xor_out;
 }
 
 /*
@@ -672,8 +718,7 @@ static inline const icd_stream_row_t *icdgen_stream_row(
 
 /* Output buffer for a message with its delimiters. */
 typedef struct {
-    icd_delimiter_t delimiter;
-    const icd_escaping_t *escaping;
+    const icd_stream_form_t *form;
     uint8_t *buffer;
     size_t capacity;
     size_t count;
@@ -703,7 +748,7 @@ static inline void icdgen_line_block(icdgen_line_t *line)
 
 static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
 {
-    if (line->delimiter == ICD_DELIMITED_BY_COBS) {
+    if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_COBS)) {
         if (line->ended) {
             icdgen_line_byte(line, 0);
             line->ended = false;
@@ -718,18 +763,20 @@ static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
                 icdgen_line_byte(line, 0);
             }
         }
-    } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_END) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_SLIP) && byte == ICDGEN_SLIP_END) {
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_END);
-    } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_ESCAPE) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_SLIP) && byte == ICDGEN_SLIP_ESCAPE) {
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_ESCAPE);
-    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC && (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
+    } else if (
+        ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_HDLC) &&
+        (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
         icdgen_line_byte(line, ICDGEN_HDLC_ESCAPE);
         icdgen_line_byte(line, byte ^ ICDGEN_HDLC_FLIP);
-    } else if (line->delimiter == ICD_DELIMITED_BY_ESCAPE && byte == line->escaping->escape) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_ESCAPE) && byte == line->form->escaping->escape) {
         icdgen_line_byte(line, byte);
-        icdgen_line_byte(line, line->escaping->data);
+        icdgen_line_byte(line, line->form->escaping->data);
     } else {
         icdgen_line_byte(line, byte);
     }
@@ -737,23 +784,23 @@ static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
 
 static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
 {
-    if (line->delimiter == ICD_DELIMITED_BY_SLIP) {
+    if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_SLIP)) {
         icdgen_line_byte(line, ICDGEN_SLIP_END);
-    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_HDLC)) {
         icdgen_line_byte(line, ICDGEN_HDLC_FLAG);
-    } else if (line->delimiter == ICD_DELIMITED_BY_COBS && begins) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_COBS) && begins) {
         icdgen_line_byte(line, 0); /* placeholder for the length of the first block */
-    } else if (line->delimiter == ICD_DELIMITED_BY_COBS) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_COBS)) {
         if (!line->ended) {
             icdgen_line_block(line);
         }
         icdgen_line_byte(line, 0);
-    } else if (line->delimiter == ICD_DELIMITED_BY_ESCAPE) {
-        icdgen_line_byte(line, line->escaping->escape);
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_ESCAPE)) {
+        icdgen_line_byte(line, line->form->escaping->escape);
         if (!begins) {
-            icdgen_line_byte(line, line->escaping->end);
-        } else if (line->escaping->has_start) {
-            icdgen_line_byte(line, line->escaping->start);
+            icdgen_line_byte(line, line->form->escaping->end);
+        } else if (line->form->escaping->has_start) {
+            icdgen_line_byte(line, line->form->escaping->start);
         } else {
             /* the first byte of the packet follows */
         }
@@ -780,7 +827,7 @@ ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd
         const icd_packet_form_t *const packet = &form->packets[i];
         for (size_t j = 0; packet->is_sent[direction] && j < packet->field_count; ++j) {
             const icd_envelope_field_t *const field = &packet->fields[j];
-            if (field->role < ICD_ENVELOPE_CONSTANT) {
+            if (ICDGEN_IS_OF_SENDER(field)) {
                 const uint32_t role = UINT32_C(1) << ICDGEN_U32(field->role);
                 uint32_t *const value = &values.of[field->role];
                 if ((seen & role) == 0u) {
@@ -824,7 +871,7 @@ static inline uint32_t icdgen_envelope_part(
     const uint32_t shift = field->values[0];
     uint32_t bits = 0;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        bits += packet->fields[i].role == ICD_ENVELOPE_ID ? packet->fields[i].bits : 0u;
+        bits += ICDGEN_HAS_ROLE(&packet->fields[i], ICD_ENVELOPE_ID) ? packet->fields[i].bits : 0u;
     }
     const uint32_t part = id >> shift;
     return shift + field->bits < bits ? part & icdgen_envelope_mask(field) : part;
@@ -842,16 +889,16 @@ static inline bool icdgen_envelope_fill(
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
         uint32_t value = field->values[outgoing->direction];
-        if (field->role == ICD_ENVELOPE_CHECKSUM) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
             continue;
         }
-        if (field->role == ICD_ENVELOPE_ID) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
             value = icdgen_envelope_part(packet, field, outgoing->id);
-        } else if (field->role == ICD_ENVELOPE_LENGTH) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
             value = icdgen_envelope_counted(field, length);
-        } else if (field->role == ICD_ENVELOPE_RESPONSE_LENGTH && outgoing->row != NULL) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH) && outgoing->row != NULL) {
             value = icdgen_envelope_counted(field, outgoing->row->most);
-        } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
+        } else if (ICDGEN_IS_OF_SENDER(field) && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
             /* the value of the ICD */
@@ -882,7 +929,7 @@ static inline icdgen_outgoing_t icdgen_outgoing_row(
     const uint8_t *data,
     size_t length)
 {
-    const bool requests = direction == ICD_TELECOMMAND && (row->flags & ICD_STREAM_REQUESTED) != 0u;
+    const bool requests = direction == ICD_TELECOMMAND && ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTED);
     const icd_packet_form_t *const packet = &form->packets[requests ? form->request->packet : row->packet];
     const icdgen_outgoing_t outgoing = {form, direction, packet, row->id, row, !requests, data, length, NULL, NULL};
     return outgoing;
@@ -935,7 +982,7 @@ static inline icd_status_t icdgen_outgoing_packet(
     if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (packet >= form->packet_count || form->packets[packet].content != ICD_PACKET_NOTHING ||
+    if (packet >= form->packet_count || !ICDGEN_CONTAINS(&form->packets[packet], ICD_PACKET_NOTHING) ||
         !form->packets[packet].is_sent[direction]) {
         return ICD_ERROR_RANGE;
     }
@@ -954,7 +1001,7 @@ static inline icd_status_t icdgen_outgoing_encode(
 {
     const icd_packet_form_t *const packet = outgoing->packet;
     const uint8_t *const data = outgoing->data;
-    const bool cuts_zeros = outgoing->is_message && (outgoing->row->flags & ICD_STREAM_CUTS_ZEROS) != 0u;
+    const bool cuts_zeros = outgoing->is_message && ICDGEN_HAS_FLAG(outgoing->row, ICD_STREAM_CUTS_ZEROS);
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
     uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
@@ -973,8 +1020,7 @@ static inline icd_status_t icdgen_outgoing_encode(
             outgoing->sources[i] = icdgen_stream_number(&exchange->sources[i], 0, header, packet->header_bytes);
         }
     }
-    const icd_stream_form_t *const form = outgoing->form;
-    icdgen_line_t line = {form->delimited_by, form->escaping, buffer, capacity, 0, 0, false, false};
+    icdgen_line_t line = {outgoing->form, buffer, capacity, 0, 0, false, false};
     icdgen_line_delimiter(&line, true);
     icdgen_line_write(&line, header, packet->header_bytes);
     icdgen_line_write(&line, data, length);
@@ -1125,19 +1171,14 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
 /* Result of checking a frame: accepted; certainly a frame, but not usable; possibly not a frame. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
-/* The event callback. */
-typedef struct {
-    icd_event_fn *on_event;
-    void *context;
-} icdgen_listener_t;
-
 static inline void icdgen_stream_tell_of(
     const icdgen_listener_t *listener, icd_event_kind_t kind, bool has_id, uint32_t id)
 {
-    icd_event_t event = icdgen_event(kind);
+    icd_event_t event;
+    icdgen_event_init(&event, kind);
     event.has_id = has_id;
     event.id = id;
-    listener->on_event(listener->context, &event);
+    icdgen_tell(listener, &event);
 }
 
 static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_event_kind_t kind)
@@ -1214,10 +1255,10 @@ static inline icdgen_incoming_t icdgen_incoming(
     const icd_stream_form_t *const form = decoder->form;
     const size_t index = ICDGEN_SIZE(packet - form->packets);
     icdgen_incoming_t incoming = {ICD_EVENT_PACKET, NULL, packet->reserved, packet->reserved};
-    if (packet->content == ICD_PACKET_NOTHING) {
+    if (ICDGEN_CONTAINS(packet, ICD_PACKET_NOTHING)) {
         return incoming;
     }
-    if (packet->content == ICD_PACKET_REQUESTED) {
+    if (ICDGEN_CONTAINS(packet, ICD_PACKET_REQUESTED)) {
         icdgen_incoming_bounds(form, index, &incoming);
         return incoming;
     }
@@ -1232,7 +1273,7 @@ static inline icdgen_incoming_t icdgen_incoming(
     incoming.kind = ICD_EVENT_UNKNOWN_ID;
     if (decoder->direction == ICD_TELECOMMAND && form->request != NULL && form->request->packet == index) {
         row = icdgen_stream_row(form, ICD_TELEMETRY, id);
-        if (row != NULL && (row->flags & ICD_STREAM_REQUESTED) != 0u) {
+        if (row != NULL && ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTED)) {
             incoming.kind = ICD_EVENT_REQUEST;
             incoming.row = row;
         }
@@ -1262,11 +1303,12 @@ static inline void icdgen_stream_count(
     const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
-        icd_event_t event = icdgen_event(ICD_EVENT_GAP);
+        icd_event_t event;
+        icdgen_event_init(&event, ICD_EVENT_GAP);
         event.has_id = true;
         event.id = message->id;
         event.missing = number == last ? 0u : missing;
-        listener->on_event(listener->context, &event);
+        icdgen_tell(listener, &event);
     }
 }
 
@@ -1282,7 +1324,7 @@ static inline bool icdgen_stream_constants(
         const icd_envelope_field_t *const field = &packet->fields[i];
         const uint8_t *const bytes = field->in_trailer ? trailer : frame;
         const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
-        if (field->role == ICD_ENVELOPE_CONSTANT && came &&
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && came &&
             icdgen_envelope_get(field, bytes) != field->values[direction]) {
             return false;
         }
@@ -1320,7 +1362,7 @@ static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t 
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
         const size_t end = ICDGEN_SIZE(field->at) + field->size;
-        if (field->role == ICD_ENVELOPE_CONSTANT && !field->in_trailer && end > left && end < next) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && !field->in_trailer && end > left && end < next) {
             next = end;
         }
     }
@@ -1348,39 +1390,27 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     uint32_t sum = 0;
     bool is_framed = true;
     bool is_long = true; /* whether each length is right */
-    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE);
+    icd_event_t event;
+    icdgen_event_init(&event, ICD_EVENT_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
         const uint32_t value = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
-        switch (field->role) {
-        case ICD_ENVELOPE_CONSTANT:
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT)) {
             is_framed = is_framed && value == field->values[decoder->direction];
-            break;
-        case ICD_ENVELOPE_ID:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
             event.id |= value << field->values[0];
-            break;
-        case ICD_ENVELOPE_LENGTH:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
             is_long = is_long && icdgen_envelope_bytes(field, value) == ICDGEN_I64(length);
-            break;
-        case ICD_ENVELOPE_RESPONSE_LENGTH:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH)) {
             wanted = icdgen_envelope_bytes(field, value);
-            break;
-        case ICD_ENVELOPE_CHECKSUM:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
             sum = value;
-            break;
-        case ICD_ENVELOPE_SEQUENCE:
-        case ICD_ENVELOPE_SOURCE:
-        case ICD_ENVELOPE_DESTINATION:
-        case ICD_ENVELOPE_TYPE:
-        case ICD_ENVELOPE_FLAGS:
-        case ICD_ENVELOPE_TIME:
-        case ICD_ENVELOPE_STATUS:
-        case ICD_ENVELOPE_REASON:
-        default:
-            sequence = field->role == ICD_ENVELOPE_SEQUENCE ? field : sequence;
+        } else if (ICDGEN_IS_OF_SENDER(field)) {
+            sequence = ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_SEQUENCE) ? field : sequence;
             event.values.of[field->role] = value;
-            break;
+        } else {
+            /* there are no other roles */
         }
     }
     if (!is_framed || !is_long) {
@@ -1415,7 +1445,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     event.data = event.is_packet ? frame : data;
     event.length = event.is_packet ? count : length;
     icdgen_stream_count(decoder, &incoming, sequence, &event, listener);
-    listener->on_event(listener->context, &event);
+    icdgen_tell(listener, &event);
     return ICDGEN_TAKEN;
 }
 
@@ -1453,7 +1483,7 @@ static inline size_t icdgen_stream_front(
     } else {
         const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
-        if (incoming.kind == ICD_EVENT_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
+        if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
             return icdgen_stream_skip(decoder);
         }
@@ -1472,7 +1502,7 @@ static inline size_t icdgen_stream_front(
     }
     const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, packet, frame, whole, listener);
     const size_t taken = verdict == ICDGEN_DOUBTFUL ? 1u : whole;
-    decoder->discarded += verdict == ICDGEN_TAKEN ? 0u : taken;
+    decoder->discarded += ICDGEN_U32(verdict == ICDGEN_TAKEN ? 0u : taken);
     return taken;
 }
 
@@ -1534,18 +1564,19 @@ static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byt
 /* Process a byte of a frame between delimiters. */
 static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t byte)
 {
-    const icd_delimiter_t delimiter = decoder->form->delimited_by;
-    const uint32_t escape = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_ESCAPE : ICDGEN_HDLC_ESCAPE;
-    if (delimiter == ICD_DELIMITED_BY_COBS && decoder->left != 0u) {
+    const icd_stream_form_t *const form = decoder->form;
+    const uint32_t escape =
+        ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_SLIP) ? ICDGEN_SLIP_ESCAPE : ICDGEN_HDLC_ESCAPE;
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_COBS) && decoder->left != 0u) {
         decoder->left--;
         icdgen_stream_put(decoder, byte);
-    } else if (delimiter == ICD_DELIMITED_BY_COBS) {
+    } else if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_COBS)) {
         if (decoder->zero) {
             icdgen_stream_put(decoder, 0);
         }
         decoder->left = ICDGEN_U8(byte - 1u);
         decoder->zero = byte != ICDGEN_COBS_WHOLE;
-    } else if (decoder->escaped && delimiter == ICD_DELIMITED_BY_HDLC) {
+    } else if (decoder->escaped && ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_HDLC)) {
         decoder->escaped = false;
         icdgen_stream_put(decoder, byte ^ ICDGEN_HDLC_FLIP);
     } else if (decoder->escaped) {
@@ -1578,7 +1609,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     } else {
         taken = true; /* empty frame between two delimiters */
     }
-    decoder->discarded += taken ? 0u : decoder->pending;
+    decoder->discarded += ICDGEN_U32(taken ? 0u : decoder->pending);
     decoder->pending = 0;
     icdgen_stream_clear(decoder);
 }
@@ -1587,7 +1618,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
 static inline void icdgen_stream_plain(icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count)
 {
     if (!decoder->inside) {
-        decoder->discarded += count;
+        decoder->discarded += ICDGEN_U32(count);
         return;
     }
     decoder->pending += count;
@@ -1632,7 +1663,7 @@ static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t 
         /* The last one of several escape bytes can begin a packet. */
         decoder->escaped = byte == escaping->escape;
         decoder->pending = decoder->escaped ? 1u : 0u;
-        decoder->discarded += 2u - decoder->pending;
+        decoder->discarded += ICDGEN_U32(2u - decoder->pending);
     } else if (byte == escaping->end) {
         icdgen_stream_end(decoder, listener);
     } else if (byte == escaping->data) {
@@ -1673,43 +1704,50 @@ static inline void icdgen_stream_unescape(
     }
 }
 
-ICDGEN_API void icd_stream_feed(
-    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+static inline void icdgen_stream_feed(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
-    const icd_delimiter_t delimiter = decoder->form->delimited_by;
-    const icdgen_listener_t listener = {on_event, context};
-    if (delimiter == ICD_DELIMITED_BY_DATAGRAM) {
+    const icd_stream_form_t *const form = decoder->form;
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_DATAGRAM)) {
         if (count > decoder->capacity) {
-            icdgen_stream_tell(&listener, ICD_EVENT_OVERRUN);
-            decoder->discarded += count;
-        } else if (!icdgen_stream_frame(decoder, bytes, count, &listener)) {
-            decoder->discarded += count;
+            icdgen_stream_tell(listener, ICD_EVENT_OVERRUN);
+            decoder->discarded += ICDGEN_U32(count);
+        } else if (!icdgen_stream_frame(decoder, bytes, count, listener)) {
+            decoder->discarded += ICDGEN_U32(count);
         } else {
             /* the frame was a message */
         }
         return;
     }
-    const uint32_t end = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_END
-        : delimiter == ICD_DELIMITED_BY_HDLC                ? ICDGEN_HDLC_FLAG
-                                                            : 0u;
-    if (delimiter == ICD_DELIMITED_BY_LENGTH) {
-        icdgen_stream_append(decoder, bytes, count, &listener);
+    const uint32_t end = ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_SLIP) ? ICDGEN_SLIP_END
+        : ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_HDLC)                ? ICDGEN_HDLC_FLAG
+                                                                             : 0u;
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_LENGTH)) {
+        icdgen_stream_append(decoder, bytes, count, listener);
         return;
     }
-    if (delimiter == ICD_DELIMITED_BY_ESCAPE) {
-        icdgen_stream_unescape(decoder, bytes, count, &listener);
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_ESCAPE)) {
+        icdgen_stream_unescape(decoder, bytes, count, listener);
         return;
     }
     for (size_t i = 0; i < count; ++i) {
         decoder->pending++;
         if (bytes[i] == end) {
-            icdgen_stream_end(decoder, &listener);
+            icdgen_stream_end(decoder, listener);
         } else if (!decoder->faulty) {
             icdgen_stream_inside(decoder, bytes[i]);
         } else {
             /* all bytes up to the next delimiter are dropped */
         }
     }
+}
+
+ICDGEN_API void icd_stream_feed(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+{
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_stream_feed(decoder, bytes, count, &listener);
 }
 
 ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
@@ -1745,7 +1783,7 @@ ICDGEN_API icd_status_t icd_i2c_write(
     }
     buffer[0] = id;
     if (length != 0u) {
-        (void)memmove(buffer + 1, data, length);
+        (void)memcpy(buffer + 1, data, length);
     }
     *written = 1u + length + extra;
     return checked ? icdgen_put_number(link, buffer + 1u + length, extra, icd_checksum(link, id, buffer + 1, length))
@@ -1765,6 +1803,12 @@ ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, 
     return ICD_OK;
 }
 
+/* Return whether the checksum after the data of a message is right. */
+static inline bool icdgen_is_intact(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
+{
+    return icdgen_number(link, data + length, link->checksum->bytes) == icd_checksum(link, id, data, length);
+}
+
 ICDGEN_API icd_status_t icd_i2c_reply(
     const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length)
 {
@@ -1777,12 +1821,7 @@ ICDGEN_API icd_status_t icd_i2c_reply(
         return ICD_ERROR_LENGTH;
     }
     *frame_length = expected - (checked ? link->checksum->bytes : 0u);
-    if (checked &&
-        icdgen_number(link, bytes + *frame_length, link->checksum->bytes) !=
-            icd_checksum(link, id, bytes, *frame_length)) {
-        return ICD_ERROR_CHECKSUM;
-    }
-    return ICD_OK;
+    return !checked || icdgen_is_intact(link, id, bytes, *frame_length) ? ICD_OK : ICD_ERROR_CHECKSUM;
 }
 
 static inline uint32_t icdgen_can_part(icd_can_part_t part, uint32_t id)
@@ -1907,17 +1946,13 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
 }
 
 static inline void icdgen_can_tell(
-    const icd_link_t *link,
-    uint32_t key,
-    icd_event_kind_t kind,
-    uint32_t missing,
-    icd_event_fn *on_event,
-    void *context)
+    const icd_link_t *link, uint32_t key, icd_event_kind_t kind, uint32_t missing, const icdgen_listener_t *listener)
 {
-    icd_event_t event = icdgen_event_of(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event;
+    icdgen_event_of(&event, kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.missing = missing;
-    on_event(context, &event);
+    icdgen_tell(listener, &event);
 }
 
 /* The data start after the id byte. */
@@ -1927,17 +1962,17 @@ static inline void icdgen_can_tell_message(
     icd_can_kind_t kind,
     uint8_t *data,
     size_t length,
-    icd_event_fn *on_event,
-    void *context)
+    const icdgen_listener_t *listener)
 {
-    icd_event_t event = icdgen_event_of(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event;
+    icdgen_event_of(&event, ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.destination = ICDGEN_U8(icdgen_can_part(link->can->destination, key));
     event.can_kind = kind;
     data[-1] = ICDGEN_U8(event.id);
     event.data = data;
     event.length = length;
-    on_event(context, &event);
+    icdgen_tell(listener, &event);
 }
 
 static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
@@ -1949,31 +1984,32 @@ static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
 static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
 {
     icd_can_slot_t *const slots = joiner->slots;
-    uint8_t *const data = slots[index].data;
     joiner->used--;
-    (void)memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
-    (void)memset(&slots[joiner->used], 0, sizeof *slots);
-    slots[joiner->used].data = data;
+    for (size_t i = index; i < joiner->used; ++i) {
+        uint8_t *const data = slots[i].data;
+        slots[i] = slots[i + 1u];
+        slots[i + 1u].data = data;
+    }
 }
 
 /* Discard a message. A complete message causes no event: its slot only serves to detect repeated packets. */
-static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, icd_event_fn *on_event, void *context)
+static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, const icdgen_listener_t *listener)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
     const uint32_t key = slot->key, missing = slot->count - slot->there;
     const bool done = slot->done;
     icdgen_can_free(joiner, index);
     if (!done) {
-        icdgen_can_tell(joiner->link, key, ICD_EVENT_INCOMPLETE, missing, on_event, context);
+        icdgen_can_tell(joiner->link, key, ICD_EVENT_INCOMPLETE, missing, listener);
     }
 }
 
-ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
+static inline void icdgen_can_expire(icd_can_joiner_t *joiner, uint32_t now, const icdgen_listener_t *listener)
 {
     size_t i = 0;
     while (i < joiner->used) {
         if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
-            icdgen_can_give_up(joiner, i, on_event, context);
+            icdgen_can_give_up(joiner, i, listener);
         } else {
             ++i;
         }
@@ -2015,24 +2051,35 @@ static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t 
     return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
 }
 
-/* Start a new message in the slot of another. The packets received so far are kept if they are the same in both. */
-static inline void icdgen_can_replace(
-    icd_can_joiner_t *joiner,
-    size_t index,
-    uint32_t number,
-    icd_can_slot_t *fresh,
-    icd_event_fn *on_event,
-    void *context)
+/*
+ * Start a new message in the slot of another. Return the number of packets received so far that are kept, because they
+ * are the same in both.
+ */
+static inline uint32_t icdgen_can_replace(
+    icd_can_joiner_t *joiner, size_t index, uint32_t number, const icdgen_listener_t *listener)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
-    if (!slot->done && number == slot->run) {
-        for (uint32_t n = 0; n < number; ++n) {
-            fresh->got[n / 8u] = ICDGEN_U8(fresh->got[n / 8u] | (1u << (n % 8u)));
-        }
-        fresh->there = number;
-        fresh->run = number;
+    const uint32_t kept = !slot->done && number == slot->run ? number : 0u;
+    icdgen_can_give_up(joiner, index, listener);
+    return kept;
+}
+
+static inline void icdgen_can_mark(icd_can_slot_t *slot, uint32_t number)
+{
+    slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
+    slot->there++;
+}
+
+/* Begin a message in a slot, of which some packets are there. */
+static inline void icdgen_can_begin(icd_can_slot_t *slot, uint32_t kept)
+{
+    uint8_t *const data = slot->data;
+    (void)memset(slot, 0, sizeof *slot);
+    slot->data = data;
+    slot->run = kept;
+    for (uint32_t n = 0; n < kept; ++n) {
+        icdgen_can_mark(slot, n);
     }
-    icdgen_can_give_up(joiner, index, on_event, context);
 }
 
 /* Process a packet of a message of several packets. */
@@ -2041,8 +2088,7 @@ static inline void icdgen_can_extended(
     uint32_t now,
     icd_can_kind_t kind,
     const icd_can_packet_t *packet,
-    icd_event_fn *on_event,
-    void *context)
+    const icdgen_listener_t *listener)
 {
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
@@ -2050,8 +2096,8 @@ static inline void icdgen_can_extended(
     const icd_can_extended_t *const form = can->extended;
     const size_t size = form->data_bytes;
     size_t index = 0;
-    icd_can_slot_t *slot, fresh;
-    uint32_t left, count, number;
+    icd_can_slot_t *slot;
+    uint32_t left, count, number, kept = 0;
     while (index < joiner->used && joiner->slots[index].key != packet->id) {
         ++index;
     }
@@ -2066,56 +2112,53 @@ static inline void icdgen_can_extended(
     }
     if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
         if (slot != NULL) {
-            icdgen_can_give_up(joiner, index, on_event, context);
+            icdgen_can_give_up(joiner, index, listener);
         }
-        icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
+        icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, listener);
         return;
     }
     number = count - 1u - left;
     if (slot != NULL && (!slot->done || slot->completed_by == number) && icdgen_can_got(slot, number) &&
         memcmp(slot->data + (number * size), packet->data, size) == 0) {
         icdgen_can_came(slot, number, now);
-        icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, on_event, context);
+        icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, listener);
         return;
     }
-    (void)memset(&fresh, 0, sizeof fresh);
     if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
-        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot owns its memory */
+        kept = icdgen_can_replace(joiner, index, number, listener); /* the next free slot owns its memory */
         slot = NULL;
     }
     if (slot == NULL) {
         slot = icdgen_can_slot(joiner);
         if (slot == NULL) {
-            icdgen_can_tell(link, packet->id, ICD_EVENT_NO_SLOT, 0, on_event, context);
+            icdgen_can_tell(link, packet->id, ICD_EVENT_NO_SLOT, 0, listener);
             return;
         }
-        fresh.data = slot->data;
-        *slot = fresh;
+        icdgen_can_begin(slot, kept);
         slot->key = packet->id;
         slot->kind = kind;
         slot->count = count;
         slot->length = length;
     }
     (void)memcpy(slot->data + (number * size), packet->data, size);
-    slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
-    slot->there++;
+    icdgen_can_mark(slot, number);
     icdgen_can_came(slot, number, now);
     if (slot->there == slot->count) {
         slot->done = true;
         slot->completed_by = number;
         icdgen_can_tell_message(
             link, slot->key, kind, slot->data, ICDGEN_SIZE(slot->length != 0u ? slot->length : slot->count * size),
-            on_event, context);
+            listener);
     }
 }
 
-ICDGEN_API void icd_can_feed(
-    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
+static inline void icdgen_can_feed(
+    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, const icdgen_listener_t *listener)
 {
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
     const uint32_t type = icdgen_can_part(can->type, packet->id);
-    icd_can_expire(joiner, now, on_event, context);
+    icdgen_can_expire(joiner, now, listener);
     if (joiner->address != ICD_CAN_EVERYBODY &&
         icdgen_can_part(can->destination, packet->id) != ICDGEN_U32(joiner->address)) {
         return;
@@ -2125,26 +2168,41 @@ ICDGEN_API void icd_can_feed(
         if (can->types[i] >= 0 && ICDGEN_U32(can->types[i]) == type) {
             uint8_t message[1u + sizeof packet->data];
             if (packet->length > (icdgen_can_has_data(kind) ? can->data_bytes : 0u)) {
-                icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
+                icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, listener);
                 return;
             }
             (void)memcpy(message + 1, packet->data, sizeof packet->data);
-            icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, on_event, context);
+            icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, listener);
             return;
         }
     }
     for (unsigned i = 0; can->extended != NULL && i < ICD_CAN_KINDS; ++i) {
         if (can->extended_types[i] >= 0 && ICDGEN_U32(can->extended_types[i]) == type) {
-            icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, on_event, context);
+            icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, listener);
             return;
         }
     }
-    icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, on_event, context);
+    icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, listener);
+}
+
+ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_can_expire(joiner, now, &listener);
+}
+
+ICDGEN_API void icd_can_feed(
+    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
+{
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_can_feed(joiner, now, packet, &listener);
 }
 
 ICDGEN_API size_t icd_log_count(const icd_link_t *link, const uint8_t *mask)
 {
-    return icdgen_log_slots(link, mask, link->log_mask->size);
+    return icdgen_log_slots(mask, link->log_mask->size);
 }
 
 ICDGEN_API void icd_log_frames(
@@ -2499,45 +2557,32 @@ typedef struct {
     void *context;
 } icdgen_call_t;
 
-/* How a request is sent, and what responds to it. */
-typedef struct {
-    icd_awaited_t awaited; /* without numbers. `exchange` is NULL if nothing responds, unless there is a reply */
-    uint32_t sent_id;      /* this and `asks_by_id` are of icd_slot_t */
-    size_t least;          /* bounds of the number of data bytes */
-    size_t most;
-    bool asks_by_id;
-    bool repeats;
-} icdgen_plan_t;
-
 /* What the client needs to know of a line. Functions that a line does not need are NULL. */
 struct icd_line {
     bool has_results; /* of its transmissions, which can fail */
     icd_bus_t bus;    /* except on framed links */
-    icd_status_t (*plan)(const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan);
-    /* Store the data of a request in its slot. Return an error if it cannot be encoded. */
-    icd_status_t (*store)(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length);
+    /*
+     * Set in a slot how a request is sent, what responds to it, and the number of its data bytes. Return
+     * ICD_ERROR_LENGTH only if there is no other error.
+     */
+    icd_status_t (*plan)(const icd_client_t *client, const icd_request_t *request, icd_slot_t *slot);
+    /* Store the data of a request; zeros if they are NULL. Return an error if it cannot be encoded. */
+    icd_status_t (*store)(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data);
     bool (*output)(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
     void (*received)(const icdgen_call_t *call, const uint8_t *bytes, size_t count);
     void (*expire)(const icdgen_call_t *call, uint32_t now); /* incomplete messages */
 };
 
-/* Return the buffer size of the decoder, or of the CAN joiner. */
-static inline size_t icdgen_receive_bytes(const icd_link_t *link)
-{
-    const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return slot > link->longest ? slot : ICDGEN_SIZE(link->longest);
-}
-
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link, size_t requests)
 {
-    return icdgen_receive_bytes(link) + (requests * ICDGEN_SIZE(link->longest_telecommand));
+    return ICDGEN_SIZE(link->received_bytes) + (requests * ICDGEN_SIZE(link->longest_telecommand));
 }
 
 /* Initialize what is the same on all lines. The first bytes of the buffer are for what is received. */
 static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_slot_t *slots, size_t slot_count, uint8_t *buffer, size_t size)
 {
-    const size_t first = icdgen_receive_bytes(link);
+    const size_t first = ICDGEN_SIZE(link->received_bytes);
     const size_t each = ICDGEN_SIZE(link->longest_telecommand);
     (void)memset(client, 0, sizeof *client);
     client->link = link;
@@ -2559,64 +2604,35 @@ static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
     return UINT32_C(1) << ICDGEN_U32(verdict);
 }
 
-static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_number_place_t *b)
-{
-    return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
-}
-
 /* The reply that the caller specified, or the requested telemetry. Its id is in icd_awaited_t. */
 static const icd_response_t icdgen_specified_reply = {
-    0u,
-    ICD_VERDICT_REPLY,
-    0u,
-    false,
-    0u,
-    NULL,
-    NULL,
-    {0u, 0u, 0u, 0u, false},
-    {0u, 0u, 0u, 0u, false},
-    {0u, 0u, 0u, 0u, false}};
-
-/* Return what a response can mean, as a mask of verdicts. */
-static inline uint32_t icdgen_verdicts(const icd_response_t *response)
-{
-    uint32_t verdicts = icdgen_verdict_bit(response->verdict);
-    for (size_t i = 0; i < response->meaning_count; ++i) {
-        verdicts |= icdgen_verdict_bit(response->meanings[i].verdict);
-    }
-    return verdicts;
-}
+    0u, ICD_VERDICT_REPLY, 0u, false, 1u << ICD_VERDICT_REPLY, 0u, NULL, NULL, NULL, NULL, NULL,
+};
 
 static inline bool icdgen_can_be_reply(const icd_response_t *response)
 {
-    return (icdgen_verdicts(response) & icdgen_verdict_bit(ICD_VERDICT_REPLY)) != 0u;
+    return (response->verdicts & icdgen_verdict_bit(ICD_VERDICT_REPLY)) != 0u;
+}
+
+/* Return how many possible responses a request has; some of them are NULL. */
+static inline size_t icdgen_response_count(const icd_awaited_t *awaited)
+{
+    return ICDGEN_SIZE(awaited->exchange->response_count) + 1u;
 }
 
 /*
- * Return the possible response to a request at a position or after it, and advance the position. NULL if there is none.
- * The reply that the caller specified takes the place of those in the ICD, and is the last; requested telemetry is the
- * first.
+ * Return a possible response to a request. The reply that the caller specified takes the place of those in the ICD, and
+ * is the last; requested telemetry is the first.
  */
-static inline const icd_response_t *icdgen_next_response(const icd_awaited_t *awaited, size_t *position)
+static inline const icd_response_t *icdgen_response(const icd_awaited_t *awaited, size_t index)
 {
     const icd_exchange_t *const exchange = awaited->exchange;
-    const bool has_reply = awaited->has_reply;
     const size_t own = exchange->is_request ? ICDGEN_SIZE(0) : exchange->response_count;
-    while (*position <= exchange->response_count) {
-        const size_t i = *position;
-        (*position)++;
-        if (i == own) {
-            if (has_reply) {
-                return &icdgen_specified_reply;
-            }
-        } else {
-            const icd_response_t *const response = &exchange->responses[i - (i > own ? 1u : 0u)];
-            if (!has_reply || !icdgen_can_be_reply(response)) {
-                return response;
-            }
-        }
+    if (index == own) {
+        return awaited->has_reply ? &icdgen_specified_reply : NULL;
     }
-    return NULL;
+    const icd_response_t *const response = &exchange->responses[index - (index > own ? 1u : 0u)];
+    return awaited->has_reply && icdgen_can_be_reply(response) ? NULL : response;
 }
 
 static inline uint32_t icdgen_response_source(const icd_awaited_t *awaited, const icd_response_t *response)
@@ -2628,34 +2644,37 @@ static inline uint32_t icdgen_response_source(const icd_awaited_t *awaited, cons
 static inline uint32_t icdgen_needed(const icd_awaited_t *awaited)
 {
     uint32_t verdicts = 0;
-    size_t position = 0;
-    const icd_response_t *response = icdgen_next_response(awaited, &position);
-    while (response != NULL) {
-        verdicts |= icdgen_verdicts(response);
-        response = icdgen_next_response(awaited, &position);
+    for (size_t i = 0; i < icdgen_response_count(awaited); ++i) {
+        const icd_response_t *const response = icdgen_response(awaited, i);
+        verdicts |= response != NULL ? response->verdicts : 0u;
     }
     return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
+}
+
+/* Return whether telemetry or a packet is this response to a request. */
+static inline bool icdgen_matches(
+    const icd_awaited_t *awaited, const icd_response_t *response, const icd_event_t *event)
+{
+    const uint32_t source = event->is_packet ? event->packet : event->id;
+    bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
+    for (size_t i = 0; matches && i < response->echo_count; ++i) {
+        const icd_echo_t *const echo = &response->echoes[i];
+        matches =
+            icdgen_stream_number(echo->place, event->id, event->data, event->length) == awaited->sources[echo->source];
+    }
+    return matches;
 }
 
 /* Return the response to a request that telemetry or a packet is; NULL if it is none of them. */
 static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited, const icd_event_t *event)
 {
-    const uint32_t source = event->is_packet ? event->packet : event->id;
-    size_t position = 0;
-    const icd_response_t *response = icdgen_next_response(awaited, &position);
-    while (response != NULL) {
-        bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
-        for (size_t i = 0; matches && i < response->echo_count; ++i) {
-            const icd_echo_t *const echo = &response->echoes[i];
-            matches = icdgen_stream_number(&echo->place, event->id, event->data, event->length) ==
-                awaited->sources[echo->source];
+    for (size_t i = 0; i < icdgen_response_count(awaited); ++i) {
+        const icd_response_t *const response = icdgen_response(awaited, i);
+        if (response != NULL && icdgen_matches(awaited, response, event)) {
+            return response;
         }
-        if (matches) {
-            break;
-        }
-        response = icdgen_next_response(awaited, &position);
     }
-    return response;
+    return NULL;
 }
 
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
@@ -2672,7 +2691,7 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < response_b->echo_count; ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_message_sources(a) &&
+            if (echo->place == other->place && echo->source < icdgen_message_sources(a) &&
                 other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
@@ -2690,28 +2709,23 @@ static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b
     if (a->is_nameless && b->is_nameless) {
         return true;
     }
-    size_t position_a = 0;
-    const icd_response_t *of_a = icdgen_next_response(a, &position_a);
-    while (of_a != NULL) {
-        size_t position_b = 0;
-        const icd_response_t *of_b = icdgen_next_response(b, &position_b);
-        while (of_b != NULL) {
-            const bool is_same = icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
-                of_a->is_packet == of_b->is_packet;
-            if (is_same && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
+    for (size_t i = 0; i < icdgen_response_count(a); ++i) {
+        const icd_response_t *const of_a = icdgen_response(a, i);
+        for (size_t j = 0; of_a != NULL && j < icdgen_response_count(b); ++j) {
+            const icd_response_t *const of_b = icdgen_response(b, j);
+            if (of_b != NULL && icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
+                of_a->is_packet == of_b->is_packet && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
                 return true;
             }
-            of_b = icdgen_next_response(b, &position_b);
         }
-        of_a = icdgen_next_response(a, &position_a);
     }
     return false;
 }
 
 static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
 {
-    if (response->status.bits != 0u) {
-        const uint32_t status = icdgen_stream_number(&response->status, event->id, event->data, event->length);
+    if (response->status != NULL) {
+        const uint32_t status = icdgen_stream_number(response->status, event->id, event->data, event->length);
         for (size_t i = 0; i < response->meaning_count; ++i) {
             if (response->meanings[i].value == status) {
                 return response->meanings[i].verdict;
@@ -2736,8 +2750,8 @@ static inline bool icdgen_is_awaited(const icd_slot_t *slot)
 static inline void icdgen_settle(icd_awaited_t *awaited, icd_verdict_t verdict)
 {
     for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
-        const bool settles = ICDGEN_SIZE(verdict) == i || verdict == ICD_VERDICT_NAK || verdict == ICD_VERDICT_BUSY ||
-            verdict == ICD_VERDICT_AGAIN;
+        const bool settles = ICDGEN_SIZE(verdict) == i || ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_NAK) ||
+            ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) || ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_AGAIN);
         if (settles && awaited->owed[i] != 0u) {
             awaited->owed[i]--;
         }
@@ -2769,13 +2783,11 @@ static inline bool icdgen_can_be_late(const icd_client_t *client, const icd_awai
     return left != 0u && left <= longest + client->settings.late;
 }
 
-/* Remove an entry of the late responses. */
+/* Remove an entry of the late responses. Their order has no meaning: no response can be taken for two of them. */
 static inline void icdgen_forget(icd_client_t *client, size_t index)
 {
     client->late_count--;
-    for (size_t i = index; i < client->late_count; ++i) {
-        client->late[i] = client->late[i + 1u];
-    }
+    client->late[index] = client->late[client->late_count];
 }
 
 /* Store the time, and drop what has passed. */
@@ -2797,16 +2809,16 @@ static inline void icdgen_set_time(icd_client_t *client, uint32_t now)
 static inline void icdgen_request_end(icd_client_t *client, size_t index)
 {
     const icd_awaited_t *const awaited = &client->slots[index].awaited;
-    uint8_t *const data = client->slots[index].data;
     if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
         client->late[client->late_count] = *awaited;
         client->late_count++;
     }
     client->started--;
     for (size_t i = index; i < client->started; ++i) {
+        uint8_t *const data = client->slots[i].data; /* free memory: it moves to the end */
         client->slots[i] = client->slots[i + 1u];
+        client->slots[i + 1u].data = data;
     }
-    client->slots[client->started].data = data;
 }
 
 /* Return the oldest request that is to be sent; NULL if there is none. */
@@ -2829,8 +2841,7 @@ static inline bool icdgen_has_end(const icd_client_t *client, const icd_slot_t *
 /* Return whether a response may arrive for a request, and it does not poll. */
 static inline bool icdgen_has_responses(const icd_slot_t *slot)
 {
-    size_t position = 0;
-    return !slot->is_polled && icdgen_next_response(&slot->awaited, &position) != NULL;
+    return !slot->is_polled && (slot->awaited.has_reply || slot->awaited.exchange->response_count != 0u);
 }
 
 /* Return how many other requests in progress wait for responses, also those that are to be sent again. */
@@ -2902,80 +2913,50 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
 {
     static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u, NULL};
     const bool asks = request->direction == ICD_TELEMETRY;
-    icdgen_plan_t plan;
-    icd_status_t status = client->line != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
-    (void)memset(&plan, 0, sizeof plan);
+    icd_slot_t slot;
+    icd_awaited_t *const awaited = &slot.awaited;
+    (void)memset(&slot, 0, sizeof slot);
+    slot.id = request->id;
+    slot.direction = request->direction;
+    slot.repeat = request->repeat || asks;
+    awaited->exchange = &no_exchange;
+    icd_status_t status = client->line != NULL ? client->line->plan(client, request, &slot) : ICD_ERROR_UNSUPPORTED;
+    if ((status == ICD_OK || status == ICD_ERROR_LENGTH) && !icdgen_has_room(client)) {
+        status = ICD_ERROR_BUSY;
+    }
     if (status == ICD_OK) {
-        status = client->line->plan(client, request, &plan);
+        slot.data = client->slots[client->started].data;
+        status = client->line->store(client, &slot, asks ? NULL : request->data);
     }
-    if (status != ICD_OK) {
-        return status;
+    if (status == ICD_OK) {
+        for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
+            awaited->sources[i] =
+                icdgen_stream_number(&awaited->exchange->sources[i], slot.sent_id, slot.data, slot.length);
+        }
+        client->slots[client->started] = slot;
+        client->started++;
+        icdgen_set_time(client, now);
     }
-    if (!icdgen_has_room(client)) {
-        return ICD_ERROR_BUSY;
-    }
-    icd_slot_t *const slot = &client->slots[client->started];
-    if (!asks && (request->length < plan.least || request->length > plan.most)) {
-        return ICD_ERROR_LENGTH;
-    }
-    uint8_t *const data = slot->data;
-    (void)memset(slot, 0, sizeof *slot);
-    slot->data = data;
-    slot->id = request->id;
-    slot->direction = request->direction;
-    slot->sent_id = plan.sent_id;
-    slot->asks_by_id = plan.asks_by_id;
-    status = client->line->store(client, slot, asks ? NULL : request->data, asks ? plan.least : request->length);
-    if (status != ICD_OK) {
-        return status;
-    }
-    slot->repeat = request->repeat || asks || plan.repeats;
-    slot->state = ICD_SLOT_QUEUED;
-    icd_awaited_t *const awaited = &slot->awaited;
-    *awaited = plan.awaited;
-    awaited->exchange = awaited->exchange != NULL ? awaited->exchange : &no_exchange;
-    for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
-        awaited->sources[i] = icdgen_stream_number(&awaited->exchange->sources[i], slot->sent_id, data, slot->length);
-    }
-    client->started++;
-    icdgen_set_time(client, now);
-    return ICD_OK;
+    return status;
 }
 
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint32_t id)
 {
-    icd_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELEMETRY;
-    request.id = id;
+    const icd_request_t request = {ICD_TELEMETRY, id, false, false, 0u, NULL, 0u};
     return icd_client_start(client, now, &request);
-}
-
-static icd_request_t icdgen_telecommand_of(uint32_t id, const uint8_t *data, size_t length)
-{
-    icd_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
-    return request;
 }
 
 ICDGEN_API icd_status_t
 icd_client_send(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat)
 {
-    icd_request_t request = icdgen_telecommand_of(id, data, length);
-    request.repeat = repeat;
+    const icd_request_t request = {ICD_TELECOMMAND, id, repeat, false, 0u, data, length};
     return icd_client_start(client, now, &request);
 }
 
 ICDGEN_API icd_status_t
 icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
 {
-    icd_request_t request = icdgen_telecommand_of(id, data, length);
-    request.has_reply = true;
-    request.reply = reply;
+    const icd_request_t request = {ICD_TELECOMMAND, id, false, true, reply, data, length};
     return icd_client_start(client, now, &request);
 }
 
@@ -2986,11 +2967,9 @@ icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *d
 static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot_t *slot)
 {
     size_t in_flight = 0;
-    if (client->in_gap) {
-        return false;
-    }
-    if (!icdgen_has_responses(slot)) {
-        return true;
+    size_t awaited = client->late_count;
+    if (client->in_gap || !icdgen_has_responses(slot)) {
+        return !client->in_gap;
     }
     for (size_t i = 0; i < client->started; ++i) {
         const icd_slot_t *const other = &client->slots[i];
@@ -3001,16 +2980,19 @@ static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot
             in_flight++;
         }
         /* Also a request that is to be sent again: otherwise each could wait until the other has ended. */
-        if (other->missing != 0u && icdgen_is_like(&slot->awaited, &other->awaited)) {
-            return false;
+        if (other->missing != 0u) {
+            if (icdgen_is_like(&slot->awaited, &other->awaited)) {
+                return false;
+            }
+            awaited++;
         }
     }
     for (size_t i = 0; i < client->late_count; ++i) {
-        if (icdgen_is_blocked(client, slot, &client->late[i])) {
+        if (icdgen_is_like(&slot->awaited, &client->late[i])) {
             return false;
         }
     }
-    return in_flight < client->settings.in_flight && icdgen_unfinished(client, slot) < ICDGEN_MOST_AWAITED;
+    return in_flight < client->settings.in_flight && awaited < ICDGEN_MOST_AWAITED;
 }
 
 /* Return the next request to send; NULL if none may be sent. */
@@ -3095,7 +3077,8 @@ static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kin
 /* End a request without a response. */
 static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, size_t index)
 {
-    icd_event_t event = icdgen_event(kind);
+    icd_event_t event;
+    icdgen_event_init(&event, kind);
     icdgen_report(call, kind, index, &event);
 }
 
@@ -3163,18 +3146,18 @@ ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn
 /* Get the reason of a refusal, or why the device is busy. */
 static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_t *response, icd_event_t *event)
 {
-    if (response->reason.bits != 0u) {
+    if (response->reason != NULL) {
         event->has_code = true;
-        event->code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
+        event->code = icdgen_stream_number(response->reason, event->id, event->data, event->length);
         for (size_t i = link->error_count; i > 0u; --i) {
             if (link->errors[i - 1u].code == event->code) {
                 event->reason = link->errors[i - 1u].reason;
             }
         }
     }
-    if (response->detail.bits != 0u) {
+    if (response->detail != NULL) {
         event->has_detail = true;
-        event->detail = icdgen_stream_number(&response->detail, event->id, event->data, event->length);
+        event->detail = icdgen_stream_number(response->detail, event->id, event->data, event->length);
     }
 }
 
@@ -3190,7 +3173,7 @@ static inline void icdgen_responded(
     event->has_reply = !event->is_packet;
     event->reply = event->id;
     icdgen_settle(&slot->awaited, verdict);
-    if (verdict == ICD_VERDICT_PROGRESS) {
+    if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_PROGRESS)) {
         const uint32_t limit = slot->sent_at + client->settings.progress_for;
         const uint32_t extended = client->now + icdgen_timeout(client, &slot->awaited);
         const uint32_t latest = icdgen_reached(extended, limit) ? limit : extended;
@@ -3200,24 +3183,24 @@ static inline void icdgen_responded(
         if (slot->state == ICD_SLOT_WAIT) {
             slot->until = slot->awaited.latest;
         }
-    } else if (verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY) {
+    } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_ACK) || ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_REPLY)) {
         slot->missing = ICDGEN_U8(slot->missing & ~icdgen_verdict_bit(verdict));
         if (slot->missing == 0u) {
             kind = ICD_EVENT_DONE;
-        } else if (verdict == ICD_VERDICT_REPLY) {
+        } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_REPLY)) {
             kind = ICD_EVENT_REPLY;
         } else {
             /* the reply is still to come */
         }
-    } else if (verdict == ICD_VERDICT_BUSY && is_left) {
+    } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) && is_left) {
         slot->state = ICD_SLOT_PAUSE;
         slot->until = client->now + client->settings.busy_pause;
-    } else if (verdict == ICD_VERDICT_AGAIN && is_left && client->checks_telecommands) {
+    } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_AGAIN) && is_left && client->checks_telecommands) {
         slot->state = ICD_SLOT_QUEUED;
         slot->is_polled = false;
         return;
     } else {
-        kind = verdict == ICD_VERDICT_BUSY ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
+        kind = ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
         icdgen_set_reason(client->link, response, event);
     }
     icdgen_report(call, kind, index, event);
@@ -3308,18 +3291,18 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
 {
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
         const icd_stream_row_t *const row = &form->rows[ICD_TELECOMMAND][i];
-        if ((row->flags & ICD_STREAM_REQUESTS) != 0u && row->requested == id) {
+        if (ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTS) && row->requested == id) {
             return row;
         }
     }
     const icd_stream_row_t *const telemetry = icdgen_stream_row(form, ICD_TELEMETRY, id);
-    return telemetry != NULL && (telemetry->flags & ICD_STREAM_REQUESTED) != 0u ? telemetry : NULL;
+    return telemetry != NULL && ICDGEN_HAS_FLAG(telemetry, ICD_STREAM_REQUESTED) ? telemetry : NULL;
 }
 
 /* Return whether telemetry is a possible reply in the ICD. */
 static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 {
-    for (size_t i = 0; exchange != NULL && i < exchange->response_count; ++i) {
+    for (size_t i = 0; i < exchange->response_count; ++i) {
         const icd_response_t *const response = &exchange->responses[i];
         if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
             return true;
@@ -3329,7 +3312,7 @@ static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 }
 
 static inline icd_status_t icdgen_stream_plan(
-    const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan)
+    const icd_client_t *client, const icd_request_t *request, icd_slot_t *slot)
 {
     const icd_stream_form_t *const form = client->link->stream;
     const bool asks = request->direction == ICD_TELEMETRY;
@@ -3339,23 +3322,28 @@ static inline icd_status_t icdgen_stream_plan(
         const bool is_known = asks && icdgen_stream_row(form, ICD_TELEMETRY, request->id) != NULL;
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
-    plan->asks_by_id = (row->flags & ICD_STREAM_REQUESTED) != 0u;
-    icd_awaited_t *const awaited = &plan->awaited;
-    awaited->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
-    plan->least = plan->asks_by_id ? form->packets[form->request->packet].reserved : row->least;
-    plan->most = plan->asks_by_id ? plan->least : row->most;
-    plan->sent_id = row->id;
-    plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
-    if (plan->asks_by_id || (request->has_reply && !asks)) {
-        awaited->reply = plan->asks_by_id ? row->id : request->reply;
+    icd_awaited_t *const awaited = &slot->awaited;
+    const bool by_id = ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTED);
+    const icd_exchange_t *const exchange = by_id ? form->request->exchange : row->exchange;
+    awaited->exchange = exchange != NULL ? exchange : awaited->exchange;
+    slot->asks_by_id = by_id;
+    slot->sent_id = row->id;
+    slot->repeat = slot->repeat || ICDGEN_HAS_FLAG(row, ICD_STREAM_REPEATS);
+    if (by_id || (request->has_reply && !asks)) {
+        awaited->reply = by_id ? row->id : request->reply;
         const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, awaited->reply);
         if (reply == NULL) {
             return ICD_ERROR_UNKNOWN_ID;
         }
-        awaited->has_reply = plan->asks_by_id || !icdgen_has_reply(awaited->exchange, awaited->reply);
-        awaited->is_nameless = awaited->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
+        awaited->has_reply = by_id || !icdgen_has_reply(awaited->exchange, awaited->reply);
+        awaited->is_nameless = awaited->has_reply && ICDGEN_HAS_FLAG(reply, ICD_STREAM_NAMELESS);
     }
-    return ICD_OK;
+    if (asks) {
+        slot->length = by_id ? form->packets[form->request->packet].reserved : row->least;
+        return ICD_OK;
+    }
+    slot->length = request->length;
+    return request->length >= row->least && request->length <= row->most ? ICD_OK : ICD_ERROR_LENGTH;
 }
 
 /* Return the packet that is sent for a request. */
@@ -3367,12 +3355,10 @@ static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_client_t *clien
     return icdgen_outgoing_row(form, ICD_TELECOMMAND, row, slot->data, slot->length);
 }
 
-static inline icd_status_t icdgen_stream_store(
-    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+static inline icd_status_t icdgen_stream_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
     size_t written = 0;
-    slot->length = length;
-    for (size_t i = 0; i < length; ++i) {
+    for (size_t i = 0; i < slot->length; ++i) {
         slot->data[i] = data != NULL ? data[i] : 0u;
     }
     /* Without a buffer, this only checks whether header and trailer values fit into their fields. */
@@ -3451,34 +3437,33 @@ static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_
         event->data += packet->header_bytes;
         event->length = length;
     } else if (other != NULL) {
-        *event = icdgen_event_of(ICD_EVENT_LENGTH, other->id);
+        icdgen_event_of(event, ICD_EVENT_LENGTH, other->id);
     } else {
         /* the packet itself */
     }
 }
 
-static inline void icdgen_on_stream(void *context, const icd_event_t *found)
+static inline void icdgen_on_stream(const void *context, icd_event_t *event)
 {
     const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
     const icd_stream_form_t *const form = call->client->link->stream;
-    icd_event_t event = *found;
-    if (event.is_packet && form->packets[event.packet].content == ICD_PACKET_REQUESTED) {
-        icdgen_stream_identify(call->client, &event);
+    if (event->is_packet && ICDGEN_CONTAINS(&form->packets[event->packet], ICD_PACKET_REQUESTED)) {
+        icdgen_stream_identify(call->client, event);
     }
-    if (event.kind == ICD_EVENT_MESSAGE || event.kind == ICD_EVENT_PACKET) {
-        const bool is_stray = event.is_packet || icdgen_stream_confirms(form, event.id);
-        icdgen_client_arrived(call, &event, is_stray ? ICD_EVENT_STRAY : ICD_EVENT_ARRIVED);
+    if (event->kind == ICD_EVENT_MESSAGE || event->kind == ICD_EVENT_PACKET) {
+        const bool is_stray = event->is_packet || icdgen_stream_confirms(form, event->id);
+        icdgen_client_arrived(call, event, is_stray ? ICD_EVENT_STRAY : ICD_EVENT_ARRIVED);
     } else {
-        event.link = call->client->link;
-        event.direction = ICD_TELEMETRY;
-        call->on_event(call->context, &event);
+        event->link = call->client->link;
+        event->direction = ICD_TELEMETRY;
+        call->on_event(call->context, event);
     }
 }
 
 static inline void icdgen_stream_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
 {
-    icdgen_call_t copy = *call;
-    icd_stream_feed(&call->client->stream->decoder, bytes, count, icdgen_on_stream, &copy);
+    const icdgen_listener_t listener = {icdgen_on_stream, call};
+    icdgen_stream_feed(&call->client->stream->decoder, bytes, count, &listener);
 }
 
 ICDGEN_API icd_status_t icd_client_stream(
@@ -3519,9 +3504,9 @@ ICDGEN_API icd_status_t icd_client_stream(
 
 /* ---- clients on UART, I2C and CAN -------------------------------------------------------------------------------- */
 
-#define ICDGEN_ACKNOWLEDGE 0u /* indices of packets without a message */
-#define ICDGEN_REFUSAL 1u
-#define ICDGEN_REQUEST_REFUSAL 2u
+#define ICDGEN_ACKNOWLEDGE ICDGEN_U8(0) /* indices of packets without a message */
+#define ICDGEN_REFUSAL ICDGEN_U8(1)
+#define ICDGEN_REQUEST_REFUSAL ICDGEN_U8(2)
 
 /* Initialize a client on a bus. */
 static inline icd_status_t icdgen_bus_init(
@@ -3550,95 +3535,85 @@ ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
     }
 }
 
-static inline icd_status_t icdgen_bus_plan(
-    const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan)
+static inline icd_status_t icdgen_bus_plan(const icd_client_t *client, const icd_request_t *request, icd_slot_t *slot)
 {
     const icd_bus_exchanges_t *const exchanges = client->link->exchanges[client->line->bus];
     const icd_message_t *const message = icd_find_message(client->link, request->direction, request->id);
     if (message == NULL) {
         return ICD_ERROR_UNKNOWN_ID;
     }
+    slot->sent_id = request->id;
     if (request->direction == ICD_TELEMETRY) {
-        plan->asks_by_id = true;
-        plan->awaited.exchange = exchanges->request;
-        plan->awaited.has_reply = true;
-        plan->awaited.reply = request->id;
-        plan->awaited.is_in_order = client->line->has_results;
-    } else if (request->has_reply) {
-        return ICD_ERROR_UNSUPPORTED;
-    } else {
-        plan->awaited.exchange = (message->flags & ICD_ACKNOWLEDGED) != 0u ? exchanges->command : NULL;
-        plan->least = message->length;
-        plan->most = message->length;
-        plan->repeats = (message->flags & ICD_SETTING) != 0u;
+        slot->asks_by_id = true;
+        slot->awaited.exchange = exchanges->request;
+        slot->awaited.has_reply = true;
+        slot->awaited.reply = request->id;
+        slot->awaited.is_in_order = client->line->has_results;
+        return ICD_OK;
     }
-    plan->sent_id = request->id;
-    return ICD_OK;
+    if (request->has_reply) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    if ((message->flags & ICD_ACKNOWLEDGED) != 0u && exchanges->command != NULL) {
+        slot->awaited.exchange = exchanges->command;
+    }
+    slot->repeat = slot->repeat || (message->flags & ICD_SETTING) != 0u;
+    slot->length = request->length;
+    return request->length == message->length ? ICD_OK : ICD_ERROR_LENGTH;
 }
 
 /* Store id, data and checksum. */
-static inline icd_status_t icdgen_bus_store(
-    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+static inline icd_status_t icdgen_bus_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
     return icd_i2c_write(
-        client->link, ICDGEN_U8(slot->sent_id), data, length, !slot->asks_by_id && client->checks_telecommands,
+        client->link, ICDGEN_U8(slot->sent_id), data, slot->length, !slot->asks_by_id && client->checks_telecommands,
         slot->data, ICDGEN_SIZE(client->link->longest_telecommand), &slot->length);
 }
 
-/* Report the fault of telemetry that was read or received: ICD_ERROR_CHECKSUM, otherwise a wrong length. */
-static inline void icdgen_bus_fault(const icdgen_call_t *call, uint32_t id, icd_status_t status)
+/* Report what belongs to no request. */
+static inline void icdgen_bus_tell(const icdgen_call_t *call, icd_event_kind_t kind, icd_event_t *event)
 {
-    const icd_event_t event = icdgen_event_of(status == ICD_ERROR_CHECKSUM ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH, id);
-    call->on_event(call->context, &event);
+    event->kind = kind;
+    call->on_event(call->context, event);
 }
 
-/* Process data that nothing in the ICD describes. */
-static inline void icdgen_bus_stray(const icdgen_call_t *call, uint32_t id, const uint8_t *data, size_t length)
+/* Report telemetry or an acknowledge of which only the id is of use. */
+static inline void icdgen_bus_fault(const icdgen_call_t *call, icd_event_kind_t kind, icd_event_t *event)
 {
-    icd_event_t event = icdgen_event_of(ICD_EVENT_STRAY, id);
-    event.data = data;
-    event.length = length;
-    call->on_event(call->context, &event);
+    event->data = NULL;
+    event->length = 0;
+    icdgen_bus_tell(call, kind, event);
 }
 
 /* Process a packet without a message. The data of its event start with the id. */
-static inline void icdgen_bus_packet(const icdgen_call_t *call, uint32_t packet, const uint8_t *bytes, size_t length)
+static inline void icdgen_bus_packet(const icdgen_call_t *call, uint8_t packet, icd_event_t *event)
 {
-    icd_event_t event = icdgen_event_of(ICD_EVENT_PACKET, bytes[0]);
-    event.is_packet = true;
-    event.packet = ICDGEN_U8(packet);
-    event.data = bytes;
-    event.length = length;
-    icdgen_client_arrived(call, &event, ICD_EVENT_STRAY);
+    event->is_packet = true;
+    event->packet = packet;
+    icdgen_client_arrived(call, event, ICD_EVENT_STRAY);
 }
 
 /* Process telemetry on UART or CAN. Its length shows whether it has a checksum. */
-static inline void icdgen_bus_telemetry(const icdgen_call_t *call, uint32_t id, const uint8_t *data, size_t length)
+static inline void icdgen_bus_telemetry(const icdgen_call_t *call, icd_event_t *event)
 {
     const icd_client_t *const client = call->client;
     const icd_checksum_form_t *const form = client->link->checksum;
-    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, id);
+    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, event->id);
     if (message == NULL) {
-        icdgen_bus_stray(call, id, data, length);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
         return;
     }
-    icd_event_t event = icdgen_event_of(ICD_EVENT_MESSAGE, id);
-    icd_status_t status = length == message->length ? ICD_OK : ICD_ERROR_LENGTH;
-    bool is_checked = false;
-    event.data = data;
-    event.length = message->length;
-    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->line->bus) &&
-        length == ICDGEN_SIZE(message->length) + form->bytes) {
-        is_checked = true;
-        status = icd_i2c_reply(client->link, message->id, data, length, true, &event.length);
-    }
-    if (status != ICD_OK) {
-        icdgen_bus_fault(call, id, status);
-    } else if (client->checks_telemetry && !is_checked) {
-        event = icdgen_event_of(ICD_EVENT_UNCHECKED, id);
-        call->on_event(call->context, &event);
+    const bool is_checked = form != NULL && icdgen_on_bus(form->telemetry_buses, client->line->bus) &&
+        event->length == ICDGEN_SIZE(message->length) + form->bytes;
+    if (is_checked && !icdgen_is_intact(client->link, message->id, event->data, message->length)) {
+        icdgen_bus_fault(call, ICD_EVENT_CHECKSUM, event);
+    } else if (!is_checked && event->length != message->length) {
+        icdgen_bus_fault(call, ICD_EVENT_LENGTH, event);
+    } else if (!is_checked && client->checks_telemetry) {
+        icdgen_bus_fault(call, ICD_EVENT_UNCHECKED, event);
     } else {
-        icdgen_client_arrived(call, &event, ICD_EVENT_STRAY);
+        event->length = message->length;
+        icdgen_client_arrived(call, event, ICD_EVENT_STRAY);
     }
 }
 
@@ -3662,37 +3637,39 @@ static inline bool icdgen_uart_output(icd_client_t *client, uint8_t *buffer, siz
 }
 
 /* Process a message: id and data. */
-static inline void icdgen_uart_message(const icdgen_call_t *call, const uint8_t *message, size_t length)
+static inline void icdgen_uart_message(const icdgen_call_t *call, icd_event_t *event)
 {
     const icd_link_t *const link = call->client->link;
+    const uint8_t *const message = event->data;
+    const size_t length = event->length;
     const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
+    if (kind == ICD_UART_LOG) {
+        icdgen_bus_tell(call, ICD_EVENT_LOG, event);
+        return;
+    }
+    if (kind == ICD_UART_ACKNOWLEDGE) {
+        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, event);
+        return;
+    }
+    event->data++; /* without the id */
+    event->length--;
     if (kind == ICD_UART_REPLY) {
-        icdgen_bus_telemetry(call, message[0], message + 1, length - 1u);
-    } else if (kind == ICD_UART_ACKNOWLEDGE) {
-        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, message, length);
-    } else if (kind == ICD_UART_OTHER) {
-        icdgen_bus_stray(call, message[0], message + 1, length - 1u);
+        icdgen_bus_telemetry(call, event);
+    } else if (kind == ICD_UART_ARRIVED) {
+        event->id = icdgen_unsolicited(link, message, length)->telemetry;
+        event->link = link;
+        event->direction = ICD_TELEMETRY;
+        icdgen_bus_tell(call, ICD_EVENT_ARRIVED, event);
     } else {
-        icd_event_t event = icdgen_event_of(ICD_EVENT_LOG, message[0]);
-        event.data = message;
-        event.length = length;
-        if (kind == ICD_UART_ARRIVED) {
-            event.kind = ICD_EVENT_ARRIVED;
-            event.id = icdgen_unsolicited(link, message, length)->telemetry;
-            event.data = message + 1;
-            event.length = length - 1u;
-            event.link = link;
-            event.direction = ICD_TELEMETRY;
-        }
-        call->on_event(call->context, &event);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
     }
 }
 
-static inline void icdgen_on_uart(void *context, const icd_event_t *event)
+static inline void icdgen_on_uart(const void *context, icd_event_t *event)
 {
     const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
     if (event->kind == ICD_EVENT_MESSAGE) {
-        icdgen_uart_message(call, event->data, event->length);
+        icdgen_uart_message(call, event);
     } else {
         call->on_event(call->context, event);
     }
@@ -3700,8 +3677,8 @@ static inline void icdgen_on_uart(void *context, const icd_event_t *event)
 
 static inline void icdgen_uart_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
 {
-    icdgen_call_t copy = *call;
-    icd_uart_feed(&call->client->uart->decoder, bytes, count, icdgen_on_uart, &copy);
+    const icdgen_listener_t listener = {icdgen_on_uart, call};
+    icdgen_uart_feed(&call->client->uart->decoder, bytes, count, &listener);
 }
 
 ICDGEN_API icd_status_t icd_client_uart(
@@ -3737,11 +3714,10 @@ static inline icd_status_t icdgen_can_split(
         slot->data + 1, slot->length - 1u);
 }
 
-static inline icd_status_t icdgen_can_store(
-    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+static inline icd_status_t icdgen_can_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
     icd_can_splitter_t splitter;
-    const icd_status_t status = icdgen_bus_store(client, slot, data, length);
+    const icd_status_t status = icdgen_bus_store(client, slot, data);
     if (status != ICD_OK) {
         return status;
     }
@@ -3769,39 +3745,44 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
     return has_packet;
 }
 
-static inline void icdgen_on_can(void *context, const icd_event_t *event)
+static inline void icdgen_on_can(const void *context, icd_event_t *event)
 {
     const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
     const icd_can_kind_t kind = event->can_kind;
     if (event->kind != ICD_EVENT_MESSAGE) {
         call->on_event(call->context, event);
     } else if (event->source != call->client->link->can->node_address) {
-        icdgen_bus_stray(call, event->id, event->data, event->length);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
     } else if (kind == ICD_CAN_REPLY) {
-        icdgen_bus_telemetry(call, event->id, event->data, event->length);
-    } else if (kind == ICD_CAN_ACKNOWLEDGE) {
-        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, event->data - 1, event->length + 1u);
-    } else if (kind == ICD_CAN_REFUSAL) {
-        icdgen_bus_packet(call, ICDGEN_REFUSAL, event->data - 1, event->length + 1u);
-    } else if (kind == ICD_CAN_REQUEST_REFUSAL) {
-        icdgen_bus_packet(call, ICDGEN_REQUEST_REFUSAL, event->data - 1, event->length + 1u);
+        icdgen_bus_telemetry(call, event);
+    } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
+        event->data--; /* the id */
+        event->length++;
+        icdgen_bus_packet(
+            call,
+            kind == ICD_CAN_ACKNOWLEDGE   ? ICDGEN_ACKNOWLEDGE
+                : kind == ICD_CAN_REFUSAL ? ICDGEN_REFUSAL
+                                          : ICDGEN_REQUEST_REFUSAL,
+            event);
     } else {
-        icdgen_bus_stray(call, event->id, event->data, event->length);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
     }
 }
 
 static inline void icdgen_can_overdue(const icdgen_call_t *call, uint32_t now)
 {
-    icd_can_expire(&call->client->can->joiner, now, call->on_event, call->context);
+    const icdgen_listener_t listener = {icdgen_on_can, call};
+    icdgen_can_expire(&call->client->can->joiner, now, &listener);
 }
 
 ICDGEN_API void icd_client_packet(
     icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
 {
-    icdgen_call_t call = {client, on_event, context};
+    const icdgen_call_t call = {client, on_event, context};
+    const icdgen_listener_t listener = {icdgen_on_can, &call};
     icd_client_tick(client, now, on_event, context);
     if (client->can != NULL) {
-        icd_can_feed(&client->can->joiner, now, packet, icdgen_on_can, &call);
+        icdgen_can_feed(&client->can->joiner, now, packet, &listener);
     }
 }
 
@@ -3822,7 +3803,8 @@ ICDGEN_API icd_status_t icd_client_can(
     (void)memset(line, 0, sizeof *line);
     line->address = address;
     if (status == ICD_OK) {
-        status = icd_can_joiner_init(&line->joiner, link, address, &line->slot, 1, buffer, icdgen_receive_bytes(link));
+        status = icd_can_joiner_init(
+            &line->joiner, link, address, &line->slot, 1, buffer, ICDGEN_SIZE(link->received_bytes));
     }
     if (status == ICD_OK) {
         client->can = line;
@@ -3871,7 +3853,8 @@ ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes,
     if (slot == NULL || line->taken_count == ICDGEN_MOST_AWAITED) {
         return false;
     }
-    icd_transaction_t *const transaction = &line->taken[line->taken_count];
+    icd_transaction_t *const transaction =
+        &line->taken[(ICDGEN_U32(line->first) + line->taken_count) % ICDGEN_MOST_AWAITED];
     if (slot->is_polled) {
         line->poll_id = ICDGEN_U8(slot->awaited.exchange->poll->telemetry);
         *bytes = &line->poll_id;
@@ -3898,11 +3881,9 @@ static inline icd_transaction_t icdgen_i2c_untake(icd_i2c_line_t *line)
 {
     icd_transaction_t transaction = {0u, 0u, false};
     if (line->taken_count != 0u) {
-        transaction = line->taken[0];
+        transaction = line->taken[line->first];
+        line->first = ICDGEN_U8((ICDGEN_U32(line->first) + 1u) % ICDGEN_MOST_AWAITED);
         line->taken_count--;
-        for (size_t i = 0; i < line->taken_count; ++i) {
-            line->taken[i] = line->taken[i + 1u];
-        }
     }
     return transaction;
 }
@@ -3918,20 +3899,17 @@ static inline size_t icdgen_i2c_awaiting(const icd_client_t *client, uint16_t nu
 }
 
 /* Process telemetry that was read for a request. */
-static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, const icd_event_t *telemetry)
+static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, icd_event_t *event)
 {
     icd_slot_t *const slot = &call->client->slots[index];
     const icd_outcome_poll_t *const poll = slot->awaited.exchange->poll;
-    icd_event_t event = *telemetry;
-    const icd_response_t *const response = icdgen_matching(&slot->awaited, &event);
-    event.link = call->client->link;
-    event.direction = ICD_TELEMETRY;
+    const icd_response_t *const response = icdgen_matching(&slot->awaited, event);
     if (response == NULL ||
-        (poll != NULL && icdgen_stream_number(&poll->until, event.id, event.data, event.length) == 0u)) {
+        (poll != NULL && icdgen_stream_number(&poll->until, event->id, event->data, event->length) == 0u)) {
         (void)icdgen_unanswered(call, index);
     } else {
         slot->transaction = 0;
-        icdgen_responded(call, index, response, &event);
+        icdgen_responded(call, index, response, event);
     }
 }
 
@@ -3953,7 +3931,7 @@ ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     const icdgen_call_t call = {client, on_event, context};
-    icd_event_t event = icdgen_event(ICD_EVENT_STRAY);
+    icd_event_t event;
     icd_status_t status = ICD_OK;
     if (client->i2c == NULL) {
         return;
@@ -3962,20 +3940,24 @@ ICDGEN_API void icd_client_transferred(
     icd_client_tick(client, now, on_event, context); /* may end the request */
     size_t index = icdgen_i2c_awaiting(client, transaction.number);
     if (transaction.number == 0u) {
+        icdgen_event_init(&event, ICD_EVENT_STRAY);
         event.data = bytes;
         event.length = bytes != NULL ? count : 0u;
         on_event(context, &event);
         return;
     }
-    event = icdgen_event_of(ICD_EVENT_LATE, transaction.id);
+    icdgen_event_of(&event, ICD_EVENT_LATE, transaction.id);
     if (transaction.reads && bytes != NULL) {
         event.data = bytes;
-        event.link = client->link;
-        event.direction = ICD_TELEMETRY;
         status = icd_i2c_reply(client->link, transaction.id, bytes, count, client->checks_telemetry, &event.length);
+        if (status == ICD_OK) {
+            event.link = client->link;
+            event.direction = ICD_TELEMETRY;
+        }
     }
     if (status != ICD_OK) {
-        icdgen_bus_fault(&call, transaction.id, status);
+        const bool is_damaged = status == ICD_ERROR_CHECKSUM;
+        icdgen_bus_fault(&call, is_damaged ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH, &event);
         index = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
         if (index < client->started) {
             (void)icdgen_unanswered(&call, index);

@@ -14,7 +14,8 @@
  *
  * ICDGEN_SHARED     For programs of several source files: declare the functions only. Compile icdgen_wire.c and
  *                   NODE/link.c once and link them. Otherwise, each source file gets its own static copy.
- * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
+ * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC. With -Os, there are
+ *                   none unless ICDGEN_TABLES is defined.
  * ICDGEN_NO_FILES   Leave out procedures, such as the transfer of files. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
@@ -35,6 +36,9 @@
 #endif
 
 /* ---- description of the protocol of a node ----------------------------------------------------------------------- */
+
+/* Mask with the bit of an enumerator. */
+#define ICDGEN_BIT(member) (1u << ICDGEN_U32(member))
 
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
 
@@ -103,12 +107,20 @@ typedef struct {
     uint32_t code;
 } icd_error_code_t;
 
+/* A compiler that optimizes for size leaves out the lookup tables of CRCs. */
+#if defined(__OPTIMIZE_SIZE__) && !defined(ICDGEN_TABLES) && !defined(ICDGEN_NO_TABLES)
+#define ICDGEN_NO_TABLES
+#endif
+
 /* Lookup table of a CRC; NULL if tables are disabled. */
 #ifdef ICDGEN_NO_TABLES
 #define ICDGEN_TABLE(table) NULL
 #else
 #define ICDGEN_TABLE(table) (table)
 #endif
+
+/* Number of messages in a table, whose last row is not one. */
+#define ICDGEN_ROWS(table) ICDGEN_U16((sizeof(table) / sizeof((table)[0])) - 1u)
 
 /* Optional parts. A part that is left out is treated as if the ICD did not describe it. */
 #ifdef ICDGEN_NO_FILES
@@ -261,6 +273,8 @@ typedef struct {
     uint16_t mask_at;
     /** Offset of the selected frames. */
     uint16_t frames_at;
+    uint16_t mask_bytes; /**< Length of the mask. */
+    uint16_t slot_bytes; /**< Length of each frame. */
 } icd_log_message_form_t;
 
 /** A part of a packed time: value = raw * factor + offset. */
@@ -423,7 +437,7 @@ typedef enum {
 /**
  * Place of a number in a message: its id, as 4 bytes with the most significant first, followed by its data. The number
  * in the `size` bytes from byte `at` on is shifted right by `shift` and masked to `bits` bits. Bytes that the message
- * does not have are 0. `bits` is 0 if there is no number.
+ * does not have are 0.
  */
 typedef struct {
     uint32_t at;
@@ -435,7 +449,7 @@ typedef struct {
 
 /** A number of a response that repeats number `source` of the telecommand. */
 typedef struct {
-    icd_number_place_t place;
+    const icd_number_place_t *place; /**< Equal places of a link are the same object. */
     uint8_t source;
 } icd_echo_t;
 
@@ -445,18 +459,22 @@ typedef struct {
     icd_verdict_t verdict;
 } icd_meaning_t;
 
-/** Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. */
+/**
+ * Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. Places that the ICD
+ * does not have are NULL.
+ */
 typedef struct {
     uint32_t source;       /**< Id of the telemetry, or index of the packet. */
     icd_verdict_t verdict; /**< With a status: the meaning of all values that are not in `meanings`. */
     uint8_t echo_count;
-    bool is_packet; /**< The places in a packet count from 4 bytes before its first byte, as if the id stood there. */
+    bool is_packet;   /**< The places in a packet count from 4 bytes before its first byte, as if the id stood there. */
+    uint8_t verdicts; /**< All that it can mean, as a mask; bit n: verdict n of icd_verdict_t. */
     uint16_t meaning_count;
     const icd_echo_t *echoes;
     const icd_meaning_t *meanings;
-    icd_number_place_t status;
-    icd_number_place_t reason; /**< Reason of a refusal. */
-    icd_number_place_t detail; /**< A number that says more about a refusal. */
+    const icd_number_place_t *status;
+    const icd_number_place_t *reason; /**< Reason of a refusal. */
+    const icd_number_place_t *detail; /**< A number that says more about a refusal. */
 } icd_response_t;
 
 /** Telemetry that a client requests until it has the right echo and the number `until` is not 0. */
@@ -528,6 +546,32 @@ typedef struct {
     const icd_telemetry_request_t *request; /**< NULL if only telecommands request telemetry. */
     const icd_escaping_t *escaping;         /**< NULL unless escape characters delimit packets. */
 } icd_stream_form_t;
+
+/* Kinds of parts that the links of these nodes have, as masks. A compiler leaves out the code for other kinds. */
+/* clang-format off */
+
+/* Of icd_delimiter_t. */
+#define ICDGEN_DELIMITERS 0u
+
+/* Of icd_check_kind_t. */
+#define ICDGEN_CHECKS 0u
+
+/* Of icd_packet_content_t. */
+#define ICDGEN_CONTENTS 0u
+
+/* Of icd_envelope_role_t. */
+#define ICDGEN_ROLES 0u
+
+/* Flags of messages in packets. */
+#define ICDGEN_STREAM_FLAGS 0u
+
+/* Of icd_verdict_t. */
+#define ICDGEN_VERDICTS \
+    (ICDGEN_BIT(ICD_VERDICT_ACK) | \
+     ICDGEN_BIT(ICD_VERDICT_AGAIN) | \
+     ICDGEN_BIT(ICD_VERDICT_NAK) | \
+     ICDGEN_BIT(ICD_VERDICT_REPLY))
+/* clang-format on */
 
 /* ---- description of the procedures of a node --------------------------------------------------------------------- */
 
@@ -735,8 +779,9 @@ typedef struct {
     uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum; on framed links only of the data. */
     uint32_t longest_reply;
     uint32_t longest;
-    uint32_t longest_data; /**< Largest size in bytes, without id and checksum. */
-    int32_t node_type;     /**< -1 if the ICD has none. */
+    uint32_t longest_data;   /**< Largest size in bytes, without id and checksum. */
+    uint32_t received_bytes; /**< Buffer size in bytes of a client for what it receives. */
+    int32_t node_type;       /**< -1 if the ICD has none. */
     int32_t interface_version;
     icd_client_settings_t client;
     const icd_error_code_t *errors;
@@ -909,7 +954,7 @@ typedef struct {
     size_t capacity;
     size_t length;      /**< Bytes of the current message received so far. */
     size_t pending;     /**< Received bytes that may still become part of a message. */
-    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
+    uint32_t discarded; /**< Number of received bytes that are not part of a message. May wrap around. */
     bool inside;
     bool escaped;
 } icd_uart_decoder_t;
@@ -1051,7 +1096,7 @@ typedef struct {
     uint32_t *sequences;
     size_t sequence_count;
     size_t pending;     /**< Received bytes that may still become part of a message. */
-    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
+    uint32_t discarded; /**< Number of received bytes that are not part of a message. May wrap around. */
     bool escaped;
     bool inside;  /* escape characters: whether a packet has begun */
     bool zero;    /* COBS: whether a zero follows the block */
@@ -1459,7 +1504,8 @@ typedef struct {
     uint16_t last; /* number of the last transaction */
     uint8_t poll_id;
     uint8_t taken_count;
-    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* transactions without a result, the oldest first */
+    uint8_t first;                                /* index of the oldest transaction */
+    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* transactions without a result, in a ring */
 } icd_i2c_line_t;
 
 typedef struct icd_line icd_line_t; /* functions of the line */

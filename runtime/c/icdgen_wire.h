@@ -13,7 +13,8 @@
  *
  * ICDGEN_SHARED     For programs of several source files: declare the functions only. Compile icdgen_wire.c and
  *                   NODE/link.c once and link them. Otherwise, each source file gets its own static copy.
- * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
+ * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC. With -Os, there are
+ *                   none unless ICDGEN_TABLES is defined.
  * ICDGEN_NO_FILES   Leave out procedures, such as the transfer of files. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
@@ -30,6 +31,8 @@
 #include "wire/forms.h"
 
 #include "wire/stream_form.h"
+
+#include "wire/kinds.h"
 
 #include "wire/procedure_forms.h"
 

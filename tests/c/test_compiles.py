@@ -21,6 +21,7 @@ INHERENT = {
     "declaration-after-statement": "C99 has them, and values are constant from where they are known",
     "covered-switch-default": "what comes over a wire is in no enumeration; -Wswitch-default and MISRA 16.4 want the default",
     "unused-macros": "of a source that other sources include",
+    "unreachable-code": "for kinds of parts that no link of the program has; a compiler drops it",
 }
 """Warnings of clang that no C99 of this kind can be without, or that contradict others."""
 

@@ -194,17 +194,28 @@ def test_a_program_has_nothing_of_the_buses_that_it_does_not_begin(folder):
         and "icd_can_joiner_init" not in uart
     )
     assert "icd_can_split" in can and "icd_uart_decoder_init" not in can
+    for bus in BUSES:
+        tables = tables_of(linked(folder, bus))
+        others = {f"{other}_exchanges" for other in BUSES if other != bus}
+        assert f"{bus}_exchanges" in tables and not tables & others
+        assert not tables & {"crc16", "log_bits", "packed_time", "index_entry"}
+
+
+BUSES = ("uart", "i2c", "can")
+
+
+def tables_of(names):
+    """Of the names, those of tables of CubeACP, without its name."""
+    prefix = "icdgen_node_cubeacp_"
+    return {name.removeprefix(prefix) for name in names if name.startswith(prefix)}
 
 
 def test_a_program_without_tables_of_checksums_has_none(folder):
-    def with_tables(*options):
-        return {
-            name
-            for name in linked(folder, "uart", *options)
-            if "_table" in name and name.startswith("crc")
-        }
-
-    assert with_tables() and not with_tables("-DICDGEN_NO_TABLES")
+    """A program that is optimized for size has them if it asks for them."""
+    with_tables = tables_of(linked(folder, "uart", "-DICDGEN_TABLES"))
+    without = tables_of(linked(folder, "uart"))
+    at_all = tables_of(linked(folder, "uart", "-O1", "-DICDGEN_NO_TABLES"))
+    assert with_tables - without == {"crc8_table"} and "crc8_table" not in at_all
 
 
 CHOSEN = ("-DCUBEACP_CHOSEN", "-DCUBEACP_WITH_IDENTIFICATION")
@@ -225,8 +236,9 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
         done = subprocess.run(
             ["nm", "-S", folder / "client"], capture_output=True, text=True, check=True
         )
+        prefix = "icdgen_node_cubeacp_"
         sizes = {
-            line.split()[3].partition(".")[0]: int(line.split()[1], 16)
+            line.split()[3].removeprefix(prefix): int(line.split()[1], 16)
             for line in done.stdout.splitlines()
             if len(line.split()) == 4
         }
@@ -234,7 +246,7 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
             sizes["telecommands"] // 4 - 1,
             sizes["telemetry"] // 4 - 1,
         )  # the last one is none
-        rows.append((*ends, "log_bits" in sizes))
+        rows.append((*ends, "log_message" in sizes))
     link = links_of(describe(harness.shipped()))["cubeacp"]
     needed = [one.name for one in (*link.always_needed, *link.in_procedures)]
     few = [

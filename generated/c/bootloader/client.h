@@ -42,7 +42,7 @@ static inline icd_status_t bootloader_client_uart(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_uart(&client->client, bootloader_link(), &client->uart, slots, slot_count, buffer, size);
+    return icd_client_uart(&client->client, bootloader_uart_link(), &client->uart, slots, slot_count, buffer, size);
 }
 
 /**
@@ -57,7 +57,7 @@ static inline icd_status_t bootloader_client_i2c(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_i2c(&client->client, bootloader_link(), &client->i2c, slots, slot_count, buffer, size);
+    return icd_client_i2c(&client->client, bootloader_i2c_link(), &client->i2c, slots, slot_count, buffer, size);
 }
 
 /**
@@ -73,7 +73,15 @@ static inline icd_status_t bootloader_client_can(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_can(&client->client, bootloader_link(), &client->can, address, slots, slot_count, buffer, size);
+    return icd_client_can(
+        &client->client,
+        bootloader_can_link(),
+        &client->can,
+        address,
+        slots,
+        slot_count,
+        buffer,
+        size);
 }
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET)

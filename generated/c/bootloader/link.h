@@ -24,6 +24,15 @@
 /** Return the description of the protocol of Bootloader. */
 ICDGEN_API const icd_link_t *bootloader_link(void);
 
+/** Return the part of this description that a client on the UART needs. */
+ICDGEN_API const icd_link_t *bootloader_uart_link(void);
+
+/** Return the part of this description that a client on I2C needs. */
+ICDGEN_API const icd_link_t *bootloader_i2c_link(void);
+
+/** Return the part of this description that a client on CAN needs. */
+ICDGEN_API const icd_link_t *bootloader_can_link(void);
+
 /** Return the steps of the procedure `list`; NULL if procedures are left out. */
 ICDGEN_API const icd_procedure_form_t *bootloader_list_form(void);
 

@@ -74,7 +74,7 @@ static inline icd_status_t common_client_uart(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_uart(&client->client, common_link(), &client->uart, slots, slot_count, buffer, size);
+    return icd_client_uart(&client->client, common_uart_link(), &client->uart, slots, slot_count, buffer, size);
 }
 
 /**
@@ -89,7 +89,7 @@ static inline icd_status_t common_client_i2c(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_i2c(&client->client, common_link(), &client->i2c, slots, slot_count, buffer, size);
+    return icd_client_i2c(&client->client, common_i2c_link(), &client->i2c, slots, slot_count, buffer, size);
 }
 
 /**
@@ -105,7 +105,7 @@ static inline icd_status_t common_client_can(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_can(&client->client, common_link(), &client->can, address, slots, slot_count, buffer, size);
+    return icd_client_can(&client->client, common_can_link(), &client->can, address, slots, slot_count, buffer, size);
 }
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET)

@@ -11,433 +11,459 @@
 
 #include "link.h"
 
-ICDGEN_API const icd_link_t *common_link(void)
-{
-    /* clang-format off */
-    static const char *const nodes[] = {
-        "common",
-    };
-    static const icd_message_t telecommands[] = {
+static const icd_message_t icdgen_node_common_telecommands[] = {
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_RESET)
-        /*
-         * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
-         * one that comes is accepted.
-         */
-        {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
+    /*
+     * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
+     * one that comes is accepted.
+     */
+    {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_CURRENT_UNIX_TIME)
-        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
+    {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_CACHE_ENABLED_STATE)
-        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
+    {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_RESET_LOG_POINTER)
-        {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
+    {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_ADVANCE_LOG_POINTER)
-        {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
+    {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_RESET_BOOT_REGISTERS)
-        {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
+    {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
-        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
+    {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
-        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
+    {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_FORMAT_SD_CARD) || \
     !defined(ICDGEN_NO_FILES)
-        {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
+    {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_ERASE_FILE) || \
     !defined(ICDGEN_NO_FILES)
-        {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
+    {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_LOAD_FILE_DOWNLOAD_BLOCK) || \
     !defined(ICDGEN_NO_FILES)
-        {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
+    {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_ADVANCE_FILE_LIST_READ_POINTER) || \
     !defined(ICDGEN_NO_FILES)
-        {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
+    {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_INITIATE_FILE_UPLOAD)
-        {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
+    {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_FILE_UPLOAD_PACKET)
-        {115u, 0u, 22u}, /* File Upload Packet */
+    {115u, 0u, 22u}, /* File Upload Packet */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_FINALIZE_UPLOAD_BLOCK)
-        {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
+    {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_RESET_UPLOAD_BLOCK)
-        {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
+    {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_RESET_FILE_LIST_READ_POINTER) || \
     !defined(ICDGEN_NO_FILES)
-        {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
+    {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_INITIATE_DOWNLOAD_BURST) || \
     !defined(ICDGEN_NO_FILES)
-        {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
+    {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_1) || \
     !defined(ICDGEN_NO_FILES)
-        {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
+    {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_2) || \
     !defined(ICDGEN_NO_FILES)
-        {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
+    {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_3) || \
     !defined(ICDGEN_NO_FILES)
-        {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
+    {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_4) || \
     !defined(ICDGEN_NO_FILES)
-        {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
+    {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_5) || \
     !defined(ICDGEN_NO_FILES)
-        {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
+    {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_6) || \
     !defined(ICDGEN_NO_FILES)
-        {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
+    {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_7) || \
     !defined(ICDGEN_NO_FILES)
-        {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
+    {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_8) || \
     !defined(ICDGEN_NO_FILES)
-        {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
+    {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
 #endif
-        {0u, 0u, 0u}, /* the end */
-    };
-    static const icd_message_t telemetry[] = {
-        {128u, 0u, 8u}, /* Identification */
+    {0u, 0u, 0u}, /* the end */
+};
+static const icd_message_t icdgen_node_common_telemetry[] = {
+    {128u, 0u, 8u}, /* Identification */
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-        {129u, 0u, 6u}, /* Boot And Running Program Status */
+    {129u, 0u, 6u}, /* Boot And Running Program Status */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_BOOT_INDEX_AND_STATUS)
-        {130u, 0u, 2u}, /* Boot Index and Status */
+    {130u, 0u, 2u}, /* Boot Index and Status */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_CACHE_ENABLED_STATE)
-        {131u, 0u, 1u}, /* Cache enabled state */
+    {131u, 0u, 1u}, /* Cache enabled state */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
-        {134u, 0u, 2u}, /* SRAM Scrub Parameters */
+    {134u, 0u, 2u}, /* SRAM Scrub Parameters */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_CURRENT_UNIX_TIME)
-        {140u, 0u, 6u}, /* Current Unix Time */
+    {140u, 0u, 6u}, /* Current Unix Time */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_LAST_LOGGED_EVENT)
-        {141u, 0u, 6u}, /* Last Logged Event */
+    {141u, 0u, 6u}, /* Last Logged Event */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_SRAM_LATCHUP_COUNTERS)
-        {142u, 0u, 6u}, /* SRAM Latchup counters */
+    {142u, 0u, 6u}, /* SRAM Latchup counters */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_EDAC_ERROR_COUNTERS)
-        {143u, 0u, 6u}, /* EDAC Error Counters */
+    {143u, 0u, 6u}, /* EDAC Error Counters */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_COMMUNICATION_STATUS)
-        {144u, 0u, 6u}, /* Communication Status */
+    {144u, 0u, 6u}, /* Communication Status */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
-        {145u, 0u, 2u}, /* Unix Time Save to Flash */
+    {145u, 0u, 2u}, /* Unix Time Save to Flash */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_SD_CARD_FORMAT_ERASE_PROGRESS) || \
     !defined(ICDGEN_NO_FILES)
-        {234u, 0u, 1u}, /* SD card format/erase progress */
+    {234u, 0u, 1u}, /* SD card format/erase progress */
 #endif
-        {240u, 0u, 4u}, /* Telecommand Acknowledge */
+    {240u, 0u, 4u}, /* Telecommand Acknowledge */
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || \
     !defined(ICDGEN_NO_FILES)
-        {241u, 0u, 22u}, /* File Download Buffer with File Contents */
+    {241u, 0u, 22u}, /* File Download Buffer with File Contents */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_DOWNLOAD_BLOCK_READY) || \
     !defined(ICDGEN_NO_FILES)
-        {242u, 0u, 5u}, /* Download Block Ready */
+    {242u, 0u, 5u}, /* Download Block Ready */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_FILE_INFORMATION) || \
     !defined(ICDGEN_NO_FILES)
-        {243u, 0u, 12u}, /* File Information */
+    {243u, 0u, 12u}, /* File Information */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_INITIALIZE_UPLOAD_COMPLETE)
-        {244u, 0u, 1u}, /* Initialize Upload Complete */
+    {244u, 0u, 1u}, /* Initialize Upload Complete */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_UPLOAD_BLOCK_COMPLETE)
-        {245u, 0u, 1u}, /* Upload Block Complete */
+    {245u, 0u, 1u}, /* Upload Block Complete */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_BLOCK_CHECKSUM)
-        {246u, 0u, 2u}, /* Block Checksum */
+    {246u, 0u, 2u}, /* Block Checksum */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_1) || \
     !defined(ICDGEN_NO_FILES)
-        {247u, 0u, 16u}, /* Hole Map 1 */
+    {247u, 0u, 16u}, /* Hole Map 1 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_2) || \
     !defined(ICDGEN_NO_FILES)
-        {248u, 0u, 16u}, /* Hole Map 2 */
+    {248u, 0u, 16u}, /* Hole Map 2 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_3) || \
     !defined(ICDGEN_NO_FILES)
-        {249u, 0u, 16u}, /* Hole Map 3 */
+    {249u, 0u, 16u}, /* Hole Map 3 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_4) || \
     !defined(ICDGEN_NO_FILES)
-        {250u, 0u, 16u}, /* Hole Map 4 */
+    {250u, 0u, 16u}, /* Hole Map 4 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_5) || \
     !defined(ICDGEN_NO_FILES)
-        {251u, 0u, 16u}, /* Hole Map 5 */
+    {251u, 0u, 16u}, /* Hole Map 5 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_6) || \
     !defined(ICDGEN_NO_FILES)
-        {252u, 0u, 16u}, /* Hole Map 6 */
+    {252u, 0u, 16u}, /* Hole Map 6 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_7) || \
     !defined(ICDGEN_NO_FILES)
-        {253u, 0u, 16u}, /* Hole Map 7 */
+    {253u, 0u, 16u}, /* Hole Map 7 */
 #endif
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_HOLE_MAP_8) || \
     !defined(ICDGEN_NO_FILES)
-        {254u, 0u, 16u}, /* Hole Map 8 */
+    {254u, 0u, 16u}, /* Hole Map 8 */
 #endif
-        {0u, 0u, 0u}, /* the end */
-    };
-    static const icd_error_code_t errors[] = {
-        {ICD_REASON_NONE, 0u},
-        {ICD_REASON_UNKNOWN_ID, 1u},
-        {ICD_REASON_LENGTH, 2u},
-        {ICD_REASON_PARAMETER, 3u},
-        {ICD_REASON_CHECKSUM, 4u},
-    };
-    /**
-     * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
-     * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
-     */
-    static const icd_framing_t framing = {
-        0x1fu, /* escape */
-        0x7fu, /* start */
-        0xffu, /* end */
-        0x1fu, /* escaped */
-        true, /* escapes_id */
-        false, /* ignores_other */
-    };
-    /**
-     * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
-     * that no other id heads the message, stood in a figure.
-     */
-    static const icd_acknowledge_t acknowledge = {
-        2u, /* length */
-        0u, /* id_at */
-        1u, /* error_at */
-    };
-    static const icd_unsolicited_t unsolicited[] = {
-        {119u, 241u, 22u}, /* File Download Buffer with File Contents */
-    };
-    /**
-     * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
-     * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
-     */
-    static const icd_can_extended_t can_extended = {
-        7u, /* data_bytes */
-        7u, /* left_at */
-        0u, /* left_in_last */
-        256u, /* packets */
-        1792u, /* bytes */
-        0x00u, /* fill */
-        1000u, /* packet_timeout in ms */
-    };
-    static const icd_can_form_t can = {
-        0x01u, /* node_address */
-        8u, /* data_bytes */
-        {5u, 24u}, /* type: bits, shift */
-        {8u, 16u}, /* channel: bits, shift */
-        {8u, 8u}, /* source: bits, shift */
-        {8u, 0u}, /* destination: bits, shift */
-        {1, 2, 3, 4, 5, 6}, /* types */
-        {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        &can_extended, /* messages of several packets */
-    };
+    {0u, 0u, 0u}, /* the end */
+};
+static const char *const icdgen_node_common_nodes[] = {
+    "common",
+};
+static const icd_error_code_t icdgen_node_common_errors[] = {
+    {ICD_REASON_NONE, 0u},
+    {ICD_REASON_UNKNOWN_ID, 1u},
+    {ICD_REASON_LENGTH, 2u},
+    {ICD_REASON_PARAMETER, 3u},
+    {ICD_REASON_CHECKSUM, 4u},
+};
+/**
+ * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+ * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
+ */
+static const icd_framing_t icdgen_node_common_framing = {
+    0x1fu, /* escape */
+    0x7fu, /* start */
+    0xffu, /* end */
+    0x1fu, /* escaped */
+    true, /* escapes_id */
+    false, /* ignores_other */
+};
+/**
+ * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
+ * that no other id heads the message, stood in a figure.
+ */
+static const icd_acknowledge_t icdgen_node_common_acknowledge = {
+    2u, /* length */
+    0u, /* id_at */
+    1u, /* error_at */
+};
+static const icd_unsolicited_t icdgen_node_common_unsolicited[] = {
+    {119u, 241u, 22u}, /* File Download Buffer with File Contents */
+};
+/**
+ * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
+ * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
+ */
+static const icd_can_extended_t icdgen_node_common_can_extended = {
+    7u, /* data_bytes */
+    7u, /* left_at */
+    0u, /* left_in_last */
+    256u, /* packets */
+    1792u, /* bytes */
+    0x00u, /* fill */
+    1000u, /* packet_timeout in ms */
+};
+static const icd_can_form_t icdgen_node_common_can = {
+    0x01u, /* node_address */
+    8u, /* data_bytes */
+    {5u, 24u}, /* type: bits, shift */
+    {8u, 16u}, /* channel: bits, shift */
+    {8u, 8u}, /* source: bits, shift */
+    {8u, 0u}, /* destination: bits, shift */
+    {1, 2, 3, 4, 5, 6}, /* types */
+    {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
+    &icdgen_node_common_can_extended, /* messages of several packets */
+};
 #ifndef ICDGEN_NO_TABLES
-    static const uint16_t crc16_table[] = {
-        0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
-        0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
-        0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
-        0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu,
-        0x2462u, 0x3443u, 0x0420u, 0x1401u, 0x64e6u, 0x74c7u, 0x44a4u, 0x5485u,
-        0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
-        0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u,
-        0xb75bu, 0xa77au, 0x9719u, 0x8738u, 0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu,
-        0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
-        0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu,
-        0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u, 0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u,
-        0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
-        0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u,
-        0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu, 0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u,
-        0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
-        0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u,
-        0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu, 0xd10cu, 0xc12du, 0xf14eu, 0xe16fu,
-        0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
-        0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu,
-        0x02b1u, 0x1290u, 0x22f3u, 0x32d2u, 0x4235u, 0x5214u, 0x6277u, 0x7256u,
-        0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
-        0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u,
-        0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u, 0xe75fu, 0xf77eu, 0xc71du, 0xd73cu,
-        0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
-        0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu,
-        0x5844u, 0x4865u, 0x7806u, 0x6827u, 0x18c0u, 0x08e1u, 0x3882u, 0x28a3u,
-        0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
-        0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u,
-        0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du, 0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u,
-        0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
-        0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
-        0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
-    };
+static const uint16_t icdgen_node_common_crc16_table[] = {
+    0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
+    0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
+    0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
+    0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu,
+    0x2462u, 0x3443u, 0x0420u, 0x1401u, 0x64e6u, 0x74c7u, 0x44a4u, 0x5485u,
+    0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
+    0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u,
+    0xb75bu, 0xa77au, 0x9719u, 0x8738u, 0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu,
+    0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
+    0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu,
+    0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u, 0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u,
+    0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
+    0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u,
+    0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu, 0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u,
+    0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
+    0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u,
+    0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu, 0xd10cu, 0xc12du, 0xf14eu, 0xe16fu,
+    0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
+    0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu,
+    0x02b1u, 0x1290u, 0x22f3u, 0x32d2u, 0x4235u, 0x5214u, 0x6277u, 0x7256u,
+    0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
+    0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u,
+    0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u, 0xe75fu, 0xf77eu, 0xc71du, 0xd73cu,
+    0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
+    0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu,
+    0x5844u, 0x4865u, 0x7806u, 0x6827u, 0x18c0u, 0x08e1u, 0x3882u, 0x28a3u,
+    0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
+    0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u,
+    0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du, 0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u,
+    0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
+    0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
+    0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
+};
 #endif
-    static const icd_crc_form_t crc16 = {
-        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, NULL, ICDGEN_TABLE(crc16_table),
-    };
+static const icd_crc_form_t icdgen_node_common_crc16 = {
+    /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
+    16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, NULL, ICDGEN_TABLE(icdgen_node_common_crc16_table),
+};
 #ifndef ICDGEN_NO_FILES
-    static const icd_time_form_t packed_time = {
-        {25u, 7u, 1u, 1980u}, /* year */
-        {21u, 4u, 1u, 0u}, /* month */
-        {16u, 5u, 1u, 0u}, /* day */
-        {11u, 5u, 1u, 0u}, /* hour */
-        {5u, 6u, 1u, 0u}, /* minute */
-        {0u, 5u, 2u, 0u}, /* second */
-    };
+static const icd_time_form_t icdgen_node_common_packed_time = {
+    {25u, 7u, 1u, 1980u}, /* year */
+    {21u, 4u, 1u, 0u}, /* month */
+    {16u, 5u, 1u, 0u}, /* day */
+    {11u, 5u, 1u, 0u}, /* hour */
+    {5u, 6u, 1u, 0u}, /* minute */
+    {0u, 5u, 2u, 0u}, /* second */
+};
 #endif
 #ifndef ICDGEN_NO_FILES
-    static const icd_index_form_t index_entry = {
-        37u, /* entry_bytes */
-        15, /* file_type */
-        {0u, 1u}, /* type */
-        {1u, 1u}, /* counter */
-        {2u, 2u}, /* checksum */
-        {4u, 4u}, /* size */
-        {8u, 4u}, /* time */
-        {12u, 25u}, /* meta */
-    };
+static const icd_index_form_t icdgen_node_common_index_entry = {
+    37u, /* entry_bytes */
+    15, /* file_type */
+    {0u, 1u}, /* type */
+    {1u, 1u}, /* counter */
+    {2u, 2u}, /* checksum */
+    {4u, 4u}, /* size */
+    {8u, 4u}, /* time */
+    {12u, 25u}, /* meta */
+};
 #endif
-    static const icd_place_t identification_places[] = {
-        {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
-        {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
-    };
-    static const icd_report_t identification = {
-        -1, 128, 8u, 2u, identification_places,
-    };
-    static const icd_number_place_t sources_0[] = {
-        {0u, 4u, 0u, 32u, false},
-    };
-    static const icd_echo_t echoes_0[] = {
-        {{4u, 1u, 0u, 8u, false}, 0u},
-    };
-    static const icd_meaning_t meanings_0[] = {
-        {0x0u, ICD_VERDICT_ACK},
-        {0x4u, ICD_VERDICT_AGAIN},
-    };
-    static const icd_response_t responses_0[] = {
-        {0x0u, ICD_VERDICT_NAK, 1u, true, 2u, echoes_0, meanings_0,
-            {5u, 1u, 0u, 8u, false}, {5u, 1u, 0u, 8u, false}, {0u, 0u, 0u, 0u, false}},
-    };
-    static const icd_exchange_t uart_exchanges[] = {
-        {sources_0, NULL, 1u, 0u, 0u, true, 0u, NULL},
-        {sources_0, responses_0, 1u, 0u, 1u, false, 0u, NULL},
-    };
-    static const icd_bus_exchanges_t on_uart = {
-        &uart_exchanges[1], &uart_exchanges[0],
-    };
-    static const icd_echo_t echoes_1[] = {
-        {{4u, 1u, 0u, 8u, true}, 0u},
-    };
-    static const icd_response_t responses_1[] = {
-        {0xf0u, ICD_VERDICT_NAK, 1u, false, 2u, echoes_1, meanings_0,
-            {6u, 1u, 0u, 8u, true}, {6u, 1u, 0u, 8u, true}, {7u, 1u, 0u, 8u, true}},
-    };
-    static const icd_outcome_poll_t outcome_poll = {
-        240u, {5u, 1u, 0u, 1u, true},
-    };
-    static const icd_exchange_t i2c_exchanges[] = {
-        {sources_0, NULL, 1u, 0u, 0u, true, 0u, NULL},
-        {sources_0, responses_1, 1u, 0u, 1u, false, 0u, &outcome_poll},
-    };
-    static const icd_bus_exchanges_t on_i2c = {
-        &i2c_exchanges[1], &i2c_exchanges[0],
-    };
-    static const icd_response_t responses_2[] = {
-        {0x2u, ICD_VERDICT_NAK, 1u, true, 0u, echoes_0, NULL,
-            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
-    };
-    static const icd_response_t responses_3[] = {
-        {0x0u, ICD_VERDICT_ACK, 1u, true, 0u, echoes_0, NULL,
-            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
-        {0x1u, ICD_VERDICT_NAK, 1u, true, 0u, echoes_0, NULL,
-            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
-    };
-    static const icd_exchange_t can_exchanges[] = {
-        {sources_0, responses_2, 1u, 0u, 1u, true, 0u, NULL},
-        {sources_0, responses_3, 1u, 0u, 2u, false, 0u, NULL},
-    };
-    static const icd_bus_exchanges_t on_can = {
-        &can_exchanges[1], &can_exchanges[0],
-    };
+static const icd_place_t icdgen_node_common_identification_places[] = {
+    {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
+    {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
+};
+static const icd_report_t icdgen_node_common_identification = {
+    -1, 128, 8u, 2u, icdgen_node_common_identification_places,
+};
+static const icd_number_place_t icdgen_node_common_sources_0[] = {
+    {0u, 4u, 0u, 32u, false},
+};
+static const icd_number_place_t icdgen_node_common_place_0[] = {
+    {4u, 1u, 0u, 8u, false},
+};
+static const icd_echo_t icdgen_node_common_echoes_0[] = {
+    {icdgen_node_common_place_0, 0u},
+};
+static const icd_meaning_t icdgen_node_common_meanings_0[] = {
+    {0x0u, ICD_VERDICT_ACK},
+    {0x4u, ICD_VERDICT_AGAIN},
+};
+static const icd_number_place_t icdgen_node_common_place_1[] = {
+    {5u, 1u, 0u, 8u, false},
+};
+static const icd_response_t icdgen_node_common_responses_0[] = {
+    {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
+        icdgen_node_common_echoes_0, icdgen_node_common_meanings_0,
+        icdgen_node_common_place_1, icdgen_node_common_place_1, NULL},
+};
+static const icd_exchange_t icdgen_node_common_uart_exchanges[] = {
+    {icdgen_node_common_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_0,
+        1u, 0u, 1u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_common_on_uart = {
+    &icdgen_node_common_uart_exchanges[1], &icdgen_node_common_uart_exchanges[0],
+};
+static const icd_number_place_t icdgen_node_common_place_2[] = {
+    {4u, 1u, 0u, 8u, true},
+};
+static const icd_echo_t icdgen_node_common_echoes_1[] = {
+    {icdgen_node_common_place_2, 0u},
+};
+static const icd_number_place_t icdgen_node_common_place_3[] = {
+    {6u, 1u, 0u, 8u, true},
+};
+static const icd_number_place_t icdgen_node_common_place_4[] = {
+    {7u, 1u, 0u, 8u, true},
+};
+static const icd_response_t icdgen_node_common_responses_1[] = {
+    {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
+        icdgen_node_common_echoes_1, icdgen_node_common_meanings_0,
+        icdgen_node_common_place_3, icdgen_node_common_place_3, icdgen_node_common_place_4},
+};
+static const icd_outcome_poll_t icdgen_node_common_outcome_poll = {
+    240u, {5u, 1u, 0u, 1u, true},
+};
+static const icd_exchange_t icdgen_node_common_i2c_exchanges[] = {
+    {icdgen_node_common_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_1,
+        1u, 0u, 1u, false, 0u, &icdgen_node_common_outcome_poll},
+};
+static const icd_bus_exchanges_t icdgen_node_common_on_i2c = {
+    &icdgen_node_common_i2c_exchanges[1], &icdgen_node_common_i2c_exchanges[0],
+};
+static const icd_response_t icdgen_node_common_responses_2[] = {
+    {0x2u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_common_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_response_t icdgen_node_common_responses_3[] = {
+    {0x0u, ICD_VERDICT_ACK, 1u, true, 0x1u, 0u,
+        icdgen_node_common_echoes_0, NULL,
+        NULL, NULL, NULL},
+    {0x1u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_common_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_exchange_t icdgen_node_common_can_exchanges[] = {
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_2,
+        1u, 0u, 1u, true, 0u, NULL},
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_3,
+        1u, 0u, 2u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_common_on_can = {
+    &icdgen_node_common_can_exchanges[1], &icdgen_node_common_can_exchanges[0],
+};
+
+ICDGEN_API const icd_link_t *common_link(void)
+{
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
@@ -446,41 +472,172 @@ ICDGEN_API const icd_link_t *common_link(void)
      * attempts before the third, and at that value no start is said to follow.
      */
     static const icd_link_t link = {
-        nodes, /* whose messages */
+        icdgen_node_common_nodes, /* whose messages */
         1u, /* how many */
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        telecommands, /* what can be sent */
-        telemetry, /* what can be requested */
-        ICDGEN_U16((sizeof(telecommands) / sizeof(telecommands[0])) - 1u), /* how many can be sent */
-        ICDGEN_U16((sizeof(telemetry) / sizeof(telemetry[0])) - 1u), /* how many can be requested */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
+        29u, /* buffer for what is received */
         -1, /* node type */
         -1, /* interface version */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        errors, /* error codes */
+        icdgen_node_common_errors, /* error codes */
         5u, 0u, /* how many; no error */
-        &framing, /* framing of the UART */
-        &acknowledge, /* acknowledges on the UART */
-        unsolicited, 1u, /* unsolicited */
+        &icdgen_node_common_framing, /* framing of the UART */
+        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
+        icdgen_node_common_unsolicited, 1u, /* unsolicited */
         87, /* I2C address */
         true, /* I2C: a read may follow its write without a stop */
         5000, /* boot time in ms */
-        &can, /* CAN */
+        &icdgen_node_common_can, /* CAN */
         NULL, /* checksums of messages */
-        &crc16, /* CRC of files */
+        &icdgen_node_common_crc16, /* CRC of files */
         NULL, /* mask of logs */
         NULL, /* log files */
         NULL, /* unsolicited logs */
-        ICDGEN_OF_FILES(&packed_time), /* packed times */
-        ICDGEN_OF_FILES(&index_entry), /* index of files */
-        &identification, /* identification */
-        {&on_uart, &on_i2c, &on_can}, /* exchanges on UART, I2C, CAN */
+        ICDGEN_OF_FILES(&icdgen_node_common_packed_time), /* packed times */
+        ICDGEN_OF_FILES(&icdgen_node_common_index_entry), /* index of files */
+        &icdgen_node_common_identification, /* identification */
+        {&icdgen_node_common_on_uart,
+            &icdgen_node_common_on_i2c,
+            &icdgen_node_common_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* framing */
     };
-    /* clang-format on */
+    return &link;
+}
+
+ICDGEN_API const icd_link_t *common_uart_link(void)
+{
+    static const icd_link_t link = {
+        icdgen_node_common_nodes, /* whose messages */
+        1u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        23u, 23u, 23u, /* longest telecommand, reply, any */
+        22u, /* longest without id and checksum */
+        29u, /* buffer for what is received */
+        -1, /* node type */
+        -1, /* interface version */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        icdgen_node_common_errors, /* error codes */
+        5u, 0u, /* how many; no error */
+        &icdgen_node_common_framing, /* framing of the UART */
+        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
+        icdgen_node_common_unsolicited, 1u, /* unsolicited */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* CAN */
+        NULL, /* checksums of messages */
+        NULL, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
+        {&icdgen_node_common_on_uart,
+            NULL,
+            NULL}, /* exchanges on UART, I2C, CAN */
+        NULL, /* framing */
+    };
+    return &link;
+}
+
+ICDGEN_API const icd_link_t *common_i2c_link(void)
+{
+    static const icd_link_t link = {
+        icdgen_node_common_nodes, /* whose messages */
+        1u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        23u, 23u, 23u, /* longest telecommand, reply, any */
+        22u, /* longest without id and checksum */
+        29u, /* buffer for what is received */
+        -1, /* node type */
+        -1, /* interface version */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        icdgen_node_common_errors, /* error codes */
+        5u, 0u, /* how many; no error */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, 0u, /* unsolicited */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* CAN */
+        NULL, /* checksums of messages */
+        NULL, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
+        {NULL,
+            &icdgen_node_common_on_i2c,
+            NULL}, /* exchanges on UART, I2C, CAN */
+        NULL, /* framing */
+    };
+    return &link;
+}
+
+ICDGEN_API const icd_link_t *common_can_link(void)
+{
+    static const icd_link_t link = {
+        icdgen_node_common_nodes, /* whose messages */
+        1u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        23u, 23u, 23u, /* longest telecommand, reply, any */
+        22u, /* longest without id and checksum */
+        29u, /* buffer for what is received */
+        -1, /* node type */
+        -1, /* interface version */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        NULL, /* error codes */
+        0u, 0u, /* how many; no error */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, 0u, /* unsolicited */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        &icdgen_node_common_can, /* CAN */
+        NULL, /* checksums of messages */
+        NULL, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
+        {NULL,
+            NULL,
+            &icdgen_node_common_on_can}, /* exchanges on UART, I2C, CAN */
+        NULL, /* framing */
+    };
     return &link;
 }
 

@@ -24,6 +24,15 @@
 /** Return the description of the protocol of Common messages. */
 ICDGEN_API const icd_link_t *common_link(void);
 
+/** Return the part of this description that a client on the UART needs. */
+ICDGEN_API const icd_link_t *common_uart_link(void);
+
+/** Return the part of this description that a client on I2C needs. */
+ICDGEN_API const icd_link_t *common_i2c_link(void);
+
+/** Return the part of this description that a client on CAN needs. */
+ICDGEN_API const icd_link_t *common_can_link(void);
+
 /** Return the steps of the procedure `list`; NULL if procedures are left out. */
 ICDGEN_API const icd_procedure_form_t *common_list_form(void);
 

@@ -149,7 +149,7 @@ static inline icd_status_t cubeacp_client_uart(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_uart(&client->client, cubeacp_link(), &client->uart, slots, slot_count, buffer, size);
+    return icd_client_uart(&client->client, cubeacp_uart_link(), &client->uart, slots, slot_count, buffer, size);
 }
 
 /**
@@ -164,7 +164,7 @@ static inline icd_status_t cubeacp_client_i2c(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_i2c(&client->client, cubeacp_link(), &client->i2c, slots, slot_count, buffer, size);
+    return icd_client_i2c(&client->client, cubeacp_i2c_link(), &client->i2c, slots, slot_count, buffer, size);
 }
 
 /**
@@ -180,7 +180,7 @@ static inline icd_status_t cubeacp_client_can(
     uint8_t *buffer,
     size_t size)
 {
-    return icd_client_can(&client->client, cubeacp_link(), &client->can, address, slots, slot_count, buffer, size);
+    return icd_client_can(&client->client, cubeacp_can_link(), &client->can, address, slots, slot_count, buffer, size);
 }
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET)

@@ -11,1170 +11,1197 @@
 
 #include "link.h"
 
-ICDGEN_API const icd_link_t *cubeacp_link(void)
-{
-    /* clang-format off */
-    static const char *const nodes[] = {
-        "cubeacp",
-        "common",
-    };
-    static const icd_message_t telecommands[] = {
+static const icd_message_t icdgen_node_cubeacp_telecommands[] = {
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RESET)
-        /*
-         * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
-         * one that comes is accepted.
-         */
-        {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
+    /*
+     * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
+     * one that comes is accepted.
+     */
+    {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
-        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
+    {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
-        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
+    {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RESET_LOG_POINTER)
-        {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
+    {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADVANCE_LOG_POINTER)
-        {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
+    {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RESET_BOOT_REGISTERS)
-        {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
+    {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_DEPLOY_MAGNETOMETER_BOOM)
-        {7u, ICD_ACKNOWLEDGED, 1u}, /* Deploy Magnetometer Boom */
+    {7u, ICD_ACKNOWLEDGED, 1u}, /* Deploy Magnetometer Boom */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
-        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
+    {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
-        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
+    {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_ADCS_RUN_MODE)
-        {10u, ICD_ACKNOWLEDGED, 1u}, /* ADCS Run Mode */
+    {10u, ICD_ACKNOWLEDGED, 1u}, /* ADCS Run Mode */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
-        {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* ADCS Power Control */
+    {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* ADCS Power Control */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CLEAR_ERRORS)
-        {12u, ICD_ACKNOWLEDGED, 1u}, /* Clear Errors */
+    {12u, ICD_ACKNOWLEDGED, 1u}, /* Clear Errors */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_ATTITUDE_CONTROL_MODE)
-        {13u, ICD_ACKNOWLEDGED, 3u}, /* Set Attitude Control Mode */
+    {13u, ICD_ACKNOWLEDGED, 3u}, /* Set Attitude Control Mode */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_ATTITUDE_ESTIMATION_MODE)
-        {14u, ICD_ACKNOWLEDGED, 1u}, /* Set Attitude Estimation Mode */
+    {14u, ICD_ACKNOWLEDGED, 1u}, /* Set Attitude Estimation Mode */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
-        {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Commanded Attitude Angles */
+    {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Commanded Attitude Angles */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_MAGNETORQUER_OUTPUT)
-        {16u, ICD_ACKNOWLEDGED, 6u}, /* Set Magnetorquer Output */
+    {16u, ICD_ACKNOWLEDGED, 6u}, /* Set Magnetorquer Output */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_WHEEL_SPEED)
-        {17u, ICD_ACKNOWLEDGED, 6u}, /* Set Wheel Speed */
+    {17u, ICD_ACKNOWLEDGED, 6u}, /* Set Wheel Speed */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_TRIGGER_ADCS_LOOP)
-        {18u, ICD_ACKNOWLEDGED, 0u}, /* Trigger ADCS Loop */
+    {18u, ICD_ACKNOWLEDGED, 0u}, /* Trigger ADCS Loop */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_TRIGGER_SIMULATED_LOOP)
-        {19u, ICD_ACKNOWLEDGED, 127u}, /* Trigger ADCS Loop with Simulated Sensor Data */
+    {19u, ICD_ACKNOWLEDGED, 127u}, /* Trigger ADCS Loop with Simulated Sensor Data */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_CONFIGURATION)
-        {20u, ICD_ACKNOWLEDGED | ICD_SETTING, 504u}, /* ADCS Configuration */
+    {20u, ICD_ACKNOWLEDGED | ICD_SETTING, 504u}, /* ADCS Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
-        {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* Set Magnetorquer Configuration */
+    {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* Set Magnetorquer Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
-        {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u}, /* Set Wheel Configuration */
+    {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u}, /* Set Wheel Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
-        {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u}, /* Set Rate Gyro Configuration */
+    {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u}, /* Set Rate Gyro Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CSS_CONFIGURATION)
-        {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u}, /* CSS Configuration */
+    {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u}, /* CSS Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
-        {25u, ICD_ACKNOWLEDGED | ICD_SETTING, 112u}, /* CubeSense Configuration */
+    {25u, ICD_ACKNOWLEDGED | ICD_SETTING, 112u}, /* CubeSense Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
-        {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Magnetometer Configuration */
+    {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Magnetometer Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
-        {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u}, /* Estimation Parameters */
+    {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u}, /* Estimation Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
-        {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Augmented-SGP4 Parameters */
+    {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Augmented-SGP4 Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
-        {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u}, /* User-coded Controller and Estimator Parameters */
+    {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u}, /* User-coded Controller and Estimator Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
-        {30u, ICD_ACKNOWLEDGED | ICD_SETTING, 173u}, /* ADCS System Configuration */
+    {30u, ICD_ACKNOWLEDGED | ICD_SETTING, 173u}, /* ADCS System Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ASGP4_RUN_MODE)
-        {31u, ICD_ACKNOWLEDGED, 1u}, /* ASGP4 Run Mode */
+    {31u, ICD_ACKNOWLEDGED, 1u}, /* ASGP4 Run Mode */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ASGP4_TRIGGER)
-        {32u, ICD_ACKNOWLEDGED, 0u}, /* ASGP4 Trigger */
+    {32u, ICD_ACKNOWLEDGED, 0u}, /* ASGP4 Trigger */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FORMAT_SD_CARD) || \
     !defined(ICDGEN_NO_FILES)
-        {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
+    {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
-        {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Inertial Pointing Reference Vector */
+    {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Inertial Pointing Reference Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
-        {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Redundant Magnetometer Configuration */
+    {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Redundant Magnetometer Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
-        {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u}, /* Set Star Tracker Configuration */
+    {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u}, /* Set Star Tracker Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
-        {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u}, /* Set Detumbling Control Parameters */
+    {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u}, /* Set Detumbling Control Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
-        {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u}, /* Set Y-Wheel Control Parameters */
+    {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u}, /* Set Y-Wheel Control Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
-        {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Reaction Wheel Control Parameters */
+    {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Reaction Wheel Control Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
-        {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u}, /* Moment of Inertia Matrix */
+    {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u}, /* Moment of Inertia Matrix */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
-        {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u}, /* SGP4 Orbit Parameters */
+    {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u}, /* SGP4 Orbit Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
-        {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Tracking Controller Gain Parameters */
+    {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Tracking Controller Gain Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
-        {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* Tracking Controller Target Reference */
+    {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* Tracking Controller Target Reference */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_MODE_OF_MAGNETOMETER_OPERATION)
-        {56u, ICD_ACKNOWLEDGED, 1u}, /* Set Mode of Magnetometer Operation */
+    {56u, ICD_ACKNOWLEDGED, 1u}, /* Set Mode of Magnetometer Operation */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CONVERT_TO_JPG_FILE)
-        {57u, ICD_ACKNOWLEDGED, 3u}, /* Convert to JPG file */
+    {57u, ICD_ACKNOWLEDGED, 3u}, /* Convert to JPG file */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SAVE_CONFIGURATION)
-        {63u, ICD_ACKNOWLEDGED, 0u}, /* Save Configuration */
+    {63u, ICD_ACKNOWLEDGED, 0u}, /* Save Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SAVE_ORBIT_PARAMETERS)
-        {64u, ICD_ACKNOWLEDGED, 0u}, /* Save Orbit Parameters */
+    {64u, ICD_ACKNOWLEDGED, 0u}, /* Save Orbit Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SAVE_IMAGE)
-        {80u, ICD_ACKNOWLEDGED, 2u}, /* Save Image */
+    {80u, ICD_ACKNOWLEDGED, 2u}, /* Save Image */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
-        {104u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log1 Configuration */
+    {104u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log1 Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
-        {105u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log2 Configuration */
+    {105u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log2 Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
-        {106u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* UART Log Configuration */
+    {106u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* UART Log Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ERASE_FILE) || \
     !defined(ICDGEN_NO_FILES)
-        {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
+    {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_LOAD_FILE_DOWNLOAD_BLOCK) || \
     !defined(ICDGEN_NO_FILES)
-        {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
+    {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADVANCE_FILE_LIST_READ_POINTER) || \
     !defined(ICDGEN_NO_FILES)
-        {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
+    {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_INITIATE_FILE_UPLOAD)
-        {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
+    {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FILE_UPLOAD_PACKET)
-        {115u, 0u, 22u}, /* File Upload Packet */
+    {115u, 0u, 22u}, /* File Upload Packet */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FINALIZE_UPLOAD_BLOCK)
-        {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
+    {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RESET_UPLOAD_BLOCK)
-        {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
+    {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RESET_FILE_LIST_READ_POINTER) || \
     !defined(ICDGEN_NO_FILES)
-        {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
+    {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_INITIATE_DOWNLOAD_BURST) || \
     !defined(ICDGEN_NO_FILES)
-        {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
+    {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_1) || \
     !defined(ICDGEN_NO_FILES)
-        {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
+    {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_2) || \
     !defined(ICDGEN_NO_FILES)
-        {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
+    {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_3) || \
     !defined(ICDGEN_NO_FILES)
-        {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
+    {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_4) || \
     !defined(ICDGEN_NO_FILES)
-        {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
+    {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_5) || \
     !defined(ICDGEN_NO_FILES)
-        {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
+    {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_6) || \
     !defined(ICDGEN_NO_FILES)
-        {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
+    {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_7) || \
     !defined(ICDGEN_NO_FILES)
-        {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
+    {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_8) || \
     !defined(ICDGEN_NO_FILES)
-        {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
+    {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
 #endif
-        {0u, 0u, 0u}, /* the end */
-    };
-    static const icd_message_t telemetry[] = {
-        {128u, 0u, 8u}, /* Identification */
+    {0u, 0u, 0u}, /* the end */
+};
+static const icd_message_t icdgen_node_cubeacp_telemetry[] = {
+    {128u, 0u, 8u}, /* Identification */
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-        {129u, 0u, 6u}, /* Boot And Running Program Status */
+    {129u, 0u, 6u}, /* Boot And Running Program Status */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_BOOT_INDEX_AND_STATUS)
-        {130u, 0u, 2u}, /* Boot Index and Status */
+    {130u, 0u, 2u}, /* Boot Index and Status */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
-        {131u, 0u, 1u}, /* Cache enabled state */
+    {131u, 0u, 1u}, /* Cache enabled state */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CURRENT_ADCS_STATE)
-        {132u, 0u, 6u}, /* Current ADCS State */
+    {132u, 0u, 6u}, /* Current ADCS State */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_JPG_CONVERSION_PROGRESS)
-        {133u, 0u, 3u}, /* JPG Conversion Progress */
+    {133u, 0u, 3u}, /* JPG Conversion Progress */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
-        {134u, 0u, 2u}, /* SRAM Scrub Parameters */
+    {134u, 0u, 2u}, /* SRAM Scrub Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STATE)
-        {135u, 0u, 1u}, /* CubeACP State */
+    {135u, 0u, 1u}, /* CubeACP State */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
-        {136u, 0u, 3u}, /* Set Magnetorquer Configuration */
+    {136u, 0u, 3u}, /* Set Magnetorquer Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
-        {137u, 0u, 4u}, /* Set Wheel Configuration */
+    {137u, 0u, 4u}, /* Set Wheel Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
-        {138u, 0u, 10u}, /* Set Rate Gyro Configuration */
+    {138u, 0u, 10u}, /* Set Rate Gyro Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CSS_CONFIGURATION)
-        {139u, 0u, 21u}, /* CSS Configuration */
+    {139u, 0u, 21u}, /* CSS Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
-        {140u, 0u, 6u}, /* Current Unix Time */
+    {140u, 0u, 6u}, /* Current Unix Time */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_LAST_LOGGED_EVENT)
-        {141u, 0u, 6u}, /* Last Logged Event */
+    {141u, 0u, 6u}, /* Last Logged Event */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SRAM_LATCHUP_COUNTERS)
-        {142u, 0u, 6u}, /* SRAM Latchup counters */
+    {142u, 0u, 6u}, /* SRAM Latchup counters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_EDAC_ERROR_COUNTERS)
-        {143u, 0u, 6u}, /* EDAC Error Counters */
+    {143u, 0u, 6u}, /* EDAC Error Counters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_COMMUNICATION_STATUS)
-        {144u, 0u, 6u}, /* Communication Status */
+    {144u, 0u, 6u}, /* Communication Status */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
-        {145u, 0u, 2u}, /* Unix Time Save to Flash */
+    {145u, 0u, 2u}, /* Unix Time Save to Flash */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES)
-        {146u, 0u, 6u}, /* Estimated Attitude Angles */
+    {146u, 0u, 6u}, /* Estimated Attitude Angles */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATED_ANGULAR_RATES)
-        {147u, 0u, 6u}, /* Estimated Angular Rates */
+    {147u, 0u, 6u}, /* Estimated Angular Rates */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SATELLITE_POSITION_ECI)
-        {148u, 0u, 6u}, /* Satellite Position (ECI) */
+    {148u, 0u, 6u}, /* Satellite Position (ECI) */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SATELLITE_VELOCITY_ECI)
-        {149u, 0u, 6u}, /* Satellite Velocity (ECI) */
+    {149u, 0u, 6u}, /* Satellite Velocity (ECI) */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SATELLITE_POSITION_LLH)
-        {150u, 0u, 6u}, /* Satellite Position (LLH) */
+    {150u, 0u, 6u}, /* Satellite Position (LLH) */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MAGNETIC_FIELD_VECTOR)
-        {151u, 0u, 6u}, /* Magnetic Field Vector */
+    {151u, 0u, 6u}, /* Magnetic Field Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_COARSE_SUN_VECTOR)
-        {152u, 0u, 6u}, /* Coarse Sun Vector */
+    {152u, 0u, 6u}, /* Coarse Sun Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FINE_SUN_VECTOR)
-        {153u, 0u, 6u}, /* Fine Sun Vector */
+    {153u, 0u, 6u}, /* Fine Sun Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_NADIR_VECTOR)
-        {154u, 0u, 6u}, /* Nadir Vector */
+    {154u, 0u, 6u}, /* Nadir Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RATE_SENSOR_RATES)
-        {155u, 0u, 6u}, /* Rate Sensor Rates */
+    {155u, 0u, 6u}, /* Rate Sensor Rates */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_WHEEL_SPEED)
-        {156u, 0u, 6u}, /* Wheel Speed */
+    {156u, 0u, 6u}, /* Wheel Speed */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MAGNETORQUER_COMMAND)
-        {157u, 0u, 6u}, /* Magnetorquer Command */
+    {157u, 0u, 6u}, /* Magnetorquer Command */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_WHEEL_SPEED_COMMANDS)
-        {158u, 0u, 6u}, /* Wheel Speed Commands */
+    {158u, 0u, 6u}, /* Wheel Speed Commands */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR)
-        {159u, 0u, 6u}, /* IGRF Modelled Magnetic Field Vector */
+    {159u, 0u, 6u}, /* IGRF Modelled Magnetic Field Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MODELLED_SUN_VECTOR)
-        {160u, 0u, 6u}, /* Modelled Sun Vector */
+    {160u, 0u, 6u}, /* Modelled Sun Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATED_GYRO_BIAS)
-        {161u, 0u, 6u}, /* Estimated Gyro Bias */
+    {161u, 0u, 6u}, /* Estimated Gyro Bias */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATION_INNOVATION_VECTOR)
-        {162u, 0u, 6u}, /* Estimation Innovation Vector */
+    {162u, 0u, 6u}, /* Estimation Innovation Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_QUATERNION_ERROR_VECTOR)
-        {163u, 0u, 6u}, /* Quaternion Error Vector */
+    {163u, 0u, 6u}, /* Quaternion Error Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_QUATERNION_COVARIANCE)
-        {164u, 0u, 6u}, /* Quaternion Covariance */
+    {164u, 0u, 6u}, /* Quaternion Covariance */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ANGULAR_RATE_COVARIANCE)
-        {165u, 0u, 6u}, /* Angular Rate Covariance */
+    {165u, 0u, 6u}, /* Angular Rate Covariance */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_CAM2_SENSOR)
-        {166u, 0u, 6u}, /* Raw Cam2 Sensor */
+    {166u, 0u, 6u}, /* Raw Cam2 Sensor */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_CAM1_SENSOR)
-        {167u, 0u, 6u}, /* Raw Cam1 Sensor */
+    {167u, 0u, 6u}, /* Raw Cam1 Sensor */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_CSS_1_TO_6)
-        {168u, 0u, 6u}, /* Raw CSS 1 to 6 */
+    {168u, 0u, 6u}, /* Raw CSS 1 to 6 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_CSS_7_TO_10)
-        {169u, 0u, 6u}, /* Raw CSS 7 to 10 */
+    {169u, 0u, 6u}, /* Raw CSS 7 to 10 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_MAGNETOMETER)
-        {170u, 0u, 6u}, /* Raw Magnetometer */
+    {170u, 0u, 6u}, /* Raw Magnetometer */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBESENSE1_CURRENTS)
-        {171u, 0u, 4u}, /* CubeSense1 Current Measurements */
+    {171u, 0u, 4u}, /* CubeSense1 Current Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBECONTROL_CURRENTS)
-        {172u, 0u, 6u}, /* CubeControl Current Measurements */
+    {172u, 0u, 6u}, /* CubeControl Current Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_WHEEL_CURRENTS)
-        {173u, 0u, 6u}, /* Wheel Currents */
+    {173u, 0u, 6u}, /* Wheel Currents */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_TEMPERATURES)
-        {174u, 0u, 6u}, /* ADCS Temperatures */
+    {174u, 0u, 6u}, /* ADCS Temperatures */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RATE_SENSOR_TEMPERATURES)
-        {175u, 0u, 6u}, /* Rate sensor temperatures */
+    {175u, 0u, 6u}, /* Rate sensor temperatures */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_GPS_STATUS)
-        {176u, 0u, 6u}, /* Raw GPS Status */
+    {176u, 0u, 6u}, /* Raw GPS Status */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_GPS_TIME)
-        {177u, 0u, 6u}, /* Raw GPS Time */
+    {177u, 0u, 6u}, /* Raw GPS Time */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_GPS_X)
-        {178u, 0u, 6u}, /* Raw GPS X */
+    {178u, 0u, 6u}, /* Raw GPS X */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_GPS_Y)
-        {179u, 0u, 6u}, /* Raw GPS Y */
+    {179u, 0u, 6u}, /* Raw GPS Y */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_GPS_Z)
-        {180u, 0u, 6u}, /* Raw GPS Z */
+    {180u, 0u, 6u}, /* Raw GPS Z */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_1_BODY_VECTOR)
-        {181u, 0u, 6u}, /* Star 1 Body Vector */
+    {181u, 0u, 6u}, /* Star 1 Body Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_2_BODY_VECTOR)
-        {182u, 0u, 6u}, /* Star 2 Body Vector */
+    {182u, 0u, 6u}, /* Star 2 Body Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_3_BODY_VECTOR)
-        {183u, 0u, 6u}, /* Star 3 Body Vector */
+    {183u, 0u, 6u}, /* Star 3 Body Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_1_ORBIT_VECTOR)
-        {184u, 0u, 6u}, /* Star 1 Orbit Vector */
+    {184u, 0u, 6u}, /* Star 1 Orbit Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_2_ORBIT_VECTOR)
-        {185u, 0u, 6u}, /* Star 2 Orbit Vector */
+    {185u, 0u, 6u}, /* Star 2 Orbit Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_3_ORBIT_VECTOR)
-        {186u, 0u, 6u}, /* Star 3 Orbit Vector */
+    {186u, 0u, 6u}, /* Star 3 Orbit Vector */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_MAGNITUDE)
-        {187u, 0u, 6u}, /* Star Magnitude */
+    {187u, 0u, 6u}, /* Star Magnitude */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_PERFORMANCE1)
-        {188u, 0u, 6u}, /* Star Performance1 */
+    {188u, 0u, 6u}, /* Star Performance1 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_TIMING)
-        {189u, 0u, 6u}, /* Star Timing */
+    {189u, 0u, 6u}, /* Star Timing */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_STATE)
-        {190u, 0u, 54u}, /* ADCS State */
+    {190u, 0u, 54u}, /* ADCS State */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_MEASUREMENTS)
-        {191u, 0u, 72u}, /* ADCS Measurements */
+    {191u, 0u, 72u}, /* ADCS Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ACTUATOR_COMMANDS)
-        {192u, 0u, 12u}, /* Actuator Commands */
+    {192u, 0u, 12u}, /* Actuator Commands */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATION_DATA)
-        {193u, 0u, 42u}, /* Estimation Data */
+    {193u, 0u, 42u}, /* Estimation Data */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_SENSOR_MEASUREMENTS)
-        {194u, 0u, 34u}, /* Raw Sensor Measurements */
+    {194u, 0u, 34u}, /* Raw Sensor Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_POWER_AND_TEMPERATURE)
-        {195u, 0u, 38u}, /* Power and Temperature Measurements */
+    {195u, 0u, 38u}, /* Power and Temperature Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_EXECUTION_TIMES)
-        {196u, 0u, 8u}, /* Adcs Execution Times */
+    {196u, 0u, 8u}, /* Adcs Execution Times */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
-        {197u, 0u, 3u}, /* ADCS Power Control */
+    {197u, 0u, 3u}, /* ADCS Power Control */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_MISC_CURRENTS)
-        {198u, 0u, 6u}, /* ADCS Misc Current Measurements */
+    {198u, 0u, 6u}, /* ADCS Misc Current Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
-        {199u, 0u, 6u}, /* Commanded Attitude Angles */
+    {199u, 0u, 6u}, /* Commanded Attitude Angles */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
-        {200u, 0u, 12u}, /* Tracking Controller Target Reference */
+    {200u, 0u, 12u}, /* Tracking Controller Target Reference */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FINE_ANGULAR_RATES)
-        {201u, 0u, 6u}, /* Fine Estimated Angular Rates */
+    {201u, 0u, 6u}, /* Fine Estimated Angular Rates */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
-        {202u, 0u, 53u}, /* Set Star Tracker Configuration */
+    {202u, 0u, 53u}, /* Set Star Tracker Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
-        {203u, 0u, 112u}, /* CubeSense Configuration */
+    {203u, 0u, 112u}, /* CubeSense Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
-        {204u, 0u, 30u}, /* Magnetometer Configuration */
+    {204u, 0u, 30u}, /* Magnetometer Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
-        {205u, 0u, 30u}, /* Redundant Magnetometer Configuration */
+    {205u, 0u, 30u}, /* Redundant Magnetometer Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_CONFIGURATION)
-        {206u, 0u, 504u}, /* ADCS Configuration */
+    {206u, 0u, 504u}, /* ADCS Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
-        {207u, 0u, 64u}, /* SGP4 Orbit Parameters */
+    {207u, 0u, 64u}, /* SGP4 Orbit Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
-        {208u, 0u, 14u}, /* Set Detumbling Control Parameters */
+    {208u, 0u, 14u}, /* Set Detumbling Control Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
-        {209u, 0u, 20u}, /* Set Y-Wheel Control Parameters */
+    {209u, 0u, 20u}, /* Set Y-Wheel Control Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_GPS_MEASUREMENTS)
-        {210u, 0u, 36u}, /* Raw GPS Measurements */
+    {210u, 0u, 36u}, /* Raw GPS Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_STAR_TRACKER)
-        {211u, 0u, 54u}, /* Raw Star Tracker */
+    {211u, 0u, 54u}, /* Raw Star Tracker */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_1_RAW_DATA)
-        {212u, 0u, 6u}, /* Star 1 Raw Data */
+    {212u, 0u, 6u}, /* Star 1 Raw Data */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_2_RAW_DATA)
-        {213u, 0u, 6u}, /* Star 2 Raw Data */
+    {213u, 0u, 6u}, /* Star 2 Raw Data */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_3_RAW_DATA)
-        {214u, 0u, 6u}, /* Star 3 Raw Data */
+    {214u, 0u, 6u}, /* Star 3 Raw Data */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS)
-        {215u, 0u, 6u}, /* Secondary Magnetometer Raw Measurements */
+    {215u, 0u, 6u}, /* Secondary Magnetometer Raw Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RAW_RATE_SENSOR)
-        {216u, 0u, 6u}, /* Raw Rate Sensor */
+    {216u, 0u, 6u}, /* Raw Rate Sensor */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
-        {217u, 0u, 13u}, /* Set Reaction Wheel Control Parameters */
+    {217u, 0u, 13u}, /* Set Reaction Wheel Control Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATED_QUATERNION)
-        {218u, 0u, 6u}, /* Estimated Quaternion */
+    {218u, 0u, 6u}, /* Estimated Quaternion */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ECEF_POSITION)
-        {219u, 0u, 6u}, /* ECEF Position */
+    {219u, 0u, 6u}, /* ECEF Position */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ACP_EXECUTION_STATE)
-        {220u, 0u, 3u}, /* ACP Execution State */
+    {220u, 0u, 3u}, /* ACP Execution State */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
-        {221u, 0u, 13u}, /* Set Tracking Controller Gain Parameters */
+    {221u, 0u, 13u}, /* Set Tracking Controller Gain Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
-        {222u, 0u, 24u}, /* Moment of Inertia Matrix */
+    {222u, 0u, 24u}, /* Moment of Inertia Matrix */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
-        {223u, 0u, 31u}, /* Estimation Parameters */
+    {223u, 0u, 31u}, /* Estimation Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CURRENT_ADCS_STATE_2)
-        {224u, 0u, 6u}, /* Current ADCS State 2 */
+    {224u, 0u, 6u}, /* Current ADCS State 2 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
-        {225u, 0u, 173u}, /* ADCS System Configuration */
+    {225u, 0u, 173u}, /* ADCS System Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
-        {226u, 0u, 96u}, /* User-coded Controller and Estimator Parameters */
+    {226u, 0u, 96u}, /* User-coded Controller and Estimator Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
-        {227u, 0u, 30u}, /* Augmented-SGP4 Parameters */
+    {227u, 0u, 30u}, /* Augmented-SGP4 Parameters */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_ASGP4_TLES)
-        {228u, 0u, 33u}, /* ASGP4 TLEs */
+    {228u, 0u, 33u}, /* ASGP4 TLEs */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_RATES)
-        {229u, 0u, 6u}, /* CubeStar Estimated Rates */
+    {229u, 0u, 6u}, /* CubeStar Estimated Rates */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_QUATERNION)
-        {230u, 0u, 6u}, /* CubeStar Estimated Quaternion */
+    {230u, 0u, 6u}, /* CubeStar Estimated Quaternion */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STAR_PERFORMANCE2)
-        {231u, 0u, 6u}, /* Star Performance2 */
+    {231u, 0u, 6u}, /* Star Performance2 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_CUBESENSE2_CURRENTS)
-        {232u, 0u, 4u}, /* CubeSense2 Current Measurements */
+    {232u, 0u, 4u}, /* CubeSense2 Current Measurements */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION)
-        {233u, 0u, 2u}, /* Status of Image Capture and Save Operation */
+    {233u, 0u, 2u}, /* Status of Image Capture and Save Operation */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SD_CARD_FORMAT_ERASE_PROGRESS) || \
     !defined(ICDGEN_NO_FILES)
-        {234u, 0u, 1u}, /* SD card format/erase progress */
+    {234u, 0u, 1u}, /* SD card format/erase progress */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
-        {235u, 0u, 13u}, /* SD Log1 Configuration */
+    {235u, 0u, 13u}, /* SD Log1 Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
-        {236u, 0u, 13u}, /* SD Log2 Configuration */
+    {236u, 0u, 13u}, /* SD Log2 Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
-        {237u, 0u, 12u}, /* UART Log Configuration */
+    {237u, 0u, 12u}, /* UART Log Configuration */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
-        {238u, 0u, 6u}, /* Inertial Pointing Reference Vector */
+    {238u, 0u, 6u}, /* Inertial Pointing Reference Vector */
 #endif
-        {240u, 0u, 4u}, /* Telecommand Acknowledge */
+    {240u, 0u, 4u}, /* Telecommand Acknowledge */
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || \
     !defined(ICDGEN_NO_FILES)
-        {241u, 0u, 22u}, /* File Download Buffer with File Contents */
+    {241u, 0u, 22u}, /* File Download Buffer with File Contents */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY) || \
     !defined(ICDGEN_NO_FILES)
-        {242u, 0u, 5u}, /* Download Block Ready */
+    {242u, 0u, 5u}, /* Download Block Ready */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_FILE_INFORMATION) || \
     !defined(ICDGEN_NO_FILES)
-        {243u, 0u, 12u}, /* File Information */
+    {243u, 0u, 12u}, /* File Information */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_INITIALIZE_UPLOAD_COMPLETE)
-        {244u, 0u, 1u}, /* Initialize Upload Complete */
+    {244u, 0u, 1u}, /* Initialize Upload Complete */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_UPLOAD_BLOCK_COMPLETE)
-        {245u, 0u, 1u}, /* Upload Block Complete */
+    {245u, 0u, 1u}, /* Upload Block Complete */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_BLOCK_CHECKSUM)
-        {246u, 0u, 2u}, /* Block Checksum */
+    {246u, 0u, 2u}, /* Block Checksum */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_1) || \
     !defined(ICDGEN_NO_FILES)
-        {247u, 0u, 16u}, /* Hole Map 1 */
+    {247u, 0u, 16u}, /* Hole Map 1 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_2) || \
     !defined(ICDGEN_NO_FILES)
-        {248u, 0u, 16u}, /* Hole Map 2 */
+    {248u, 0u, 16u}, /* Hole Map 2 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_3) || \
     !defined(ICDGEN_NO_FILES)
-        {249u, 0u, 16u}, /* Hole Map 3 */
+    {249u, 0u, 16u}, /* Hole Map 3 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_4) || \
     !defined(ICDGEN_NO_FILES)
-        {250u, 0u, 16u}, /* Hole Map 4 */
+    {250u, 0u, 16u}, /* Hole Map 4 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_5) || \
     !defined(ICDGEN_NO_FILES)
-        {251u, 0u, 16u}, /* Hole Map 5 */
+    {251u, 0u, 16u}, /* Hole Map 5 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_6) || \
     !defined(ICDGEN_NO_FILES)
-        {252u, 0u, 16u}, /* Hole Map 6 */
+    {252u, 0u, 16u}, /* Hole Map 6 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_7) || \
     !defined(ICDGEN_NO_FILES)
-        {253u, 0u, 16u}, /* Hole Map 7 */
+    {253u, 0u, 16u}, /* Hole Map 7 */
 #endif
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_HOLE_MAP_8) || \
     !defined(ICDGEN_NO_FILES)
-        {254u, 0u, 16u}, /* Hole Map 8 */
+    {254u, 0u, 16u}, /* Hole Map 8 */
 #endif
-        {0u, 0u, 0u}, /* the end */
-    };
-    static const icd_error_code_t errors[] = {
-        {ICD_REASON_NONE, 0u},
-        {ICD_REASON_UNKNOWN_ID, 1u},
-        {ICD_REASON_LENGTH, 2u},
-        {ICD_REASON_PARAMETER, 3u},
-        {ICD_REASON_CHECKSUM, 4u},
-    };
-    /**
-     * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
-     * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
-     */
-    static const icd_framing_t framing = {
-        0x1fu, /* escape */
-        0x7fu, /* start */
-        0xffu, /* end */
-        0x1fu, /* escaped */
-        true, /* escapes_id */
-        false, /* ignores_other */
-    };
-    /**
-     * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
-     * that no other id heads the message, stood in a figure.
-     */
-    static const icd_acknowledge_t acknowledge = {
-        2u, /* length */
-        0u, /* id_at */
-        1u, /* error_at */
-    };
-    static const icd_unsolicited_t unsolicited[] = {
-        {119u, 241u, 22u}, /* File Download Buffer with File Contents */
-    };
-    /**
-     * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
-     * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
-     */
-    static const icd_can_extended_t can_extended = {
-        7u, /* data_bytes */
-        7u, /* left_at */
-        0u, /* left_in_last */
-        256u, /* packets */
-        1792u, /* bytes */
-        0x00u, /* fill */
-        1000u, /* packet_timeout in ms */
-    };
-    static const icd_can_form_t can = {
-        0x01u, /* node_address */
-        8u, /* data_bytes */
-        {5u, 24u}, /* type: bits, shift */
-        {8u, 16u}, /* channel: bits, shift */
-        {8u, 8u}, /* source: bits, shift */
-        {8u, 0u}, /* destination: bits, shift */
-        {1, 2, 3, 4, 5, 6}, /* types */
-        {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        &can_extended, /* messages of several packets */
-    };
+    {0u, 0u, 0u}, /* the end */
+};
+static const char *const icdgen_node_cubeacp_nodes[] = {
+    "cubeacp",
+    "common",
+};
+static const icd_error_code_t icdgen_node_cubeacp_errors[] = {
+    {ICD_REASON_NONE, 0u},
+    {ICD_REASON_UNKNOWN_ID, 1u},
+    {ICD_REASON_LENGTH, 2u},
+    {ICD_REASON_PARAMETER, 3u},
+    {ICD_REASON_CHECKSUM, 4u},
+};
+/**
+ * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+ * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
+ */
+static const icd_framing_t icdgen_node_cubeacp_framing = {
+    0x1fu, /* escape */
+    0x7fu, /* start */
+    0xffu, /* end */
+    0x1fu, /* escaped */
+    true, /* escapes_id */
+    false, /* ignores_other */
+};
+/**
+ * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
+ * that no other id heads the message, stood in a figure.
+ */
+static const icd_acknowledge_t icdgen_node_cubeacp_acknowledge = {
+    2u, /* length */
+    0u, /* id_at */
+    1u, /* error_at */
+};
+static const icd_unsolicited_t icdgen_node_cubeacp_unsolicited[] = {
+    {119u, 241u, 22u}, /* File Download Buffer with File Contents */
+};
+/**
+ * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
+ * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
+ */
+static const icd_can_extended_t icdgen_node_cubeacp_can_extended = {
+    7u, /* data_bytes */
+    7u, /* left_at */
+    0u, /* left_in_last */
+    256u, /* packets */
+    1792u, /* bytes */
+    0x00u, /* fill */
+    1000u, /* packet_timeout in ms */
+};
+static const icd_can_form_t icdgen_node_cubeacp_can = {
+    0x01u, /* node_address */
+    8u, /* data_bytes */
+    {5u, 24u}, /* type: bits, shift */
+    {8u, 16u}, /* channel: bits, shift */
+    {8u, 8u}, /* source: bits, shift */
+    {8u, 0u}, /* destination: bits, shift */
+    {1, 2, 3, 4, 5, 6}, /* types */
+    {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
+    &icdgen_node_cubeacp_can_extended, /* messages of several packets */
+};
 #ifndef ICDGEN_NO_TABLES
-    static const uint8_t crc8_table[] = {
-        0x00u, 0x41u, 0x13u, 0x52u, 0x26u, 0x67u, 0x35u, 0x74u,
-        0x4cu, 0x0du, 0x5fu, 0x1eu, 0x6au, 0x2bu, 0x79u, 0x38u,
-        0x09u, 0x48u, 0x1au, 0x5bu, 0x2fu, 0x6eu, 0x3cu, 0x7du,
-        0x45u, 0x04u, 0x56u, 0x17u, 0x63u, 0x22u, 0x70u, 0x31u,
-        0x12u, 0x53u, 0x01u, 0x40u, 0x34u, 0x75u, 0x27u, 0x66u,
-        0x5eu, 0x1fu, 0x4du, 0x0cu, 0x78u, 0x39u, 0x6bu, 0x2au,
-        0x1bu, 0x5au, 0x08u, 0x49u, 0x3du, 0x7cu, 0x2eu, 0x6fu,
-        0x57u, 0x16u, 0x44u, 0x05u, 0x71u, 0x30u, 0x62u, 0x23u,
-        0x24u, 0x65u, 0x37u, 0x76u, 0x02u, 0x43u, 0x11u, 0x50u,
-        0x68u, 0x29u, 0x7bu, 0x3au, 0x4eu, 0x0fu, 0x5du, 0x1cu,
-        0x2du, 0x6cu, 0x3eu, 0x7fu, 0x0bu, 0x4au, 0x18u, 0x59u,
-        0x61u, 0x20u, 0x72u, 0x33u, 0x47u, 0x06u, 0x54u, 0x15u,
-        0x36u, 0x77u, 0x25u, 0x64u, 0x10u, 0x51u, 0x03u, 0x42u,
-        0x7au, 0x3bu, 0x69u, 0x28u, 0x5cu, 0x1du, 0x4fu, 0x0eu,
-        0x3fu, 0x7eu, 0x2cu, 0x6du, 0x19u, 0x58u, 0x0au, 0x4bu,
-        0x73u, 0x32u, 0x60u, 0x21u, 0x55u, 0x14u, 0x46u, 0x07u,
-        0x48u, 0x09u, 0x5bu, 0x1au, 0x6eu, 0x2fu, 0x7du, 0x3cu,
-        0x04u, 0x45u, 0x17u, 0x56u, 0x22u, 0x63u, 0x31u, 0x70u,
-        0x41u, 0x00u, 0x52u, 0x13u, 0x67u, 0x26u, 0x74u, 0x35u,
-        0x0du, 0x4cu, 0x1eu, 0x5fu, 0x2bu, 0x6au, 0x38u, 0x79u,
-        0x5au, 0x1bu, 0x49u, 0x08u, 0x7cu, 0x3du, 0x6fu, 0x2eu,
-        0x16u, 0x57u, 0x05u, 0x44u, 0x30u, 0x71u, 0x23u, 0x62u,
-        0x53u, 0x12u, 0x40u, 0x01u, 0x75u, 0x34u, 0x66u, 0x27u,
-        0x1fu, 0x5eu, 0x0cu, 0x4du, 0x39u, 0x78u, 0x2au, 0x6bu,
-        0x6cu, 0x2du, 0x7fu, 0x3eu, 0x4au, 0x0bu, 0x59u, 0x18u,
-        0x20u, 0x61u, 0x33u, 0x72u, 0x06u, 0x47u, 0x15u, 0x54u,
-        0x65u, 0x24u, 0x76u, 0x37u, 0x43u, 0x02u, 0x50u, 0x11u,
-        0x29u, 0x68u, 0x3au, 0x7bu, 0x0fu, 0x4eu, 0x1cu, 0x5du,
-        0x7eu, 0x3fu, 0x6du, 0x2cu, 0x58u, 0x19u, 0x4bu, 0x0au,
-        0x32u, 0x73u, 0x21u, 0x60u, 0x14u, 0x55u, 0x07u, 0x46u,
-        0x77u, 0x36u, 0x64u, 0x25u, 0x51u, 0x10u, 0x42u, 0x03u,
-        0x3bu, 0x7au, 0x28u, 0x69u, 0x1du, 0x5cu, 0x0eu, 0x4fu,
-    };
+static const uint8_t icdgen_node_cubeacp_crc8_table[] = {
+    0x00u, 0x41u, 0x13u, 0x52u, 0x26u, 0x67u, 0x35u, 0x74u,
+    0x4cu, 0x0du, 0x5fu, 0x1eu, 0x6au, 0x2bu, 0x79u, 0x38u,
+    0x09u, 0x48u, 0x1au, 0x5bu, 0x2fu, 0x6eu, 0x3cu, 0x7du,
+    0x45u, 0x04u, 0x56u, 0x17u, 0x63u, 0x22u, 0x70u, 0x31u,
+    0x12u, 0x53u, 0x01u, 0x40u, 0x34u, 0x75u, 0x27u, 0x66u,
+    0x5eu, 0x1fu, 0x4du, 0x0cu, 0x78u, 0x39u, 0x6bu, 0x2au,
+    0x1bu, 0x5au, 0x08u, 0x49u, 0x3du, 0x7cu, 0x2eu, 0x6fu,
+    0x57u, 0x16u, 0x44u, 0x05u, 0x71u, 0x30u, 0x62u, 0x23u,
+    0x24u, 0x65u, 0x37u, 0x76u, 0x02u, 0x43u, 0x11u, 0x50u,
+    0x68u, 0x29u, 0x7bu, 0x3au, 0x4eu, 0x0fu, 0x5du, 0x1cu,
+    0x2du, 0x6cu, 0x3eu, 0x7fu, 0x0bu, 0x4au, 0x18u, 0x59u,
+    0x61u, 0x20u, 0x72u, 0x33u, 0x47u, 0x06u, 0x54u, 0x15u,
+    0x36u, 0x77u, 0x25u, 0x64u, 0x10u, 0x51u, 0x03u, 0x42u,
+    0x7au, 0x3bu, 0x69u, 0x28u, 0x5cu, 0x1du, 0x4fu, 0x0eu,
+    0x3fu, 0x7eu, 0x2cu, 0x6du, 0x19u, 0x58u, 0x0au, 0x4bu,
+    0x73u, 0x32u, 0x60u, 0x21u, 0x55u, 0x14u, 0x46u, 0x07u,
+    0x48u, 0x09u, 0x5bu, 0x1au, 0x6eu, 0x2fu, 0x7du, 0x3cu,
+    0x04u, 0x45u, 0x17u, 0x56u, 0x22u, 0x63u, 0x31u, 0x70u,
+    0x41u, 0x00u, 0x52u, 0x13u, 0x67u, 0x26u, 0x74u, 0x35u,
+    0x0du, 0x4cu, 0x1eu, 0x5fu, 0x2bu, 0x6au, 0x38u, 0x79u,
+    0x5au, 0x1bu, 0x49u, 0x08u, 0x7cu, 0x3du, 0x6fu, 0x2eu,
+    0x16u, 0x57u, 0x05u, 0x44u, 0x30u, 0x71u, 0x23u, 0x62u,
+    0x53u, 0x12u, 0x40u, 0x01u, 0x75u, 0x34u, 0x66u, 0x27u,
+    0x1fu, 0x5eu, 0x0cu, 0x4du, 0x39u, 0x78u, 0x2au, 0x6bu,
+    0x6cu, 0x2du, 0x7fu, 0x3eu, 0x4au, 0x0bu, 0x59u, 0x18u,
+    0x20u, 0x61u, 0x33u, 0x72u, 0x06u, 0x47u, 0x15u, 0x54u,
+    0x65u, 0x24u, 0x76u, 0x37u, 0x43u, 0x02u, 0x50u, 0x11u,
+    0x29u, 0x68u, 0x3au, 0x7bu, 0x0fu, 0x4eu, 0x1cu, 0x5du,
+    0x7eu, 0x3fu, 0x6du, 0x2cu, 0x58u, 0x19u, 0x4bu, 0x0au,
+    0x32u, 0x73u, 0x21u, 0x60u, 0x14u, 0x55u, 0x07u, 0x46u,
+    0x77u, 0x36u, 0x64u, 0x25u, 0x51u, 0x10u, 0x42u, 0x03u,
+    0x3bu, 0x7au, 0x28u, 0x69u, 0x1du, 0x5cu, 0x0eu, 0x4fu,
+};
 #endif
-    /**
-     * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
-     * cover the frame only. Assumed telecommand: The checksum is offered for commands in general, CAN included. None is
-     * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
-     */
-    static const icd_checksum_form_t checksum = {
-        false, /* covers_id */
-        3u, /* telecommand_buses */
-        2u, /* telemetry_buses */
-        0u, /* telecommand_always */
-        0u, /* telemetry_always */
-        1u, /* bytes */
-        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
-        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table), NULL},
-    };
+/**
+ * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
+ * cover the frame only. Assumed telecommand: The checksum is offered for commands in general, CAN included. None is
+ * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
+ */
+static const icd_checksum_form_t icdgen_node_cubeacp_checksum = {
+    false, /* covers_id */
+    3u, /* telecommand_buses */
+    2u, /* telemetry_buses */
+    0u, /* telecommand_always */
+    0u, /* telemetry_always */
+    1u, /* bytes */
+    /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
+    {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(icdgen_node_cubeacp_crc8_table), NULL},
+};
 #ifndef ICDGEN_NO_TABLES
-    static const uint16_t crc16_table[] = {
-        0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
-        0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
-        0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
-        0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu,
-        0x2462u, 0x3443u, 0x0420u, 0x1401u, 0x64e6u, 0x74c7u, 0x44a4u, 0x5485u,
-        0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
-        0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u,
-        0xb75bu, 0xa77au, 0x9719u, 0x8738u, 0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu,
-        0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
-        0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu,
-        0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u, 0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u,
-        0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
-        0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u,
-        0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu, 0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u,
-        0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
-        0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u,
-        0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu, 0xd10cu, 0xc12du, 0xf14eu, 0xe16fu,
-        0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
-        0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu,
-        0x02b1u, 0x1290u, 0x22f3u, 0x32d2u, 0x4235u, 0x5214u, 0x6277u, 0x7256u,
-        0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
-        0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u,
-        0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u, 0xe75fu, 0xf77eu, 0xc71du, 0xd73cu,
-        0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
-        0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu,
-        0x5844u, 0x4865u, 0x7806u, 0x6827u, 0x18c0u, 0x08e1u, 0x3882u, 0x28a3u,
-        0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
-        0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u,
-        0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du, 0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u,
-        0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
-        0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
-        0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
-    };
+static const uint16_t icdgen_node_cubeacp_crc16_table[] = {
+    0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
+    0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
+    0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
+    0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu,
+    0x2462u, 0x3443u, 0x0420u, 0x1401u, 0x64e6u, 0x74c7u, 0x44a4u, 0x5485u,
+    0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
+    0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u,
+    0xb75bu, 0xa77au, 0x9719u, 0x8738u, 0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu,
+    0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
+    0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu,
+    0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u, 0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u,
+    0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
+    0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u,
+    0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu, 0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u,
+    0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
+    0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u,
+    0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu, 0xd10cu, 0xc12du, 0xf14eu, 0xe16fu,
+    0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
+    0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu,
+    0x02b1u, 0x1290u, 0x22f3u, 0x32d2u, 0x4235u, 0x5214u, 0x6277u, 0x7256u,
+    0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
+    0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u,
+    0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u, 0xe75fu, 0xf77eu, 0xc71du, 0xd73cu,
+    0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
+    0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu,
+    0x5844u, 0x4865u, 0x7806u, 0x6827u, 0x18c0u, 0x08e1u, 0x3882u, 0x28a3u,
+    0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
+    0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u,
+    0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du, 0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u,
+    0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
+    0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
+    0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
+};
 #endif
-    static const icd_crc_form_t crc16 = {
-        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, NULL, ICDGEN_TABLE(crc16_table),
-    };
+static const icd_crc_form_t icdgen_node_cubeacp_crc16 = {
+    /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
+    16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, NULL, ICDGEN_TABLE(icdgen_node_cubeacp_crc16_table),
+};
 #ifndef ICDGEN_NO_LOGS
-    static const icd_log_bit_t log_bits[] = {
-        {144, 6u}, /* bit 0: Communication Status */
-        {143, 6u}, /* bit 1: EDAC Error Counters */
-        {-1, 6u}, /* bit 2 */
-        {141, 6u}, /* bit 3: Last Logged Event */
-        {142, 6u}, /* bit 4: SRAM Latchup counters */
-        {-1, 6u}, /* bit 5 */
-        {-1, 6u}, /* bit 6 */
-        {157, 6u}, /* bit 7: Magnetorquer Command */
-        {158, 6u}, /* bit 8: Wheel Speed Commands */
-        {151, 6u}, /* bit 9: Magnetic Field Vector */
-        {152, 6u}, /* bit 10: Coarse Sun Vector */
-        {153, 6u}, /* bit 11: Fine Sun Vector */
-        {154, 6u}, /* bit 12: Nadir Vector */
-        {155, 6u}, /* bit 13: Rate Sensor Rates */
-        {156, 6u}, /* bit 14: Wheel Speed */
-        {181, 6u}, /* bit 15: Star 1 Body Vector */
-        {184, 6u}, /* bit 16: Star 1 Orbit Vector */
-        {182, 6u}, /* bit 17: Star 2 Body Vector */
-        {185, 6u}, /* bit 18: Star 2 Orbit Vector */
-        {183, 6u}, /* bit 19: Star 3 Body Vector */
-        {186, 6u}, /* bit 20: Star 3 Orbit Vector */
-        {171, 4u}, /* bit 21: CubeSense1 Current Measurements */
-        {172, 6u}, /* bit 22: CubeControl Current Measurements */
-        {173, 6u}, /* bit 23: Wheel Currents */
-        {198, 6u}, /* bit 24: ADCS Misc Current Measurements */
-        {174, 6u}, /* bit 25: ADCS Temperatures */
-        {175, 6u}, /* bit 26: Rate sensor temperatures */
-        {132, 6u}, /* bit 27: Current ADCS State */
-        {146, 6u}, /* bit 28: Estimated Attitude Angles */
-        {218, 6u}, /* bit 29: Estimated Quaternion */
-        {147, 6u}, /* bit 30: Estimated Angular Rates */
-        {148, 6u}, /* bit 31: Satellite Position (ECI) */
-        {149, 6u}, /* bit 32: Satellite Velocity (ECI) */
-        {150, 6u}, /* bit 33: Satellite Position (LLH) */
-        {219, 6u}, /* bit 34: ECEF Position */
-        {159, 6u}, /* bit 35: IGRF Modelled Magnetic Field Vector */
-        {160, 6u}, /* bit 36: Modelled Sun Vector */
-        {161, 6u}, /* bit 37: Estimated Gyro Bias */
-        {162, 6u}, /* bit 38: Estimation Innovation Vector */
-        {163, 6u}, /* bit 39: Quaternion Error Vector */
-        {164, 6u}, /* bit 40: Quaternion Covariance */
-        {165, 6u}, /* bit 41: Angular Rate Covariance */
-        {176, 6u}, /* bit 42: Raw GPS Status */
-        {177, 6u}, /* bit 43: Raw GPS Time */
-        {178, 6u}, /* bit 44: Raw GPS X */
-        {179, 6u}, /* bit 45: Raw GPS Y */
-        {180, 6u}, /* bit 46: Raw GPS Z */
-        {166, 6u}, /* bit 47: Raw Cam2 Sensor */
-        {167, 6u}, /* bit 48: Raw Cam1 Sensor */
-        {168, 6u}, /* bit 49: Raw CSS 1 to 6 */
-        {169, 6u}, /* bit 50: Raw CSS 7 to 10 */
-        {170, 6u}, /* bit 51: Raw Magnetometer */
-        {188, 6u}, /* bit 52: Star Performance1 */
-        {187, 6u}, /* bit 53: Star Magnitude */
-        {212, 6u}, /* bit 54: Star 1 Raw Data */
-        {213, 6u}, /* bit 55: Star 2 Raw Data */
-        {214, 6u}, /* bit 56: Star 3 Raw Data */
-        {189, 6u}, /* bit 57: Star Timing */
-        {215, 6u}, /* bit 58: Secondary Magnetometer Raw Measurements */
-        {201, 6u}, /* bit 59: Fine Estimated Angular Rates */
-        {216, 6u}, /* bit 60: Raw Rate Sensor */
-        {224, 6u}, /* bit 61: Current ADCS State 2 */
-        {229, 6u}, /* bit 62: CubeStar Estimated Rates */
-        {230, 6u}, /* bit 63: CubeStar Estimated Quaternion */
-        {231, 6u}, /* bit 64: Star Performance2 */
-        {232, 4u}, /* bit 65: CubeSense2 Current Measurements */
-        {-1, 6u}, /* bit 66 */
-        {-1, 6u}, /* bit 67 */
-        {-1, 6u}, /* bit 68 */
-        {-1, 6u}, /* bit 69 */
-        {-1, 6u}, /* bit 70 */
-        {-1, 6u}, /* bit 71 */
-        {-1, 6u}, /* bit 72 */
-        {-1, 6u}, /* bit 73 */
-        {-1, 6u}, /* bit 74 */
-        {-1, 6u}, /* bit 75 */
-        {-1, 6u}, /* bit 76 */
-        {-1, 6u}, /* bit 77 */
-        {-1, 6u}, /* bit 78 */
-        {-1, 6u}, /* bit 79 */
-    };
-#endif
-#ifndef ICDGEN_NO_LOGS
-    /**
-     * Assumed frame_order: The order of the frames in an entry is not said. They follow the bits of the mask, bit 0 of
-     * the first byte first. Assumed short_frames: All loggable frames are said to have 6 bytes, two have 4. They are
-     * taken to be filled up, since only then the given sizes hold. Assumed fill: The value is not given. It is written
-     * and never looked at. Assumed unassigned_bits: What a log with an unassigned bit holds is not said. The given
-     * sizes count every bit that is set.
-     */
-    static const icd_log_mask_form_t log_mask = {
-        10u, /* size */
-        false, /* msb0 */
-        6u, /* slot_bytes */
-        0x00u, /* fill */
-        log_bits,
-    };
+static const icd_log_bit_t icdgen_node_cubeacp_log_bits[] = {
+    {144, 6u}, /* bit 0: Communication Status */
+    {143, 6u}, /* bit 1: EDAC Error Counters */
+    {-1, 6u}, /* bit 2 */
+    {141, 6u}, /* bit 3: Last Logged Event */
+    {142, 6u}, /* bit 4: SRAM Latchup counters */
+    {-1, 6u}, /* bit 5 */
+    {-1, 6u}, /* bit 6 */
+    {157, 6u}, /* bit 7: Magnetorquer Command */
+    {158, 6u}, /* bit 8: Wheel Speed Commands */
+    {151, 6u}, /* bit 9: Magnetic Field Vector */
+    {152, 6u}, /* bit 10: Coarse Sun Vector */
+    {153, 6u}, /* bit 11: Fine Sun Vector */
+    {154, 6u}, /* bit 12: Nadir Vector */
+    {155, 6u}, /* bit 13: Rate Sensor Rates */
+    {156, 6u}, /* bit 14: Wheel Speed */
+    {181, 6u}, /* bit 15: Star 1 Body Vector */
+    {184, 6u}, /* bit 16: Star 1 Orbit Vector */
+    {182, 6u}, /* bit 17: Star 2 Body Vector */
+    {185, 6u}, /* bit 18: Star 2 Orbit Vector */
+    {183, 6u}, /* bit 19: Star 3 Body Vector */
+    {186, 6u}, /* bit 20: Star 3 Orbit Vector */
+    {171, 4u}, /* bit 21: CubeSense1 Current Measurements */
+    {172, 6u}, /* bit 22: CubeControl Current Measurements */
+    {173, 6u}, /* bit 23: Wheel Currents */
+    {198, 6u}, /* bit 24: ADCS Misc Current Measurements */
+    {174, 6u}, /* bit 25: ADCS Temperatures */
+    {175, 6u}, /* bit 26: Rate sensor temperatures */
+    {132, 6u}, /* bit 27: Current ADCS State */
+    {146, 6u}, /* bit 28: Estimated Attitude Angles */
+    {218, 6u}, /* bit 29: Estimated Quaternion */
+    {147, 6u}, /* bit 30: Estimated Angular Rates */
+    {148, 6u}, /* bit 31: Satellite Position (ECI) */
+    {149, 6u}, /* bit 32: Satellite Velocity (ECI) */
+    {150, 6u}, /* bit 33: Satellite Position (LLH) */
+    {219, 6u}, /* bit 34: ECEF Position */
+    {159, 6u}, /* bit 35: IGRF Modelled Magnetic Field Vector */
+    {160, 6u}, /* bit 36: Modelled Sun Vector */
+    {161, 6u}, /* bit 37: Estimated Gyro Bias */
+    {162, 6u}, /* bit 38: Estimation Innovation Vector */
+    {163, 6u}, /* bit 39: Quaternion Error Vector */
+    {164, 6u}, /* bit 40: Quaternion Covariance */
+    {165, 6u}, /* bit 41: Angular Rate Covariance */
+    {176, 6u}, /* bit 42: Raw GPS Status */
+    {177, 6u}, /* bit 43: Raw GPS Time */
+    {178, 6u}, /* bit 44: Raw GPS X */
+    {179, 6u}, /* bit 45: Raw GPS Y */
+    {180, 6u}, /* bit 46: Raw GPS Z */
+    {166, 6u}, /* bit 47: Raw Cam2 Sensor */
+    {167, 6u}, /* bit 48: Raw Cam1 Sensor */
+    {168, 6u}, /* bit 49: Raw CSS 1 to 6 */
+    {169, 6u}, /* bit 50: Raw CSS 7 to 10 */
+    {170, 6u}, /* bit 51: Raw Magnetometer */
+    {188, 6u}, /* bit 52: Star Performance1 */
+    {187, 6u}, /* bit 53: Star Magnitude */
+    {212, 6u}, /* bit 54: Star 1 Raw Data */
+    {213, 6u}, /* bit 55: Star 2 Raw Data */
+    {214, 6u}, /* bit 56: Star 3 Raw Data */
+    {189, 6u}, /* bit 57: Star Timing */
+    {215, 6u}, /* bit 58: Secondary Magnetometer Raw Measurements */
+    {201, 6u}, /* bit 59: Fine Estimated Angular Rates */
+    {216, 6u}, /* bit 60: Raw Rate Sensor */
+    {224, 6u}, /* bit 61: Current ADCS State 2 */
+    {229, 6u}, /* bit 62: CubeStar Estimated Rates */
+    {230, 6u}, /* bit 63: CubeStar Estimated Quaternion */
+    {231, 6u}, /* bit 64: Star Performance2 */
+    {232, 4u}, /* bit 65: CubeSense2 Current Measurements */
+    {-1, 6u}, /* bit 66 */
+    {-1, 6u}, /* bit 67 */
+    {-1, 6u}, /* bit 68 */
+    {-1, 6u}, /* bit 69 */
+    {-1, 6u}, /* bit 70 */
+    {-1, 6u}, /* bit 71 */
+    {-1, 6u}, /* bit 72 */
+    {-1, 6u}, /* bit 73 */
+    {-1, 6u}, /* bit 74 */
+    {-1, 6u}, /* bit 75 */
+    {-1, 6u}, /* bit 76 */
+    {-1, 6u}, /* bit 77 */
+    {-1, 6u}, /* bit 78 */
+    {-1, 6u}, /* bit 79 */
+};
 #endif
 #ifndef ICDGEN_NO_LOGS
-    static const icd_log_file_form_t log_file = {
-        0u, /* mask_at */
-        10u, /* header_bytes */
-        {0u, 4u}, /* seconds */
-        {4u, 2u}, /* milliseconds */
-        6u, /* frames_at */
-        2, /* file_type */
-    };
+/**
+ * Assumed frame_order: The order of the frames in an entry is not said. They follow the bits of the mask, bit 0 of
+ * the first byte first. Assumed short_frames: All loggable frames are said to have 6 bytes, two have 4. They are
+ * taken to be filled up, since only then the given sizes hold. Assumed fill: The value is not given. It is written
+ * and never looked at. Assumed unassigned_bits: What a log with an unassigned bit holds is not said. The given
+ * sizes count every bit that is set.
+ */
+static const icd_log_mask_form_t icdgen_node_cubeacp_log_mask = {
+    10u, /* size */
+    false, /* msb0 */
+    6u, /* slot_bytes */
+    0x00u, /* fill */
+    icdgen_node_cubeacp_log_bits,
+};
 #endif
 #ifndef ICDGEN_NO_LOGS
-    /**
-     * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
-     * for these messages.
-     */
-    static const icd_log_message_form_t log_message = {
-        255u, /* id */
-        1u, /* mask_at */
-        11u, /* frames_at */
-    };
+static const icd_log_file_form_t icdgen_node_cubeacp_log_file = {
+    0u, /* mask_at */
+    10u, /* header_bytes */
+    {0u, 4u}, /* seconds */
+    {4u, 2u}, /* milliseconds */
+    6u, /* frames_at */
+    2, /* file_type */
+};
+#endif
+#ifndef ICDGEN_NO_LOGS
+/**
+ * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
+ * for these messages.
+ */
+static const icd_log_message_form_t icdgen_node_cubeacp_log_message = {
+    255u, /* id */
+    1u, /* mask_at */
+    11u, /* frames_at */
+    10u, 6u, /* size of the mask, slot_bytes */
+};
 #endif
 #ifndef ICDGEN_NO_FILES
-    static const icd_time_form_t packed_time = {
-        {25u, 7u, 1u, 1980u}, /* year */
-        {21u, 4u, 1u, 0u}, /* month */
-        {16u, 5u, 1u, 0u}, /* day */
-        {11u, 5u, 1u, 0u}, /* hour */
-        {5u, 6u, 1u, 0u}, /* minute */
-        {0u, 5u, 2u, 0u}, /* second */
-    };
+static const icd_time_form_t icdgen_node_cubeacp_packed_time = {
+    {25u, 7u, 1u, 1980u}, /* year */
+    {21u, 4u, 1u, 0u}, /* month */
+    {16u, 5u, 1u, 0u}, /* day */
+    {11u, 5u, 1u, 0u}, /* hour */
+    {5u, 6u, 1u, 0u}, /* minute */
+    {0u, 5u, 2u, 0u}, /* second */
+};
 #endif
 #ifndef ICDGEN_NO_FILES
-    static const icd_index_form_t index_entry = {
-        37u, /* entry_bytes */
-        15, /* file_type */
-        {0u, 1u}, /* type */
-        {1u, 1u}, /* counter */
-        {2u, 2u}, /* checksum */
-        {4u, 4u}, /* size */
-        {8u, 4u}, /* time */
-        {12u, 25u}, /* meta */
-    };
+static const icd_index_form_t icdgen_node_cubeacp_index_entry = {
+    37u, /* entry_bytes */
+    15, /* file_type */
+    {0u, 1u}, /* type */
+    {1u, 1u}, /* counter */
+    {2u, 2u}, /* checksum */
+    {4u, 4u}, /* size */
+    {8u, 4u}, /* time */
+    {12u, 25u}, /* meta */
+};
 #endif
-    static const icd_place_t identification_places[] = {
-        {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
-        {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
-    };
-    static const icd_report_t identification = {
-        -1, 128, 8u, 2u, identification_places,
-    };
-    static const icd_number_place_t sources_0[] = {
-        {0u, 4u, 0u, 32u, false},
-    };
-    static const icd_echo_t echoes_0[] = {
-        {{4u, 1u, 0u, 8u, false}, 0u},
-    };
-    static const icd_meaning_t meanings_0[] = {
-        {0x0u, ICD_VERDICT_ACK},
-        {0x4u, ICD_VERDICT_AGAIN},
-    };
-    static const icd_response_t responses_0[] = {
-        {0x0u, ICD_VERDICT_NAK, 1u, true, 2u, echoes_0, meanings_0,
-            {5u, 1u, 0u, 8u, false}, {5u, 1u, 0u, 8u, false}, {0u, 0u, 0u, 0u, false}},
-    };
-    static const icd_exchange_t uart_exchanges[] = {
-        {sources_0, NULL, 1u, 0u, 0u, true, 0u, NULL},
-        {sources_0, responses_0, 1u, 0u, 1u, false, 0u, NULL},
-    };
-    static const icd_bus_exchanges_t on_uart = {
-        &uart_exchanges[1], &uart_exchanges[0],
-    };
-    static const icd_echo_t echoes_1[] = {
-        {{4u, 1u, 0u, 8u, true}, 0u},
-    };
-    static const icd_response_t responses_1[] = {
-        {0xf0u, ICD_VERDICT_NAK, 1u, false, 2u, echoes_1, meanings_0,
-            {6u, 1u, 0u, 8u, true}, {6u, 1u, 0u, 8u, true}, {7u, 1u, 0u, 8u, true}},
-    };
-    static const icd_outcome_poll_t outcome_poll = {
-        240u, {5u, 1u, 0u, 1u, true},
-    };
-    static const icd_exchange_t i2c_exchanges[] = {
-        {sources_0, NULL, 1u, 0u, 0u, true, 0u, NULL},
-        {sources_0, responses_1, 1u, 0u, 1u, false, 0u, &outcome_poll},
-    };
-    static const icd_bus_exchanges_t on_i2c = {
-        &i2c_exchanges[1], &i2c_exchanges[0],
-    };
-    static const icd_response_t responses_2[] = {
-        {0x2u, ICD_VERDICT_NAK, 1u, true, 0u, echoes_0, NULL,
-            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
-    };
-    static const icd_response_t responses_3[] = {
-        {0x0u, ICD_VERDICT_ACK, 1u, true, 0u, echoes_0, NULL,
-            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
-        {0x1u, ICD_VERDICT_NAK, 1u, true, 0u, echoes_0, NULL,
-            {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}},
-    };
-    static const icd_exchange_t can_exchanges[] = {
-        {sources_0, responses_2, 1u, 0u, 1u, true, 0u, NULL},
-        {sources_0, responses_3, 1u, 0u, 2u, false, 0u, NULL},
-    };
-    static const icd_bus_exchanges_t on_can = {
-        &can_exchanges[1], &can_exchanges[0],
-    };
+static const icd_place_t icdgen_node_cubeacp_identification_places[] = {
+    {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
+    {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
+};
+static const icd_report_t icdgen_node_cubeacp_identification = {
+    -1, 128, 8u, 2u, icdgen_node_cubeacp_identification_places,
+};
+static const icd_number_place_t icdgen_node_cubeacp_sources_0[] = {
+    {0u, 4u, 0u, 32u, false},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_0[] = {
+    {4u, 1u, 0u, 8u, false},
+};
+static const icd_echo_t icdgen_node_cubeacp_echoes_0[] = {
+    {icdgen_node_cubeacp_place_0, 0u},
+};
+static const icd_meaning_t icdgen_node_cubeacp_meanings_0[] = {
+    {0x0u, ICD_VERDICT_ACK},
+    {0x4u, ICD_VERDICT_AGAIN},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_1[] = {
+    {5u, 1u, 0u, 8u, false},
+};
+static const icd_response_t icdgen_node_cubeacp_responses_0[] = {
+    {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
+        icdgen_node_cubeacp_echoes_0, icdgen_node_cubeacp_meanings_0,
+        icdgen_node_cubeacp_place_1, icdgen_node_cubeacp_place_1, NULL},
+};
+static const icd_exchange_t icdgen_node_cubeacp_uart_exchanges[] = {
+    {icdgen_node_cubeacp_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_0,
+        1u, 0u, 1u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_cubeacp_on_uart = {
+    &icdgen_node_cubeacp_uart_exchanges[1], &icdgen_node_cubeacp_uart_exchanges[0],
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_2[] = {
+    {4u, 1u, 0u, 8u, true},
+};
+static const icd_echo_t icdgen_node_cubeacp_echoes_1[] = {
+    {icdgen_node_cubeacp_place_2, 0u},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_3[] = {
+    {6u, 1u, 0u, 8u, true},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_4[] = {
+    {7u, 1u, 0u, 8u, true},
+};
+static const icd_response_t icdgen_node_cubeacp_responses_1[] = {
+    {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
+        icdgen_node_cubeacp_echoes_1, icdgen_node_cubeacp_meanings_0,
+        icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_4},
+};
+static const icd_outcome_poll_t icdgen_node_cubeacp_outcome_poll = {
+    240u, {5u, 1u, 0u, 1u, true},
+};
+static const icd_exchange_t icdgen_node_cubeacp_i2c_exchanges[] = {
+    {icdgen_node_cubeacp_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_1,
+        1u, 0u, 1u, false, 0u, &icdgen_node_cubeacp_outcome_poll},
+};
+static const icd_bus_exchanges_t icdgen_node_cubeacp_on_i2c = {
+    &icdgen_node_cubeacp_i2c_exchanges[1], &icdgen_node_cubeacp_i2c_exchanges[0],
+};
+static const icd_response_t icdgen_node_cubeacp_responses_2[] = {
+    {0x2u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_cubeacp_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_response_t icdgen_node_cubeacp_responses_3[] = {
+    {0x0u, ICD_VERDICT_ACK, 1u, true, 0x1u, 0u,
+        icdgen_node_cubeacp_echoes_0, NULL,
+        NULL, NULL, NULL},
+    {0x1u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_cubeacp_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_exchange_t icdgen_node_cubeacp_can_exchanges[] = {
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_2,
+        1u, 0u, 1u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_3,
+        1u, 0u, 2u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_cubeacp_on_can = {
+    &icdgen_node_cubeacp_can_exchanges[1], &icdgen_node_cubeacp_can_exchanges[0],
+};
+
+ICDGEN_API const icd_link_t *cubeacp_link(void)
+{
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
@@ -1184,41 +1211,172 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
      * given. The control loop runs once a second.
      */
     static const icd_link_t link = {
-        nodes, /* whose messages */
+        icdgen_node_cubeacp_nodes, /* whose messages */
         2u, /* how many */
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        telecommands, /* what can be sent */
-        telemetry, /* what can be requested */
-        ICDGEN_U16((sizeof(telecommands) / sizeof(telecommands[0])) - 1u), /* how many can be sent */
-        ICDGEN_U16((sizeof(telemetry) / sizeof(telemetry[0])) - 1u), /* how many can be requested */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
+        506u, /* buffer for what is received */
         10, /* node type */
         7, /* interface version */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        errors, /* error codes */
+        icdgen_node_cubeacp_errors, /* error codes */
         5u, 0u, /* how many; no error */
-        &framing, /* framing of the UART */
-        &acknowledge, /* acknowledges on the UART */
-        unsolicited, 1u, /* unsolicited */
+        &icdgen_node_cubeacp_framing, /* framing of the UART */
+        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
+        icdgen_node_cubeacp_unsolicited, 1u, /* unsolicited */
         87, /* I2C address */
         true, /* I2C: a read may follow its write without a stop */
         5000, /* boot time in ms */
-        &can, /* CAN */
-        &checksum, /* checksums of messages */
-        &crc16, /* CRC of files */
-        ICDGEN_OF_LOGS(&log_mask), /* mask of logs */
-        ICDGEN_OF_LOGS(&log_file), /* log files */
-        ICDGEN_OF_LOGS(&log_message), /* unsolicited logs */
-        ICDGEN_OF_FILES(&packed_time), /* packed times */
-        ICDGEN_OF_FILES(&index_entry), /* index of files */
-        &identification, /* identification */
-        {&on_uart, &on_i2c, &on_can}, /* exchanges on UART, I2C, CAN */
+        &icdgen_node_cubeacp_can, /* CAN */
+        &icdgen_node_cubeacp_checksum, /* checksums of messages */
+        &icdgen_node_cubeacp_crc16, /* CRC of files */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_mask), /* mask of logs */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_file), /* log files */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
+        ICDGEN_OF_FILES(&icdgen_node_cubeacp_packed_time), /* packed times */
+        ICDGEN_OF_FILES(&icdgen_node_cubeacp_index_entry), /* index of files */
+        &icdgen_node_cubeacp_identification, /* identification */
+        {&icdgen_node_cubeacp_on_uart,
+            &icdgen_node_cubeacp_on_i2c,
+            &icdgen_node_cubeacp_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* framing */
     };
-    /* clang-format on */
+    return &link;
+}
+
+ICDGEN_API const icd_link_t *cubeacp_uart_link(void)
+{
+    static const icd_link_t link = {
+        icdgen_node_cubeacp_nodes, /* whose messages */
+        2u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        506u, 506u, 506u, /* longest telecommand, reply, any */
+        504u, /* longest without id and checksum */
+        506u, /* buffer for what is received */
+        10, /* node type */
+        7, /* interface version */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        icdgen_node_cubeacp_errors, /* error codes */
+        5u, 0u, /* how many; no error */
+        &icdgen_node_cubeacp_framing, /* framing of the UART */
+        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
+        icdgen_node_cubeacp_unsolicited, 1u, /* unsolicited */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* CAN */
+        &icdgen_node_cubeacp_checksum, /* checksums of messages */
+        NULL, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
+        {&icdgen_node_cubeacp_on_uart,
+            NULL,
+            NULL}, /* exchanges on UART, I2C, CAN */
+        NULL, /* framing */
+    };
+    return &link;
+}
+
+ICDGEN_API const icd_link_t *cubeacp_i2c_link(void)
+{
+    static const icd_link_t link = {
+        icdgen_node_cubeacp_nodes, /* whose messages */
+        2u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        506u, 506u, 506u, /* longest telecommand, reply, any */
+        504u, /* longest without id and checksum */
+        506u, /* buffer for what is received */
+        10, /* node type */
+        7, /* interface version */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        icdgen_node_cubeacp_errors, /* error codes */
+        5u, 0u, /* how many; no error */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, 0u, /* unsolicited */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* CAN */
+        &icdgen_node_cubeacp_checksum, /* checksums of messages */
+        NULL, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
+        {NULL,
+            &icdgen_node_cubeacp_on_i2c,
+            NULL}, /* exchanges on UART, I2C, CAN */
+        NULL, /* framing */
+    };
+    return &link;
+}
+
+ICDGEN_API const icd_link_t *cubeacp_can_link(void)
+{
+    static const icd_link_t link = {
+        icdgen_node_cubeacp_nodes, /* whose messages */
+        2u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
+        ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        506u, 506u, 506u, /* longest telecommand, reply, any */
+        504u, /* longest without id and checksum */
+        506u, /* buffer for what is received */
+        10, /* node type */
+        7, /* interface version */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        NULL, /* error codes */
+        0u, 0u, /* how many; no error */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, 0u, /* unsolicited */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        &icdgen_node_cubeacp_can, /* CAN */
+        NULL, /* checksums of messages */
+        NULL, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
+        {NULL,
+            NULL,
+            &icdgen_node_cubeacp_on_can}, /* exchanges on UART, I2C, CAN */
+        NULL, /* framing */
+    };
     return &link;
 }
 

@@ -26,6 +26,15 @@
 /** Return the description of the protocol of CubeACP. */
 ICDGEN_API const icd_link_t *cubeacp_link(void);
 
+/** Return the part of this description that a client on the UART needs. */
+ICDGEN_API const icd_link_t *cubeacp_uart_link(void);
+
+/** Return the part of this description that a client on I2C needs. */
+ICDGEN_API const icd_link_t *cubeacp_i2c_link(void);
+
+/** Return the part of this description that a client on CAN needs. */
+ICDGEN_API const icd_link_t *cubeacp_can_link(void);
+
 /** Return the steps of the procedure `list`; NULL if procedures are left out. */
 ICDGEN_API const icd_procedure_form_t *cubeacp_list_form(void);
 

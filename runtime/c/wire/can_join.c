@@ -43,17 +43,13 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
 }
 
 static inline void icdgen_can_tell(
-    const icd_link_t *link,
-    uint32_t key,
-    icd_event_kind_t kind,
-    uint32_t missing,
-    icd_event_fn *on_event,
-    void *context)
+    const icd_link_t *link, uint32_t key, icd_event_kind_t kind, uint32_t missing, const icdgen_listener_t *listener)
 {
-    icd_event_t event = icdgen_event_of(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event;
+    icdgen_event_of(&event, kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.missing = missing;
-    on_event(context, &event);
+    icdgen_tell(listener, &event);
 }
 
 /* The data start after the id byte. */
@@ -63,17 +59,17 @@ static inline void icdgen_can_tell_message(
     icd_can_kind_t kind,
     uint8_t *data,
     size_t length,
-    icd_event_fn *on_event,
-    void *context)
+    const icdgen_listener_t *listener)
 {
-    icd_event_t event = icdgen_event_of(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    icd_event_t event;
+    icdgen_event_of(&event, ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
     event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
     event.destination = ICDGEN_U8(icdgen_can_part(link->can->destination, key));
     event.can_kind = kind;
     data[-1] = ICDGEN_U8(event.id);
     event.data = data;
     event.length = length;
-    on_event(context, &event);
+    icdgen_tell(listener, &event);
 }
 
 static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
@@ -85,31 +81,32 @@ static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
 static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
 {
     icd_can_slot_t *const slots = joiner->slots;
-    uint8_t *const data = slots[index].data;
     joiner->used--;
-    (void)memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
-    (void)memset(&slots[joiner->used], 0, sizeof *slots);
-    slots[joiner->used].data = data;
+    for (size_t i = index; i < joiner->used; ++i) {
+        uint8_t *const data = slots[i].data;
+        slots[i] = slots[i + 1u];
+        slots[i + 1u].data = data;
+    }
 }
 
 /* Discard a message. A complete message causes no event: its slot only serves to detect repeated packets. */
-static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, icd_event_fn *on_event, void *context)
+static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, const icdgen_listener_t *listener)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
     const uint32_t key = slot->key, missing = slot->count - slot->there;
     const bool done = slot->done;
     icdgen_can_free(joiner, index);
     if (!done) {
-        icdgen_can_tell(joiner->link, key, ICD_EVENT_INCOMPLETE, missing, on_event, context);
+        icdgen_can_tell(joiner->link, key, ICD_EVENT_INCOMPLETE, missing, listener);
     }
 }
 
-ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
+static inline void icdgen_can_expire(icd_can_joiner_t *joiner, uint32_t now, const icdgen_listener_t *listener)
 {
     size_t i = 0;
     while (i < joiner->used) {
         if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
-            icdgen_can_give_up(joiner, i, on_event, context);
+            icdgen_can_give_up(joiner, i, listener);
         } else {
             ++i;
         }
@@ -151,24 +148,35 @@ static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t 
     return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
 }
 
-/* Start a new message in the slot of another. The packets received so far are kept if they are the same in both. */
-static inline void icdgen_can_replace(
-    icd_can_joiner_t *joiner,
-    size_t index,
-    uint32_t number,
-    icd_can_slot_t *fresh,
-    icd_event_fn *on_event,
-    void *context)
+/*
+ * Start a new message in the slot of another. Return the number of packets received so far that are kept, because they
+ * are the same in both.
+ */
+static inline uint32_t icdgen_can_replace(
+    icd_can_joiner_t *joiner, size_t index, uint32_t number, const icdgen_listener_t *listener)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
-    if (!slot->done && number == slot->run) {
-        for (uint32_t n = 0; n < number; ++n) {
-            fresh->got[n / 8u] = ICDGEN_U8(fresh->got[n / 8u] | (1u << (n % 8u)));
-        }
-        fresh->there = number;
-        fresh->run = number;
+    const uint32_t kept = !slot->done && number == slot->run ? number : 0u;
+    icdgen_can_give_up(joiner, index, listener);
+    return kept;
+}
+
+static inline void icdgen_can_mark(icd_can_slot_t *slot, uint32_t number)
+{
+    slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
+    slot->there++;
+}
+
+/* Begin a message in a slot, of which some packets are there. */
+static inline void icdgen_can_begin(icd_can_slot_t *slot, uint32_t kept)
+{
+    uint8_t *const data = slot->data;
+    (void)memset(slot, 0, sizeof *slot);
+    slot->data = data;
+    slot->run = kept;
+    for (uint32_t n = 0; n < kept; ++n) {
+        icdgen_can_mark(slot, n);
     }
-    icdgen_can_give_up(joiner, index, on_event, context);
 }
 
 /* Process a packet of a message of several packets. */
@@ -177,8 +185,7 @@ static inline void icdgen_can_extended(
     uint32_t now,
     icd_can_kind_t kind,
     const icd_can_packet_t *packet,
-    icd_event_fn *on_event,
-    void *context)
+    const icdgen_listener_t *listener)
 {
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
@@ -186,8 +193,8 @@ static inline void icdgen_can_extended(
     const icd_can_extended_t *const form = can->extended;
     const size_t size = form->data_bytes;
     size_t index = 0;
-    icd_can_slot_t *slot, fresh;
-    uint32_t left, count, number;
+    icd_can_slot_t *slot;
+    uint32_t left, count, number, kept = 0;
     while (index < joiner->used && joiner->slots[index].key != packet->id) {
         ++index;
     }
@@ -202,56 +209,53 @@ static inline void icdgen_can_extended(
     }
     if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
         if (slot != NULL) {
-            icdgen_can_give_up(joiner, index, on_event, context);
+            icdgen_can_give_up(joiner, index, listener);
         }
-        icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
+        icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, listener);
         return;
     }
     number = count - 1u - left;
     if (slot != NULL && (!slot->done || slot->completed_by == number) && icdgen_can_got(slot, number) &&
         memcmp(slot->data + (number * size), packet->data, size) == 0) {
         icdgen_can_came(slot, number, now);
-        icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, on_event, context);
+        icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, listener);
         return;
     }
-    (void)memset(&fresh, 0, sizeof fresh);
     if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
-        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot owns its memory */
+        kept = icdgen_can_replace(joiner, index, number, listener); /* the next free slot owns its memory */
         slot = NULL;
     }
     if (slot == NULL) {
         slot = icdgen_can_slot(joiner);
         if (slot == NULL) {
-            icdgen_can_tell(link, packet->id, ICD_EVENT_NO_SLOT, 0, on_event, context);
+            icdgen_can_tell(link, packet->id, ICD_EVENT_NO_SLOT, 0, listener);
             return;
         }
-        fresh.data = slot->data;
-        *slot = fresh;
+        icdgen_can_begin(slot, kept);
         slot->key = packet->id;
         slot->kind = kind;
         slot->count = count;
         slot->length = length;
     }
     (void)memcpy(slot->data + (number * size), packet->data, size);
-    slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
-    slot->there++;
+    icdgen_can_mark(slot, number);
     icdgen_can_came(slot, number, now);
     if (slot->there == slot->count) {
         slot->done = true;
         slot->completed_by = number;
         icdgen_can_tell_message(
             link, slot->key, kind, slot->data, ICDGEN_SIZE(slot->length != 0u ? slot->length : slot->count * size),
-            on_event, context);
+            listener);
     }
 }
 
-ICDGEN_API void icd_can_feed(
-    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
+static inline void icdgen_can_feed(
+    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, const icdgen_listener_t *listener)
 {
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
     const uint32_t type = icdgen_can_part(can->type, packet->id);
-    icd_can_expire(joiner, now, on_event, context);
+    icdgen_can_expire(joiner, now, listener);
     if (joiner->address != ICD_CAN_EVERYBODY &&
         icdgen_can_part(can->destination, packet->id) != ICDGEN_U32(joiner->address)) {
         return;
@@ -261,21 +265,36 @@ ICDGEN_API void icd_can_feed(
         if (can->types[i] >= 0 && ICDGEN_U32(can->types[i]) == type) {
             uint8_t message[1u + sizeof packet->data];
             if (packet->length > (icdgen_can_has_data(kind) ? can->data_bytes : 0u)) {
-                icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
+                icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, listener);
                 return;
             }
             (void)memcpy(message + 1, packet->data, sizeof packet->data);
-            icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, on_event, context);
+            icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, listener);
             return;
         }
     }
     for (unsigned i = 0; can->extended != NULL && i < ICD_CAN_KINDS; ++i) {
         if (can->extended_types[i] >= 0 && ICDGEN_U32(can->extended_types[i]) == type) {
-            icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, on_event, context);
+            icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, listener);
             return;
         }
     }
-    icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, on_event, context);
+    icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, listener);
+}
+
+ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_can_expire(joiner, now, &listener);
+}
+
+ICDGEN_API void icd_can_feed(
+    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
+{
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_can_feed(joiner, now, packet, &listener);
 }
 
 #endif /* ICDGEN_WIRE_CAN_JOIN_C */

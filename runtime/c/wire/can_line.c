@@ -13,11 +13,10 @@ static inline icd_status_t icdgen_can_split(
         slot->data + 1, slot->length - 1u);
 }
 
-static inline icd_status_t icdgen_can_store(
-    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+static inline icd_status_t icdgen_can_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
     icd_can_splitter_t splitter;
-    const icd_status_t status = icdgen_bus_store(client, slot, data, length);
+    const icd_status_t status = icdgen_bus_store(client, slot, data);
     if (status != ICD_OK) {
         return status;
     }
@@ -45,39 +44,44 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
     return has_packet;
 }
 
-static inline void icdgen_on_can(void *context, const icd_event_t *event)
+static inline void icdgen_on_can(const void *context, icd_event_t *event)
 {
     const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
     const icd_can_kind_t kind = event->can_kind;
     if (event->kind != ICD_EVENT_MESSAGE) {
         call->on_event(call->context, event);
     } else if (event->source != call->client->link->can->node_address) {
-        icdgen_bus_stray(call, event->id, event->data, event->length);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
     } else if (kind == ICD_CAN_REPLY) {
-        icdgen_bus_telemetry(call, event->id, event->data, event->length);
-    } else if (kind == ICD_CAN_ACKNOWLEDGE) {
-        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, event->data - 1, event->length + 1u);
-    } else if (kind == ICD_CAN_REFUSAL) {
-        icdgen_bus_packet(call, ICDGEN_REFUSAL, event->data - 1, event->length + 1u);
-    } else if (kind == ICD_CAN_REQUEST_REFUSAL) {
-        icdgen_bus_packet(call, ICDGEN_REQUEST_REFUSAL, event->data - 1, event->length + 1u);
+        icdgen_bus_telemetry(call, event);
+    } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
+        event->data--; /* the id */
+        event->length++;
+        icdgen_bus_packet(
+            call,
+            kind == ICD_CAN_ACKNOWLEDGE   ? ICDGEN_ACKNOWLEDGE
+                : kind == ICD_CAN_REFUSAL ? ICDGEN_REFUSAL
+                                          : ICDGEN_REQUEST_REFUSAL,
+            event);
     } else {
-        icdgen_bus_stray(call, event->id, event->data, event->length);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
     }
 }
 
 static inline void icdgen_can_overdue(const icdgen_call_t *call, uint32_t now)
 {
-    icd_can_expire(&call->client->can->joiner, now, call->on_event, call->context);
+    const icdgen_listener_t listener = {icdgen_on_can, call};
+    icdgen_can_expire(&call->client->can->joiner, now, &listener);
 }
 
 ICDGEN_API void icd_client_packet(
     icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
 {
-    icdgen_call_t call = {client, on_event, context};
+    const icdgen_call_t call = {client, on_event, context};
+    const icdgen_listener_t listener = {icdgen_on_can, &call};
     icd_client_tick(client, now, on_event, context);
     if (client->can != NULL) {
-        icd_can_feed(&client->can->joiner, now, packet, icdgen_on_can, &call);
+        icdgen_can_feed(&client->can->joiner, now, packet, &listener);
     }
 }
 
@@ -98,7 +102,8 @@ ICDGEN_API icd_status_t icd_client_can(
     (void)memset(line, 0, sizeof *line);
     line->address = address;
     if (status == ICD_OK) {
-        status = icd_can_joiner_init(&line->joiner, link, address, &line->slot, 1, buffer, icdgen_receive_bytes(link));
+        status = icd_can_joiner_init(
+            &line->joiner, link, address, &line->slot, 1, buffer, ICDGEN_SIZE(link->received_bytes));
     }
     if (status == ICD_OK) {
         client->can = line;

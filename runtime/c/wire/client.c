@@ -12,45 +12,32 @@ typedef struct {
     void *context;
 } icdgen_call_t;
 
-/* How a request is sent, and what responds to it. */
-typedef struct {
-    icd_awaited_t awaited; /* without numbers. `exchange` is NULL if nothing responds, unless there is a reply */
-    uint32_t sent_id;      /* this and `asks_by_id` are of icd_slot_t */
-    size_t least;          /* bounds of the number of data bytes */
-    size_t most;
-    bool asks_by_id;
-    bool repeats;
-} icdgen_plan_t;
-
 /* What the client needs to know of a line. Functions that a line does not need are NULL. */
 struct icd_line {
     bool has_results; /* of its transmissions, which can fail */
     icd_bus_t bus;    /* except on framed links */
-    icd_status_t (*plan)(const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan);
-    /* Store the data of a request in its slot. Return an error if it cannot be encoded. */
-    icd_status_t (*store)(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length);
+    /*
+     * Set in a slot how a request is sent, what responds to it, and the number of its data bytes. Return
+     * ICD_ERROR_LENGTH only if there is no other error.
+     */
+    icd_status_t (*plan)(const icd_client_t *client, const icd_request_t *request, icd_slot_t *slot);
+    /* Store the data of a request; zeros if they are NULL. Return an error if it cannot be encoded. */
+    icd_status_t (*store)(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data);
     bool (*output)(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
     void (*received)(const icdgen_call_t *call, const uint8_t *bytes, size_t count);
     void (*expire)(const icdgen_call_t *call, uint32_t now); /* incomplete messages */
 };
 
-/* Return the buffer size of the decoder, or of the CAN joiner. */
-static inline size_t icdgen_receive_bytes(const icd_link_t *link)
-{
-    const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return slot > link->longest ? slot : ICDGEN_SIZE(link->longest);
-}
-
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link, size_t requests)
 {
-    return icdgen_receive_bytes(link) + (requests * ICDGEN_SIZE(link->longest_telecommand));
+    return ICDGEN_SIZE(link->received_bytes) + (requests * ICDGEN_SIZE(link->longest_telecommand));
 }
 
 /* Initialize what is the same on all lines. The first bytes of the buffer are for what is received. */
 static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_slot_t *slots, size_t slot_count, uint8_t *buffer, size_t size)
 {
-    const size_t first = icdgen_receive_bytes(link);
+    const size_t first = ICDGEN_SIZE(link->received_bytes);
     const size_t each = ICDGEN_SIZE(link->longest_telecommand);
     (void)memset(client, 0, sizeof *client);
     client->link = link;
@@ -72,64 +59,35 @@ static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
     return UINT32_C(1) << ICDGEN_U32(verdict);
 }
 
-static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_number_place_t *b)
-{
-    return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
-}
-
 /* The reply that the caller specified, or the requested telemetry. Its id is in icd_awaited_t. */
 static const icd_response_t icdgen_specified_reply = {
-    0u,
-    ICD_VERDICT_REPLY,
-    0u,
-    false,
-    0u,
-    NULL,
-    NULL,
-    {0u, 0u, 0u, 0u, false},
-    {0u, 0u, 0u, 0u, false},
-    {0u, 0u, 0u, 0u, false}};
-
-/* Return what a response can mean, as a mask of verdicts. */
-static inline uint32_t icdgen_verdicts(const icd_response_t *response)
-{
-    uint32_t verdicts = icdgen_verdict_bit(response->verdict);
-    for (size_t i = 0; i < response->meaning_count; ++i) {
-        verdicts |= icdgen_verdict_bit(response->meanings[i].verdict);
-    }
-    return verdicts;
-}
+    0u, ICD_VERDICT_REPLY, 0u, false, 1u << ICD_VERDICT_REPLY, 0u, NULL, NULL, NULL, NULL, NULL,
+};
 
 static inline bool icdgen_can_be_reply(const icd_response_t *response)
 {
-    return (icdgen_verdicts(response) & icdgen_verdict_bit(ICD_VERDICT_REPLY)) != 0u;
+    return (response->verdicts & icdgen_verdict_bit(ICD_VERDICT_REPLY)) != 0u;
+}
+
+/* Return how many possible responses a request has; some of them are NULL. */
+static inline size_t icdgen_response_count(const icd_awaited_t *awaited)
+{
+    return ICDGEN_SIZE(awaited->exchange->response_count) + 1u;
 }
 
 /*
- * Return the possible response to a request at a position or after it, and advance the position. NULL if there is none.
- * The reply that the caller specified takes the place of those in the ICD, and is the last; requested telemetry is the
- * first.
+ * Return a possible response to a request. The reply that the caller specified takes the place of those in the ICD, and
+ * is the last; requested telemetry is the first.
  */
-static inline const icd_response_t *icdgen_next_response(const icd_awaited_t *awaited, size_t *position)
+static inline const icd_response_t *icdgen_response(const icd_awaited_t *awaited, size_t index)
 {
     const icd_exchange_t *const exchange = awaited->exchange;
-    const bool has_reply = awaited->has_reply;
     const size_t own = exchange->is_request ? ICDGEN_SIZE(0) : exchange->response_count;
-    while (*position <= exchange->response_count) {
-        const size_t i = *position;
-        (*position)++;
-        if (i == own) {
-            if (has_reply) {
-                return &icdgen_specified_reply;
-            }
-        } else {
-            const icd_response_t *const response = &exchange->responses[i - (i > own ? 1u : 0u)];
-            if (!has_reply || !icdgen_can_be_reply(response)) {
-                return response;
-            }
-        }
+    if (index == own) {
+        return awaited->has_reply ? &icdgen_specified_reply : NULL;
     }
-    return NULL;
+    const icd_response_t *const response = &exchange->responses[index - (index > own ? 1u : 0u)];
+    return awaited->has_reply && icdgen_can_be_reply(response) ? NULL : response;
 }
 
 static inline uint32_t icdgen_response_source(const icd_awaited_t *awaited, const icd_response_t *response)
@@ -141,34 +99,37 @@ static inline uint32_t icdgen_response_source(const icd_awaited_t *awaited, cons
 static inline uint32_t icdgen_needed(const icd_awaited_t *awaited)
 {
     uint32_t verdicts = 0;
-    size_t position = 0;
-    const icd_response_t *response = icdgen_next_response(awaited, &position);
-    while (response != NULL) {
-        verdicts |= icdgen_verdicts(response);
-        response = icdgen_next_response(awaited, &position);
+    for (size_t i = 0; i < icdgen_response_count(awaited); ++i) {
+        const icd_response_t *const response = icdgen_response(awaited, i);
+        verdicts |= response != NULL ? response->verdicts : 0u;
     }
     return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
+}
+
+/* Return whether telemetry or a packet is this response to a request. */
+static inline bool icdgen_matches(
+    const icd_awaited_t *awaited, const icd_response_t *response, const icd_event_t *event)
+{
+    const uint32_t source = event->is_packet ? event->packet : event->id;
+    bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
+    for (size_t i = 0; matches && i < response->echo_count; ++i) {
+        const icd_echo_t *const echo = &response->echoes[i];
+        matches =
+            icdgen_stream_number(echo->place, event->id, event->data, event->length) == awaited->sources[echo->source];
+    }
+    return matches;
 }
 
 /* Return the response to a request that telemetry or a packet is; NULL if it is none of them. */
 static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited, const icd_event_t *event)
 {
-    const uint32_t source = event->is_packet ? event->packet : event->id;
-    size_t position = 0;
-    const icd_response_t *response = icdgen_next_response(awaited, &position);
-    while (response != NULL) {
-        bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
-        for (size_t i = 0; matches && i < response->echo_count; ++i) {
-            const icd_echo_t *const echo = &response->echoes[i];
-            matches = icdgen_stream_number(&echo->place, event->id, event->data, event->length) ==
-                awaited->sources[echo->source];
+    for (size_t i = 0; i < icdgen_response_count(awaited); ++i) {
+        const icd_response_t *const response = icdgen_response(awaited, i);
+        if (response != NULL && icdgen_matches(awaited, response, event)) {
+            return response;
         }
-        if (matches) {
-            break;
-        }
-        response = icdgen_next_response(awaited, &position);
     }
-    return response;
+    return NULL;
 }
 
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
@@ -185,7 +146,7 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < response_b->echo_count; ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_message_sources(a) &&
+            if (echo->place == other->place && echo->source < icdgen_message_sources(a) &&
                 other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
@@ -203,28 +164,23 @@ static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b
     if (a->is_nameless && b->is_nameless) {
         return true;
     }
-    size_t position_a = 0;
-    const icd_response_t *of_a = icdgen_next_response(a, &position_a);
-    while (of_a != NULL) {
-        size_t position_b = 0;
-        const icd_response_t *of_b = icdgen_next_response(b, &position_b);
-        while (of_b != NULL) {
-            const bool is_same = icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
-                of_a->is_packet == of_b->is_packet;
-            if (is_same && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
+    for (size_t i = 0; i < icdgen_response_count(a); ++i) {
+        const icd_response_t *const of_a = icdgen_response(a, i);
+        for (size_t j = 0; of_a != NULL && j < icdgen_response_count(b); ++j) {
+            const icd_response_t *const of_b = icdgen_response(b, j);
+            if (of_b != NULL && icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
+                of_a->is_packet == of_b->is_packet && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
                 return true;
             }
-            of_b = icdgen_next_response(b, &position_b);
         }
-        of_a = icdgen_next_response(a, &position_a);
     }
     return false;
 }
 
 static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
 {
-    if (response->status.bits != 0u) {
-        const uint32_t status = icdgen_stream_number(&response->status, event->id, event->data, event->length);
+    if (response->status != NULL) {
+        const uint32_t status = icdgen_stream_number(response->status, event->id, event->data, event->length);
         for (size_t i = 0; i < response->meaning_count; ++i) {
             if (response->meanings[i].value == status) {
                 return response->meanings[i].verdict;
@@ -249,8 +205,8 @@ static inline bool icdgen_is_awaited(const icd_slot_t *slot)
 static inline void icdgen_settle(icd_awaited_t *awaited, icd_verdict_t verdict)
 {
     for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
-        const bool settles = ICDGEN_SIZE(verdict) == i || verdict == ICD_VERDICT_NAK || verdict == ICD_VERDICT_BUSY ||
-            verdict == ICD_VERDICT_AGAIN;
+        const bool settles = ICDGEN_SIZE(verdict) == i || ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_NAK) ||
+            ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) || ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_AGAIN);
         if (settles && awaited->owed[i] != 0u) {
             awaited->owed[i]--;
         }
@@ -282,13 +238,11 @@ static inline bool icdgen_can_be_late(const icd_client_t *client, const icd_awai
     return left != 0u && left <= longest + client->settings.late;
 }
 
-/* Remove an entry of the late responses. */
+/* Remove an entry of the late responses. Their order has no meaning: no response can be taken for two of them. */
 static inline void icdgen_forget(icd_client_t *client, size_t index)
 {
     client->late_count--;
-    for (size_t i = index; i < client->late_count; ++i) {
-        client->late[i] = client->late[i + 1u];
-    }
+    client->late[index] = client->late[client->late_count];
 }
 
 /* Store the time, and drop what has passed. */
@@ -310,16 +264,16 @@ static inline void icdgen_set_time(icd_client_t *client, uint32_t now)
 static inline void icdgen_request_end(icd_client_t *client, size_t index)
 {
     const icd_awaited_t *const awaited = &client->slots[index].awaited;
-    uint8_t *const data = client->slots[index].data;
     if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
         client->late[client->late_count] = *awaited;
         client->late_count++;
     }
     client->started--;
     for (size_t i = index; i < client->started; ++i) {
+        uint8_t *const data = client->slots[i].data; /* free memory: it moves to the end */
         client->slots[i] = client->slots[i + 1u];
+        client->slots[i + 1u].data = data;
     }
-    client->slots[client->started].data = data;
 }
 
 /* Return the oldest request that is to be sent; NULL if there is none. */
@@ -342,8 +296,7 @@ static inline bool icdgen_has_end(const icd_client_t *client, const icd_slot_t *
 /* Return whether a response may arrive for a request, and it does not poll. */
 static inline bool icdgen_has_responses(const icd_slot_t *slot)
 {
-    size_t position = 0;
-    return !slot->is_polled && icdgen_next_response(&slot->awaited, &position) != NULL;
+    return !slot->is_polled && (slot->awaited.has_reply || slot->awaited.exchange->response_count != 0u);
 }
 
 /* Return how many other requests in progress wait for responses, also those that are to be sent again. */
@@ -415,80 +368,50 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
 {
     static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u, NULL};
     const bool asks = request->direction == ICD_TELEMETRY;
-    icdgen_plan_t plan;
-    icd_status_t status = client->line != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
-    (void)memset(&plan, 0, sizeof plan);
+    icd_slot_t slot;
+    icd_awaited_t *const awaited = &slot.awaited;
+    (void)memset(&slot, 0, sizeof slot);
+    slot.id = request->id;
+    slot.direction = request->direction;
+    slot.repeat = request->repeat || asks;
+    awaited->exchange = &no_exchange;
+    icd_status_t status = client->line != NULL ? client->line->plan(client, request, &slot) : ICD_ERROR_UNSUPPORTED;
+    if ((status == ICD_OK || status == ICD_ERROR_LENGTH) && !icdgen_has_room(client)) {
+        status = ICD_ERROR_BUSY;
+    }
     if (status == ICD_OK) {
-        status = client->line->plan(client, request, &plan);
+        slot.data = client->slots[client->started].data;
+        status = client->line->store(client, &slot, asks ? NULL : request->data);
     }
-    if (status != ICD_OK) {
-        return status;
+    if (status == ICD_OK) {
+        for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
+            awaited->sources[i] =
+                icdgen_stream_number(&awaited->exchange->sources[i], slot.sent_id, slot.data, slot.length);
+        }
+        client->slots[client->started] = slot;
+        client->started++;
+        icdgen_set_time(client, now);
     }
-    if (!icdgen_has_room(client)) {
-        return ICD_ERROR_BUSY;
-    }
-    icd_slot_t *const slot = &client->slots[client->started];
-    if (!asks && (request->length < plan.least || request->length > plan.most)) {
-        return ICD_ERROR_LENGTH;
-    }
-    uint8_t *const data = slot->data;
-    (void)memset(slot, 0, sizeof *slot);
-    slot->data = data;
-    slot->id = request->id;
-    slot->direction = request->direction;
-    slot->sent_id = plan.sent_id;
-    slot->asks_by_id = plan.asks_by_id;
-    status = client->line->store(client, slot, asks ? NULL : request->data, asks ? plan.least : request->length);
-    if (status != ICD_OK) {
-        return status;
-    }
-    slot->repeat = request->repeat || asks || plan.repeats;
-    slot->state = ICD_SLOT_QUEUED;
-    icd_awaited_t *const awaited = &slot->awaited;
-    *awaited = plan.awaited;
-    awaited->exchange = awaited->exchange != NULL ? awaited->exchange : &no_exchange;
-    for (size_t i = 0; i < icdgen_message_sources(awaited); ++i) {
-        awaited->sources[i] = icdgen_stream_number(&awaited->exchange->sources[i], slot->sent_id, data, slot->length);
-    }
-    client->started++;
-    icdgen_set_time(client, now);
-    return ICD_OK;
+    return status;
 }
 
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint32_t id)
 {
-    icd_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELEMETRY;
-    request.id = id;
+    const icd_request_t request = {ICD_TELEMETRY, id, false, false, 0u, NULL, 0u};
     return icd_client_start(client, now, &request);
-}
-
-static icd_request_t icdgen_telecommand_of(uint32_t id, const uint8_t *data, size_t length)
-{
-    icd_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
-    return request;
 }
 
 ICDGEN_API icd_status_t
 icd_client_send(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat)
 {
-    icd_request_t request = icdgen_telecommand_of(id, data, length);
-    request.repeat = repeat;
+    const icd_request_t request = {ICD_TELECOMMAND, id, repeat, false, 0u, data, length};
     return icd_client_start(client, now, &request);
 }
 
 ICDGEN_API icd_status_t
 icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
 {
-    icd_request_t request = icdgen_telecommand_of(id, data, length);
-    request.has_reply = true;
-    request.reply = reply;
+    const icd_request_t request = {ICD_TELECOMMAND, id, false, true, reply, data, length};
     return icd_client_start(client, now, &request);
 }
 
@@ -499,11 +422,9 @@ icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *d
 static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot_t *slot)
 {
     size_t in_flight = 0;
-    if (client->in_gap) {
-        return false;
-    }
-    if (!icdgen_has_responses(slot)) {
-        return true;
+    size_t awaited = client->late_count;
+    if (client->in_gap || !icdgen_has_responses(slot)) {
+        return !client->in_gap;
     }
     for (size_t i = 0; i < client->started; ++i) {
         const icd_slot_t *const other = &client->slots[i];
@@ -514,16 +435,19 @@ static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot
             in_flight++;
         }
         /* Also a request that is to be sent again: otherwise each could wait until the other has ended. */
-        if (other->missing != 0u && icdgen_is_like(&slot->awaited, &other->awaited)) {
-            return false;
+        if (other->missing != 0u) {
+            if (icdgen_is_like(&slot->awaited, &other->awaited)) {
+                return false;
+            }
+            awaited++;
         }
     }
     for (size_t i = 0; i < client->late_count; ++i) {
-        if (icdgen_is_blocked(client, slot, &client->late[i])) {
+        if (icdgen_is_like(&slot->awaited, &client->late[i])) {
             return false;
         }
     }
-    return in_flight < client->settings.in_flight && icdgen_unfinished(client, slot) < ICDGEN_MOST_AWAITED;
+    return in_flight < client->settings.in_flight && awaited < ICDGEN_MOST_AWAITED;
 }
 
 /* Return the next request to send; NULL if none may be sent. */
@@ -608,7 +532,8 @@ static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kin
 /* End a request without a response. */
 static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, size_t index)
 {
-    icd_event_t event = icdgen_event(kind);
+    icd_event_t event;
+    icdgen_event_init(&event, kind);
     icdgen_report(call, kind, index, &event);
 }
 
@@ -676,18 +601,18 @@ ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn
 /* Get the reason of a refusal, or why the device is busy. */
 static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_t *response, icd_event_t *event)
 {
-    if (response->reason.bits != 0u) {
+    if (response->reason != NULL) {
         event->has_code = true;
-        event->code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
+        event->code = icdgen_stream_number(response->reason, event->id, event->data, event->length);
         for (size_t i = link->error_count; i > 0u; --i) {
             if (link->errors[i - 1u].code == event->code) {
                 event->reason = link->errors[i - 1u].reason;
             }
         }
     }
-    if (response->detail.bits != 0u) {
+    if (response->detail != NULL) {
         event->has_detail = true;
-        event->detail = icdgen_stream_number(&response->detail, event->id, event->data, event->length);
+        event->detail = icdgen_stream_number(response->detail, event->id, event->data, event->length);
     }
 }
 
@@ -703,7 +628,7 @@ static inline void icdgen_responded(
     event->has_reply = !event->is_packet;
     event->reply = event->id;
     icdgen_settle(&slot->awaited, verdict);
-    if (verdict == ICD_VERDICT_PROGRESS) {
+    if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_PROGRESS)) {
         const uint32_t limit = slot->sent_at + client->settings.progress_for;
         const uint32_t extended = client->now + icdgen_timeout(client, &slot->awaited);
         const uint32_t latest = icdgen_reached(extended, limit) ? limit : extended;
@@ -713,24 +638,24 @@ static inline void icdgen_responded(
         if (slot->state == ICD_SLOT_WAIT) {
             slot->until = slot->awaited.latest;
         }
-    } else if (verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY) {
+    } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_ACK) || ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_REPLY)) {
         slot->missing = ICDGEN_U8(slot->missing & ~icdgen_verdict_bit(verdict));
         if (slot->missing == 0u) {
             kind = ICD_EVENT_DONE;
-        } else if (verdict == ICD_VERDICT_REPLY) {
+        } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_REPLY)) {
             kind = ICD_EVENT_REPLY;
         } else {
             /* the reply is still to come */
         }
-    } else if (verdict == ICD_VERDICT_BUSY && is_left) {
+    } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) && is_left) {
         slot->state = ICD_SLOT_PAUSE;
         slot->until = client->now + client->settings.busy_pause;
-    } else if (verdict == ICD_VERDICT_AGAIN && is_left && client->checks_telecommands) {
+    } else if (ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_AGAIN) && is_left && client->checks_telecommands) {
         slot->state = ICD_SLOT_QUEUED;
         slot->is_polled = false;
         return;
     } else {
-        kind = verdict == ICD_VERDICT_BUSY ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
+        kind = ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
         icdgen_set_reason(client->link, response, event);
     }
     icdgen_report(call, kind, index, event);

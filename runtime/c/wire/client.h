@@ -100,7 +100,8 @@ typedef struct {
     uint16_t last; /* number of the last transaction */
     uint8_t poll_id;
     uint8_t taken_count;
-    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* transactions without a result, the oldest first */
+    uint8_t first;                                /* index of the oldest transaction */
+    icd_transaction_t taken[ICDGEN_MOST_AWAITED]; /* transactions without a result, in a ring */
 } icd_i2c_line_t;
 
 typedef struct icd_line icd_line_t; /* functions of the line */

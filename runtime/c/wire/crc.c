@@ -51,13 +51,11 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     }
 #endif
     for (; i < length; ++i) {
-        const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
-        uint32_t entry = reflect ? row : row << 24;
+        value ^= reflect ? bytes[i] : ICDGEN_U32(bytes[i]) << 24;
         for (unsigned bit = 0; bit < 8u; ++bit) {
-            const bool out = (reflect ? entry & 1u : entry >> 31) != 0u;
-            entry = (reflect ? entry >> 1 : entry << 1) ^ (out ? polynomial : 0u);
+            const bool out = (reflect ? value & 1u : value >> 31) != 0u;
+            value = (reflect ? value >> 1 : value << 1) ^ (out ? polynomial : 0u);
         }
-        value = (reflect ? value >> 8 : value << 8) ^ entry;
     }
     crc->value = value;
     crc->fed = crc->fed || length != 0u;

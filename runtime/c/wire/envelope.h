@@ -2,8 +2,26 @@
 #define ICDGEN_WIRE_ENVELOPE_H
 
 #include "stream.h"
+#include "kinds.h"
 
 #define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
+
+/*
+ * Whether a value of an enumeration is this member. `kinds` are the members that the links have, as a mask: the
+ * compiler knows the result for all others, and also if there is only one.
+ */
+#define ICDGEN_IS(value, member, kinds)                                                                                \
+    (((kinds) & ICDGEN_BIT(member)) != 0u && ((kinds) == ICDGEN_BIT(member) || (value) == (member)))
+#define ICDGEN_IS_DELIMITED_BY(form, delimiter) ICDGEN_IS((form)->delimited_by, delimiter, ICDGEN_DELIMITERS)
+#define ICDGEN_HAS_ROLE(field, member) ICDGEN_IS((field)->role, member, ICDGEN_ROLES)
+#define ICDGEN_CONTAINS(packet, member) ICDGEN_IS((packet)->content, member, ICDGEN_CONTENTS)
+#define ICDGEN_IS_CHECK(form, member) ICDGEN_IS((form)->kind, member, ICDGEN_CHECKS)
+#define ICDGEN_IS_VERDICT(verdict, member) ICDGEN_IS(verdict, member, ICDGEN_VERDICTS)
+#define ICDGEN_HAS_FLAG(row, flag) (((row)->flags & (flag) & ICDGEN_STREAM_FLAGS) != 0u)
+
+/* Whether the sender chooses the value of a field. */
+#define ICDGEN_IS_OF_SENDER(field)                                                                                     \
+    ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_ENVELOPE_VALUES) - 1u)) != 0u && (field)->role < ICD_ENVELOPE_CONSTANT)
 
 /* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
@@ -47,7 +65,7 @@ static inline uint32_t icdgen_envelope_id(
     uint32_t id = packet->ids[direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
-        if (field->role == ICD_ENVELOPE_ID && !field->in_trailer) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID) && !field->in_trailer) {
             id |= icdgen_envelope_get(field, header) << field->values[0];
         }
     }
@@ -105,27 +123,34 @@ typedef struct {
     uint32_t second;
 } icdgen_check_t;
 
+static inline bool icdgen_is_pair(const icd_check_form_t *form)
+{
+    return ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER) || ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255);
+}
+
 static inline void icdgen_check_begin(icdgen_check_t *check, const icd_check_form_t *form)
 {
-    const bool pair = form->kind == ICD_CHECK_FLETCHER || form->kind == ICD_CHECK_FLETCHER_255;
     check->form = form;
-    icd_crc_init(&check->crc, &form->crc);
-    check->first = pair ? form->crc.init & 0xFFu : form->crc.init;
-    check->second = form->crc.init >> 8;
+    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
+        icd_crc_init(&check->crc, &form->crc);
+    } else {
+        check->first = icdgen_is_pair(form) ? form->crc.init & 0xFFu : form->crc.init;
+        check->second = form->crc.init >> 8;
+    }
 }
 
 static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
 {
-    const icd_check_kind_t kind = check->form->kind;
-    const uint32_t modulus = kind == ICD_CHECK_FLETCHER_255 ? 255u : 256u;
-    if (kind == ICD_CHECK_CRC) {
+    const icd_check_form_t *const form = check->form;
+    const uint32_t modulus = ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255) ? 255u : 256u;
+    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
         icd_crc_feed(&check->crc, bytes, length);
         return;
     }
     for (size_t i = 0; i < length; ++i) {
-        if (kind == ICD_CHECK_SUM) {
+        if (ICDGEN_IS_CHECK(form, ICD_CHECK_SUM)) {
             check->first += bytes[i];
-        } else if (kind == ICD_CHECK_XOR) {
+        } else if (ICDGEN_IS_CHECK(form, ICD_CHECK_XOR)) {
             check->first ^= bytes[i];
         } else {
             check->first = (check->first + bytes[i]) % modulus;
@@ -137,17 +162,12 @@ static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes
 static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
 {
     const icd_crc_form_t *const form = &check->form->crc;
-    switch (check->form->kind) {
-    case ICD_CHECK_CRC:
+    if (ICDGEN_IS_CHECK(check->form, ICD_CHECK_CRC)) {
         return icd_crc_result(&check->crc);
-    case ICD_CHECK_SUM:
-    case ICD_CHECK_XOR:
-        return (check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width))) ^ form->xor_out;
-    case ICD_CHECK_FLETCHER:
-    case ICD_CHECK_FLETCHER_255:
-    default:
-        return ((check->second << 8) | check->first) ^ form->xor_out;
     }
+    const uint32_t value = icdgen_is_pair(check->form) ? (check->second << 8) | check->first
+                                                       : check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width));
+    return value ^ form->xor_out;
 }
 
 /*

@@ -5,6 +5,9 @@
 
 /* ---- description of the protocol of a node ----------------------------------------------------------------------- */
 
+/* Mask with the bit of an enumerator. */
+#define ICDGEN_BIT(member) (1u << ICDGEN_U32(member))
+
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
 
 #define ICD_BUSES 3u
@@ -72,12 +75,20 @@ typedef struct {
     uint32_t code;
 } icd_error_code_t;
 
+/* A compiler that optimizes for size leaves out the lookup tables of CRCs. */
+#if defined(__OPTIMIZE_SIZE__) && !defined(ICDGEN_TABLES) && !defined(ICDGEN_NO_TABLES)
+#define ICDGEN_NO_TABLES
+#endif
+
 /* Lookup table of a CRC; NULL if tables are disabled. */
 #ifdef ICDGEN_NO_TABLES
 #define ICDGEN_TABLE(table) NULL
 #else
 #define ICDGEN_TABLE(table) (table)
 #endif
+
+/* Number of messages in a table, whose last row is not one. */
+#define ICDGEN_ROWS(table) ICDGEN_U16((sizeof(table) / sizeof((table)[0])) - 1u)
 
 /* Optional parts. A part that is left out is treated as if the ICD did not describe it. */
 #ifdef ICDGEN_NO_FILES
@@ -230,6 +241,8 @@ typedef struct {
     uint16_t mask_at;
     /** Offset of the selected frames. */
     uint16_t frames_at;
+    uint16_t mask_bytes; /**< Length of the mask. */
+    uint16_t slot_bytes; /**< Length of each frame. */
 } icd_log_message_form_t;
 
 /** A part of a packed time: value = raw * factor + offset. */

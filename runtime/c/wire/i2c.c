@@ -37,7 +37,7 @@ ICDGEN_API icd_status_t icd_i2c_write(
     }
     buffer[0] = id;
     if (length != 0u) {
-        (void)memmove(buffer + 1, data, length);
+        (void)memcpy(buffer + 1, data, length);
     }
     *written = 1u + length + extra;
     return checked ? icdgen_put_number(link, buffer + 1u + length, extra, icd_checksum(link, id, buffer + 1, length))
@@ -57,6 +57,12 @@ ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, 
     return ICD_OK;
 }
 
+/* Return whether the checksum after the data of a message is right. */
+static inline bool icdgen_is_intact(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
+{
+    return icdgen_number(link, data + length, link->checksum->bytes) == icd_checksum(link, id, data, length);
+}
+
 ICDGEN_API icd_status_t icd_i2c_reply(
     const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length)
 {
@@ -69,12 +75,7 @@ ICDGEN_API icd_status_t icd_i2c_reply(
         return ICD_ERROR_LENGTH;
     }
     *frame_length = expected - (checked ? link->checksum->bytes : 0u);
-    if (checked &&
-        icdgen_number(link, bytes + *frame_length, link->checksum->bytes) !=
-            icd_checksum(link, id, bytes, *frame_length)) {
-        return ICD_ERROR_CHECKSUM;
-    }
-    return ICD_OK;
+    return !checked || icdgen_is_intact(link, id, bytes, *frame_length) ? ICD_OK : ICD_ERROR_CHECKSUM;
 }
 
 #endif /* ICDGEN_WIRE_I2C_C */

@@ -43,7 +43,8 @@ ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes,
     if (slot == NULL || line->taken_count == ICDGEN_MOST_AWAITED) {
         return false;
     }
-    icd_transaction_t *const transaction = &line->taken[line->taken_count];
+    icd_transaction_t *const transaction =
+        &line->taken[(ICDGEN_U32(line->first) + line->taken_count) % ICDGEN_MOST_AWAITED];
     if (slot->is_polled) {
         line->poll_id = ICDGEN_U8(slot->awaited.exchange->poll->telemetry);
         *bytes = &line->poll_id;
@@ -70,11 +71,9 @@ static inline icd_transaction_t icdgen_i2c_untake(icd_i2c_line_t *line)
 {
     icd_transaction_t transaction = {0u, 0u, false};
     if (line->taken_count != 0u) {
-        transaction = line->taken[0];
+        transaction = line->taken[line->first];
+        line->first = ICDGEN_U8((ICDGEN_U32(line->first) + 1u) % ICDGEN_MOST_AWAITED);
         line->taken_count--;
-        for (size_t i = 0; i < line->taken_count; ++i) {
-            line->taken[i] = line->taken[i + 1u];
-        }
     }
     return transaction;
 }
@@ -90,20 +89,17 @@ static inline size_t icdgen_i2c_awaiting(const icd_client_t *client, uint16_t nu
 }
 
 /* Process telemetry that was read for a request. */
-static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, const icd_event_t *telemetry)
+static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, icd_event_t *event)
 {
     icd_slot_t *const slot = &call->client->slots[index];
     const icd_outcome_poll_t *const poll = slot->awaited.exchange->poll;
-    icd_event_t event = *telemetry;
-    const icd_response_t *const response = icdgen_matching(&slot->awaited, &event);
-    event.link = call->client->link;
-    event.direction = ICD_TELEMETRY;
+    const icd_response_t *const response = icdgen_matching(&slot->awaited, event);
     if (response == NULL ||
-        (poll != NULL && icdgen_stream_number(&poll->until, event.id, event.data, event.length) == 0u)) {
+        (poll != NULL && icdgen_stream_number(&poll->until, event->id, event->data, event->length) == 0u)) {
         (void)icdgen_unanswered(call, index);
     } else {
         slot->transaction = 0;
-        icdgen_responded(call, index, response, &event);
+        icdgen_responded(call, index, response, event);
     }
 }
 
@@ -125,7 +121,7 @@ ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     const icdgen_call_t call = {client, on_event, context};
-    icd_event_t event = icdgen_event(ICD_EVENT_STRAY);
+    icd_event_t event;
     icd_status_t status = ICD_OK;
     if (client->i2c == NULL) {
         return;
@@ -134,20 +130,24 @@ ICDGEN_API void icd_client_transferred(
     icd_client_tick(client, now, on_event, context); /* may end the request */
     size_t index = icdgen_i2c_awaiting(client, transaction.number);
     if (transaction.number == 0u) {
+        icdgen_event_init(&event, ICD_EVENT_STRAY);
         event.data = bytes;
         event.length = bytes != NULL ? count : 0u;
         on_event(context, &event);
         return;
     }
-    event = icdgen_event_of(ICD_EVENT_LATE, transaction.id);
+    icdgen_event_of(&event, ICD_EVENT_LATE, transaction.id);
     if (transaction.reads && bytes != NULL) {
         event.data = bytes;
-        event.link = client->link;
-        event.direction = ICD_TELEMETRY;
         status = icd_i2c_reply(client->link, transaction.id, bytes, count, client->checks_telemetry, &event.length);
+        if (status == ICD_OK) {
+            event.link = client->link;
+            event.direction = ICD_TELEMETRY;
+        }
     }
     if (status != ICD_OK) {
-        icdgen_bus_fault(&call, transaction.id, status);
+        const bool is_damaged = status == ICD_ERROR_CHECKSUM;
+        icdgen_bus_fault(&call, is_damaged ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH, &event);
         index = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
         if (index < client->started) {
             (void)icdgen_unanswered(&call, index);

@@ -46,8 +46,9 @@ typedef struct {
     uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum; on framed links only of the data. */
     uint32_t longest_reply;
     uint32_t longest;
-    uint32_t longest_data; /**< Largest size in bytes, without id and checksum. */
-    int32_t node_type;     /**< -1 if the ICD has none. */
+    uint32_t longest_data;   /**< Largest size in bytes, without id and checksum. */
+    uint32_t received_bytes; /**< Buffer size in bytes of a client for what it receives. */
+    int32_t node_type;       /**< -1 if the ICD has none. */
     int32_t interface_version;
     icd_client_settings_t client;
     const icd_error_code_t *errors;

@@ -7,7 +7,7 @@
 
 ICDGEN_API size_t icd_log_count(const icd_link_t *link, const uint8_t *mask)
 {
-    return icdgen_log_slots(link, mask, link->log_mask->size);
+    return icdgen_log_slots(mask, link->log_mask->size);
 }
 
 ICDGEN_API void icd_log_frames(

@@ -126,7 +126,7 @@ typedef struct {
     uint32_t *sequences;
     size_t sequence_count;
     size_t pending;     /**< Received bytes that may still become part of a message. */
-    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
+    uint32_t discarded; /**< Number of received bytes that are not part of a message. May wrap around. */
     bool escaped;
     bool inside;  /* escape characters: whether a packet has begun */
     bool zero;    /* COBS: whether a zero follows the block */

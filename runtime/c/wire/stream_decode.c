@@ -8,19 +8,14 @@
 /* Result of checking a frame: accepted; certainly a frame, but not usable; possibly not a frame. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
-/* The event callback. */
-typedef struct {
-    icd_event_fn *on_event;
-    void *context;
-} icdgen_listener_t;
-
 static inline void icdgen_stream_tell_of(
     const icdgen_listener_t *listener, icd_event_kind_t kind, bool has_id, uint32_t id)
 {
-    icd_event_t event = icdgen_event(kind);
+    icd_event_t event;
+    icdgen_event_init(&event, kind);
     event.has_id = has_id;
     event.id = id;
-    listener->on_event(listener->context, &event);
+    icdgen_tell(listener, &event);
 }
 
 static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_event_kind_t kind)
@@ -97,10 +92,10 @@ static inline icdgen_incoming_t icdgen_incoming(
     const icd_stream_form_t *const form = decoder->form;
     const size_t index = ICDGEN_SIZE(packet - form->packets);
     icdgen_incoming_t incoming = {ICD_EVENT_PACKET, NULL, packet->reserved, packet->reserved};
-    if (packet->content == ICD_PACKET_NOTHING) {
+    if (ICDGEN_CONTAINS(packet, ICD_PACKET_NOTHING)) {
         return incoming;
     }
-    if (packet->content == ICD_PACKET_REQUESTED) {
+    if (ICDGEN_CONTAINS(packet, ICD_PACKET_REQUESTED)) {
         icdgen_incoming_bounds(form, index, &incoming);
         return incoming;
     }
@@ -115,7 +110,7 @@ static inline icdgen_incoming_t icdgen_incoming(
     incoming.kind = ICD_EVENT_UNKNOWN_ID;
     if (decoder->direction == ICD_TELECOMMAND && form->request != NULL && form->request->packet == index) {
         row = icdgen_stream_row(form, ICD_TELEMETRY, id);
-        if (row != NULL && (row->flags & ICD_STREAM_REQUESTED) != 0u) {
+        if (row != NULL && ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTED)) {
             incoming.kind = ICD_EVENT_REQUEST;
             incoming.row = row;
         }
@@ -145,11 +140,12 @@ static inline void icdgen_stream_count(
     const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
-        icd_event_t event = icdgen_event(ICD_EVENT_GAP);
+        icd_event_t event;
+        icdgen_event_init(&event, ICD_EVENT_GAP);
         event.has_id = true;
         event.id = message->id;
         event.missing = number == last ? 0u : missing;
-        listener->on_event(listener->context, &event);
+        icdgen_tell(listener, &event);
     }
 }
 
@@ -165,7 +161,7 @@ static inline bool icdgen_stream_constants(
         const icd_envelope_field_t *const field = &packet->fields[i];
         const uint8_t *const bytes = field->in_trailer ? trailer : frame;
         const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
-        if (field->role == ICD_ENVELOPE_CONSTANT && came &&
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && came &&
             icdgen_envelope_get(field, bytes) != field->values[direction]) {
             return false;
         }
@@ -203,7 +199,7 @@ static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t 
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
         const size_t end = ICDGEN_SIZE(field->at) + field->size;
-        if (field->role == ICD_ENVELOPE_CONSTANT && !field->in_trailer && end > left && end < next) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && !field->in_trailer && end > left && end < next) {
             next = end;
         }
     }
@@ -231,39 +227,27 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     uint32_t sum = 0;
     bool is_framed = true;
     bool is_long = true; /* whether each length is right */
-    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE);
+    icd_event_t event;
+    icdgen_event_init(&event, ICD_EVENT_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
         const uint32_t value = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
-        switch (field->role) {
-        case ICD_ENVELOPE_CONSTANT:
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT)) {
             is_framed = is_framed && value == field->values[decoder->direction];
-            break;
-        case ICD_ENVELOPE_ID:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
             event.id |= value << field->values[0];
-            break;
-        case ICD_ENVELOPE_LENGTH:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
             is_long = is_long && icdgen_envelope_bytes(field, value) == ICDGEN_I64(length);
-            break;
-        case ICD_ENVELOPE_RESPONSE_LENGTH:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH)) {
             wanted = icdgen_envelope_bytes(field, value);
-            break;
-        case ICD_ENVELOPE_CHECKSUM:
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
             sum = value;
-            break;
-        case ICD_ENVELOPE_SEQUENCE:
-        case ICD_ENVELOPE_SOURCE:
-        case ICD_ENVELOPE_DESTINATION:
-        case ICD_ENVELOPE_TYPE:
-        case ICD_ENVELOPE_FLAGS:
-        case ICD_ENVELOPE_TIME:
-        case ICD_ENVELOPE_STATUS:
-        case ICD_ENVELOPE_REASON:
-        default:
-            sequence = field->role == ICD_ENVELOPE_SEQUENCE ? field : sequence;
+        } else if (ICDGEN_IS_OF_SENDER(field)) {
+            sequence = ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_SEQUENCE) ? field : sequence;
             event.values.of[field->role] = value;
-            break;
+        } else {
+            /* there are no other roles */
         }
     }
     if (!is_framed || !is_long) {
@@ -298,7 +282,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     event.data = event.is_packet ? frame : data;
     event.length = event.is_packet ? count : length;
     icdgen_stream_count(decoder, &incoming, sequence, &event, listener);
-    listener->on_event(listener->context, &event);
+    icdgen_tell(listener, &event);
     return ICDGEN_TAKEN;
 }
 
@@ -336,7 +320,7 @@ static inline size_t icdgen_stream_front(
     } else {
         const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
-        if (incoming.kind == ICD_EVENT_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
+        if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
             return icdgen_stream_skip(decoder);
         }
@@ -355,7 +339,7 @@ static inline size_t icdgen_stream_front(
     }
     const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, packet, frame, whole, listener);
     const size_t taken = verdict == ICDGEN_DOUBTFUL ? 1u : whole;
-    decoder->discarded += verdict == ICDGEN_TAKEN ? 0u : taken;
+    decoder->discarded += ICDGEN_U32(verdict == ICDGEN_TAKEN ? 0u : taken);
     return taken;
 }
 
@@ -417,18 +401,19 @@ static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byt
 /* Process a byte of a frame between delimiters. */
 static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t byte)
 {
-    const icd_delimiter_t delimiter = decoder->form->delimited_by;
-    const uint32_t escape = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_ESCAPE : ICDGEN_HDLC_ESCAPE;
-    if (delimiter == ICD_DELIMITED_BY_COBS && decoder->left != 0u) {
+    const icd_stream_form_t *const form = decoder->form;
+    const uint32_t escape =
+        ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_SLIP) ? ICDGEN_SLIP_ESCAPE : ICDGEN_HDLC_ESCAPE;
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_COBS) && decoder->left != 0u) {
         decoder->left--;
         icdgen_stream_put(decoder, byte);
-    } else if (delimiter == ICD_DELIMITED_BY_COBS) {
+    } else if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_COBS)) {
         if (decoder->zero) {
             icdgen_stream_put(decoder, 0);
         }
         decoder->left = ICDGEN_U8(byte - 1u);
         decoder->zero = byte != ICDGEN_COBS_WHOLE;
-    } else if (decoder->escaped && delimiter == ICD_DELIMITED_BY_HDLC) {
+    } else if (decoder->escaped && ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_HDLC)) {
         decoder->escaped = false;
         icdgen_stream_put(decoder, byte ^ ICDGEN_HDLC_FLIP);
     } else if (decoder->escaped) {
@@ -461,7 +446,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     } else {
         taken = true; /* empty frame between two delimiters */
     }
-    decoder->discarded += taken ? 0u : decoder->pending;
+    decoder->discarded += ICDGEN_U32(taken ? 0u : decoder->pending);
     decoder->pending = 0;
     icdgen_stream_clear(decoder);
 }
@@ -470,7 +455,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
 static inline void icdgen_stream_plain(icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count)
 {
     if (!decoder->inside) {
-        decoder->discarded += count;
+        decoder->discarded += ICDGEN_U32(count);
         return;
     }
     decoder->pending += count;
@@ -515,7 +500,7 @@ static inline void icdgen_stream_escaped(icd_stream_decoder_t *decoder, uint8_t 
         /* The last one of several escape bytes can begin a packet. */
         decoder->escaped = byte == escaping->escape;
         decoder->pending = decoder->escaped ? 1u : 0u;
-        decoder->discarded += 2u - decoder->pending;
+        decoder->discarded += ICDGEN_U32(2u - decoder->pending);
     } else if (byte == escaping->end) {
         icdgen_stream_end(decoder, listener);
     } else if (byte == escaping->data) {
@@ -556,43 +541,50 @@ static inline void icdgen_stream_unescape(
     }
 }
 
-ICDGEN_API void icd_stream_feed(
-    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+static inline void icdgen_stream_feed(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
-    const icd_delimiter_t delimiter = decoder->form->delimited_by;
-    const icdgen_listener_t listener = {on_event, context};
-    if (delimiter == ICD_DELIMITED_BY_DATAGRAM) {
+    const icd_stream_form_t *const form = decoder->form;
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_DATAGRAM)) {
         if (count > decoder->capacity) {
-            icdgen_stream_tell(&listener, ICD_EVENT_OVERRUN);
-            decoder->discarded += count;
-        } else if (!icdgen_stream_frame(decoder, bytes, count, &listener)) {
-            decoder->discarded += count;
+            icdgen_stream_tell(listener, ICD_EVENT_OVERRUN);
+            decoder->discarded += ICDGEN_U32(count);
+        } else if (!icdgen_stream_frame(decoder, bytes, count, listener)) {
+            decoder->discarded += ICDGEN_U32(count);
         } else {
             /* the frame was a message */
         }
         return;
     }
-    const uint32_t end = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_END
-        : delimiter == ICD_DELIMITED_BY_HDLC                ? ICDGEN_HDLC_FLAG
-                                                            : 0u;
-    if (delimiter == ICD_DELIMITED_BY_LENGTH) {
-        icdgen_stream_append(decoder, bytes, count, &listener);
+    const uint32_t end = ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_SLIP) ? ICDGEN_SLIP_END
+        : ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_HDLC)                ? ICDGEN_HDLC_FLAG
+                                                                             : 0u;
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_LENGTH)) {
+        icdgen_stream_append(decoder, bytes, count, listener);
         return;
     }
-    if (delimiter == ICD_DELIMITED_BY_ESCAPE) {
-        icdgen_stream_unescape(decoder, bytes, count, &listener);
+    if (ICDGEN_IS_DELIMITED_BY(form, ICD_DELIMITED_BY_ESCAPE)) {
+        icdgen_stream_unescape(decoder, bytes, count, listener);
         return;
     }
     for (size_t i = 0; i < count; ++i) {
         decoder->pending++;
         if (bytes[i] == end) {
-            icdgen_stream_end(decoder, &listener);
+            icdgen_stream_end(decoder, listener);
         } else if (!decoder->faulty) {
             icdgen_stream_inside(decoder, bytes[i]);
         } else {
             /* all bytes up to the next delimiter are dropped */
         }
     }
+}
+
+ICDGEN_API void icd_stream_feed(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
+{
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_stream_feed(decoder, bytes, count, &listener);
 }
 
 #endif /* ICDGEN_WIRE_STREAM_DECODE_C */

@@ -16,8 +16,7 @@
 
 /* Output buffer for a message with its delimiters. */
 typedef struct {
-    icd_delimiter_t delimiter;
-    const icd_escaping_t *escaping;
+    const icd_stream_form_t *form;
     uint8_t *buffer;
     size_t capacity;
     size_t count;
@@ -47,7 +46,7 @@ static inline void icdgen_line_block(icdgen_line_t *line)
 
 static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
 {
-    if (line->delimiter == ICD_DELIMITED_BY_COBS) {
+    if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_COBS)) {
         if (line->ended) {
             icdgen_line_byte(line, 0);
             line->ended = false;
@@ -62,18 +61,20 @@ static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
                 icdgen_line_byte(line, 0);
             }
         }
-    } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_END) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_SLIP) && byte == ICDGEN_SLIP_END) {
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_END);
-    } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_ESCAPE) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_SLIP) && byte == ICDGEN_SLIP_ESCAPE) {
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_ESCAPE);
-    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC && (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
+    } else if (
+        ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_HDLC) &&
+        (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
         icdgen_line_byte(line, ICDGEN_HDLC_ESCAPE);
         icdgen_line_byte(line, byte ^ ICDGEN_HDLC_FLIP);
-    } else if (line->delimiter == ICD_DELIMITED_BY_ESCAPE && byte == line->escaping->escape) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_ESCAPE) && byte == line->form->escaping->escape) {
         icdgen_line_byte(line, byte);
-        icdgen_line_byte(line, line->escaping->data);
+        icdgen_line_byte(line, line->form->escaping->data);
     } else {
         icdgen_line_byte(line, byte);
     }
@@ -81,23 +82,23 @@ static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
 
 static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
 {
-    if (line->delimiter == ICD_DELIMITED_BY_SLIP) {
+    if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_SLIP)) {
         icdgen_line_byte(line, ICDGEN_SLIP_END);
-    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_HDLC)) {
         icdgen_line_byte(line, ICDGEN_HDLC_FLAG);
-    } else if (line->delimiter == ICD_DELIMITED_BY_COBS && begins) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_COBS) && begins) {
         icdgen_line_byte(line, 0); /* placeholder for the length of the first block */
-    } else if (line->delimiter == ICD_DELIMITED_BY_COBS) {
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_COBS)) {
         if (!line->ended) {
             icdgen_line_block(line);
         }
         icdgen_line_byte(line, 0);
-    } else if (line->delimiter == ICD_DELIMITED_BY_ESCAPE) {
-        icdgen_line_byte(line, line->escaping->escape);
+    } else if (ICDGEN_IS_DELIMITED_BY(line->form, ICD_DELIMITED_BY_ESCAPE)) {
+        icdgen_line_byte(line, line->form->escaping->escape);
         if (!begins) {
-            icdgen_line_byte(line, line->escaping->end);
-        } else if (line->escaping->has_start) {
-            icdgen_line_byte(line, line->escaping->start);
+            icdgen_line_byte(line, line->form->escaping->end);
+        } else if (line->form->escaping->has_start) {
+            icdgen_line_byte(line, line->form->escaping->start);
         } else {
             /* the first byte of the packet follows */
         }
@@ -124,7 +125,7 @@ ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd
         const icd_packet_form_t *const packet = &form->packets[i];
         for (size_t j = 0; packet->is_sent[direction] && j < packet->field_count; ++j) {
             const icd_envelope_field_t *const field = &packet->fields[j];
-            if (field->role < ICD_ENVELOPE_CONSTANT) {
+            if (ICDGEN_IS_OF_SENDER(field)) {
                 const uint32_t role = UINT32_C(1) << ICDGEN_U32(field->role);
                 uint32_t *const value = &values.of[field->role];
                 if ((seen & role) == 0u) {
@@ -168,7 +169,7 @@ static inline uint32_t icdgen_envelope_part(
     const uint32_t shift = field->values[0];
     uint32_t bits = 0;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        bits += packet->fields[i].role == ICD_ENVELOPE_ID ? packet->fields[i].bits : 0u;
+        bits += ICDGEN_HAS_ROLE(&packet->fields[i], ICD_ENVELOPE_ID) ? packet->fields[i].bits : 0u;
     }
     const uint32_t part = id >> shift;
     return shift + field->bits < bits ? part & icdgen_envelope_mask(field) : part;
@@ -186,16 +187,16 @@ static inline bool icdgen_envelope_fill(
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_envelope_field_t *const field = &packet->fields[i];
         uint32_t value = field->values[outgoing->direction];
-        if (field->role == ICD_ENVELOPE_CHECKSUM) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
             continue;
         }
-        if (field->role == ICD_ENVELOPE_ID) {
+        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
             value = icdgen_envelope_part(packet, field, outgoing->id);
-        } else if (field->role == ICD_ENVELOPE_LENGTH) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
             value = icdgen_envelope_counted(field, length);
-        } else if (field->role == ICD_ENVELOPE_RESPONSE_LENGTH && outgoing->row != NULL) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH) && outgoing->row != NULL) {
             value = icdgen_envelope_counted(field, outgoing->row->most);
-        } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
+        } else if (ICDGEN_IS_OF_SENDER(field) && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
             /* the value of the ICD */
@@ -226,7 +227,7 @@ static inline icdgen_outgoing_t icdgen_outgoing_row(
     const uint8_t *data,
     size_t length)
 {
-    const bool requests = direction == ICD_TELECOMMAND && (row->flags & ICD_STREAM_REQUESTED) != 0u;
+    const bool requests = direction == ICD_TELECOMMAND && ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTED);
     const icd_packet_form_t *const packet = &form->packets[requests ? form->request->packet : row->packet];
     const icdgen_outgoing_t outgoing = {form, direction, packet, row->id, row, !requests, data, length, NULL, NULL};
     return outgoing;
@@ -279,7 +280,7 @@ static inline icd_status_t icdgen_outgoing_packet(
     if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (packet >= form->packet_count || form->packets[packet].content != ICD_PACKET_NOTHING ||
+    if (packet >= form->packet_count || !ICDGEN_CONTAINS(&form->packets[packet], ICD_PACKET_NOTHING) ||
         !form->packets[packet].is_sent[direction]) {
         return ICD_ERROR_RANGE;
     }
@@ -298,7 +299,7 @@ static inline icd_status_t icdgen_outgoing_encode(
 {
     const icd_packet_form_t *const packet = outgoing->packet;
     const uint8_t *const data = outgoing->data;
-    const bool cuts_zeros = outgoing->is_message && (outgoing->row->flags & ICD_STREAM_CUTS_ZEROS) != 0u;
+    const bool cuts_zeros = outgoing->is_message && ICDGEN_HAS_FLAG(outgoing->row, ICD_STREAM_CUTS_ZEROS);
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
     uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
@@ -317,8 +318,7 @@ static inline icd_status_t icdgen_outgoing_encode(
             outgoing->sources[i] = icdgen_stream_number(&exchange->sources[i], 0, header, packet->header_bytes);
         }
     }
-    const icd_stream_form_t *const form = outgoing->form;
-    icdgen_line_t line = {form->delimited_by, form->escaping, buffer, capacity, 0, 0, false, false};
+    icdgen_line_t line = {outgoing->form, buffer, capacity, 0, 0, false, false};
     icdgen_line_delimiter(&line, true);
     icdgen_line_write(&line, header, packet->header_bytes);
     icdgen_line_write(&line, data, length);

@@ -123,7 +123,7 @@ typedef enum {
 /**
  * Place of a number in a message: its id, as 4 bytes with the most significant first, followed by its data. The number
  * in the `size` bytes from byte `at` on is shifted right by `shift` and masked to `bits` bits. Bytes that the message
- * does not have are 0. `bits` is 0 if there is no number.
+ * does not have are 0.
  */
 typedef struct {
     uint32_t at;
@@ -135,7 +135,7 @@ typedef struct {
 
 /** A number of a response that repeats number `source` of the telecommand. */
 typedef struct {
-    icd_number_place_t place;
+    const icd_number_place_t *place; /**< Equal places of a link are the same object. */
     uint8_t source;
 } icd_echo_t;
 
@@ -145,18 +145,22 @@ typedef struct {
     icd_verdict_t verdict;
 } icd_meaning_t;
 
-/** Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. */
+/**
+ * Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. Places that the ICD
+ * does not have are NULL.
+ */
 typedef struct {
     uint32_t source;       /**< Id of the telemetry, or index of the packet. */
     icd_verdict_t verdict; /**< With a status: the meaning of all values that are not in `meanings`. */
     uint8_t echo_count;
-    bool is_packet; /**< The places in a packet count from 4 bytes before its first byte, as if the id stood there. */
+    bool is_packet;   /**< The places in a packet count from 4 bytes before its first byte, as if the id stood there. */
+    uint8_t verdicts; /**< All that it can mean, as a mask; bit n: verdict n of icd_verdict_t. */
     uint16_t meaning_count;
     const icd_echo_t *echoes;
     const icd_meaning_t *meanings;
-    icd_number_place_t status;
-    icd_number_place_t reason; /**< Reason of a refusal. */
-    icd_number_place_t detail; /**< A number that says more about a refusal. */
+    const icd_number_place_t *status;
+    const icd_number_place_t *reason; /**< Reason of a refusal. */
+    const icd_number_place_t *detail; /**< A number that says more about a refusal. */
 } icd_response_t;
 
 /** Telemetry that a client requests until it has the right echo and the number `until` is not 0. */

@@ -14,18 +14,18 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
 {
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
         const icd_stream_row_t *const row = &form->rows[ICD_TELECOMMAND][i];
-        if ((row->flags & ICD_STREAM_REQUESTS) != 0u && row->requested == id) {
+        if (ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTS) && row->requested == id) {
             return row;
         }
     }
     const icd_stream_row_t *const telemetry = icdgen_stream_row(form, ICD_TELEMETRY, id);
-    return telemetry != NULL && (telemetry->flags & ICD_STREAM_REQUESTED) != 0u ? telemetry : NULL;
+    return telemetry != NULL && ICDGEN_HAS_FLAG(telemetry, ICD_STREAM_REQUESTED) ? telemetry : NULL;
 }
 
 /* Return whether telemetry is a possible reply in the ICD. */
 static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 {
-    for (size_t i = 0; exchange != NULL && i < exchange->response_count; ++i) {
+    for (size_t i = 0; i < exchange->response_count; ++i) {
         const icd_response_t *const response = &exchange->responses[i];
         if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
             return true;
@@ -35,7 +35,7 @@ static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 }
 
 static inline icd_status_t icdgen_stream_plan(
-    const icd_client_t *client, const icd_request_t *request, icdgen_plan_t *plan)
+    const icd_client_t *client, const icd_request_t *request, icd_slot_t *slot)
 {
     const icd_stream_form_t *const form = client->link->stream;
     const bool asks = request->direction == ICD_TELEMETRY;
@@ -45,23 +45,28 @@ static inline icd_status_t icdgen_stream_plan(
         const bool is_known = asks && icdgen_stream_row(form, ICD_TELEMETRY, request->id) != NULL;
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
-    plan->asks_by_id = (row->flags & ICD_STREAM_REQUESTED) != 0u;
-    icd_awaited_t *const awaited = &plan->awaited;
-    awaited->exchange = plan->asks_by_id ? form->request->exchange : row->exchange;
-    plan->least = plan->asks_by_id ? form->packets[form->request->packet].reserved : row->least;
-    plan->most = plan->asks_by_id ? plan->least : row->most;
-    plan->sent_id = row->id;
-    plan->repeats = (row->flags & ICD_STREAM_REPEATS) != 0u;
-    if (plan->asks_by_id || (request->has_reply && !asks)) {
-        awaited->reply = plan->asks_by_id ? row->id : request->reply;
+    icd_awaited_t *const awaited = &slot->awaited;
+    const bool by_id = ICDGEN_HAS_FLAG(row, ICD_STREAM_REQUESTED);
+    const icd_exchange_t *const exchange = by_id ? form->request->exchange : row->exchange;
+    awaited->exchange = exchange != NULL ? exchange : awaited->exchange;
+    slot->asks_by_id = by_id;
+    slot->sent_id = row->id;
+    slot->repeat = slot->repeat || ICDGEN_HAS_FLAG(row, ICD_STREAM_REPEATS);
+    if (by_id || (request->has_reply && !asks)) {
+        awaited->reply = by_id ? row->id : request->reply;
         const icd_stream_row_t *const reply = icdgen_stream_row(form, ICD_TELEMETRY, awaited->reply);
         if (reply == NULL) {
             return ICD_ERROR_UNKNOWN_ID;
         }
-        awaited->has_reply = plan->asks_by_id || !icdgen_has_reply(awaited->exchange, awaited->reply);
-        awaited->is_nameless = awaited->has_reply && (reply->flags & ICD_STREAM_NAMELESS) != 0u;
+        awaited->has_reply = by_id || !icdgen_has_reply(awaited->exchange, awaited->reply);
+        awaited->is_nameless = awaited->has_reply && ICDGEN_HAS_FLAG(reply, ICD_STREAM_NAMELESS);
     }
-    return ICD_OK;
+    if (asks) {
+        slot->length = by_id ? form->packets[form->request->packet].reserved : row->least;
+        return ICD_OK;
+    }
+    slot->length = request->length;
+    return request->length >= row->least && request->length <= row->most ? ICD_OK : ICD_ERROR_LENGTH;
 }
 
 /* Return the packet that is sent for a request. */
@@ -73,12 +78,10 @@ static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_client_t *clien
     return icdgen_outgoing_row(form, ICD_TELECOMMAND, row, slot->data, slot->length);
 }
 
-static inline icd_status_t icdgen_stream_store(
-    const icd_client_t *client, icd_slot_t *slot, const uint8_t *data, size_t length)
+static inline icd_status_t icdgen_stream_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
     size_t written = 0;
-    slot->length = length;
-    for (size_t i = 0; i < length; ++i) {
+    for (size_t i = 0; i < slot->length; ++i) {
         slot->data[i] = data != NULL ? data[i] : 0u;
     }
     /* Without a buffer, this only checks whether header and trailer values fit into their fields. */
@@ -157,34 +160,33 @@ static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_
         event->data += packet->header_bytes;
         event->length = length;
     } else if (other != NULL) {
-        *event = icdgen_event_of(ICD_EVENT_LENGTH, other->id);
+        icdgen_event_of(event, ICD_EVENT_LENGTH, other->id);
     } else {
         /* the packet itself */
     }
 }
 
-static inline void icdgen_on_stream(void *context, const icd_event_t *found)
+static inline void icdgen_on_stream(const void *context, icd_event_t *event)
 {
     const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
     const icd_stream_form_t *const form = call->client->link->stream;
-    icd_event_t event = *found;
-    if (event.is_packet && form->packets[event.packet].content == ICD_PACKET_REQUESTED) {
-        icdgen_stream_identify(call->client, &event);
+    if (event->is_packet && ICDGEN_CONTAINS(&form->packets[event->packet], ICD_PACKET_REQUESTED)) {
+        icdgen_stream_identify(call->client, event);
     }
-    if (event.kind == ICD_EVENT_MESSAGE || event.kind == ICD_EVENT_PACKET) {
-        const bool is_stray = event.is_packet || icdgen_stream_confirms(form, event.id);
-        icdgen_client_arrived(call, &event, is_stray ? ICD_EVENT_STRAY : ICD_EVENT_ARRIVED);
+    if (event->kind == ICD_EVENT_MESSAGE || event->kind == ICD_EVENT_PACKET) {
+        const bool is_stray = event->is_packet || icdgen_stream_confirms(form, event->id);
+        icdgen_client_arrived(call, event, is_stray ? ICD_EVENT_STRAY : ICD_EVENT_ARRIVED);
     } else {
-        event.link = call->client->link;
-        event.direction = ICD_TELEMETRY;
-        call->on_event(call->context, &event);
+        event->link = call->client->link;
+        event->direction = ICD_TELEMETRY;
+        call->on_event(call->context, event);
     }
 }
 
 static inline void icdgen_stream_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
 {
-    icdgen_call_t copy = *call;
-    icd_stream_feed(&call->client->stream->decoder, bytes, count, icdgen_on_stream, &copy);
+    const icdgen_listener_t listener = {icdgen_on_stream, call};
+    icdgen_stream_feed(&call->client->stream->decoder, bytes, count, &listener);
 }
 
 ICDGEN_API icd_status_t icd_client_stream(

@@ -83,7 +83,7 @@ icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8
 
 static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
 {
-    decoder->discarded += decoder->pending - 2u; /* all except the two bytes of the start sequence */
+    decoder->discarded += ICDGEN_U32(decoder->pending - 2u); /* all except the two bytes of the start sequence */
     decoder->pending = 2;
     decoder->inside = true;
     decoder->escaped = false;
@@ -93,96 +93,104 @@ static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
 /* Drop bytes that are not part of a message. A final escape byte is kept because it may start one. */
 static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
 {
-    decoder->discarded += decoder->pending - (escaped ? 1u : 0u);
+    decoder->discarded += ICDGEN_U32(decoder->pending - (escaped ? 1u : 0u));
     decoder->pending = escaped ? 1u : 0u;
     decoder->inside = false;
     decoder->escaped = escaped;
     decoder->length = 0;
 }
 
-static inline void icdgen_uart_tell(
-    const icd_uart_decoder_t *decoder, icd_event_kind_t kind, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(kind);
-    if (kind == ICD_EVENT_MESSAGE) {
-        event.has_id = true;
-        event.id = decoder->buffer[0];
-        event.data = decoder->buffer;
-        event.length = decoder->length;
-    }
-    on_event(context, &event);
-}
-
-static inline void icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
+/* Process a byte of a message. Return whether there is an event, and set its kind. */
+static inline bool icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     if (decoder->length < decoder->capacity) {
         decoder->buffer[decoder->length] = byte;
         decoder->length++;
-    } else {
-        icdgen_uart_tell(decoder, ICD_EVENT_OVERRUN, on_event, context);
-        icdgen_uart_outside(decoder, false);
+        return false;
     }
-}
-
-static inline void icdgen_uart_end(icd_uart_decoder_t *decoder, icd_event_fn *on_event, void *context)
-{
-    if (decoder->length != 0u) {
-        icdgen_uart_tell(decoder, ICD_EVENT_MESSAGE, on_event, context);
-        decoder->pending = 0;
-    } else {
-        icdgen_uart_tell(decoder, ICD_EVENT_EMPTY, on_event, context);
-    }
+    *kind = ICD_EVENT_OVERRUN;
     icdgen_uart_outside(decoder, false);
+    return true;
 }
 
-/* Process the byte after an escape byte within a message. */
-static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
+/* Process the byte after an escape byte within a message. Return whether there is an event, and set its kind. */
+static inline bool icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     const icd_framing_t *const framing = decoder->framing;
     decoder->escaped = false;
+    if (byte == framing->escaped) {
+        return icdgen_uart_data(decoder, framing->escape, kind);
+    }
     if (byte == framing->start) {
-        icdgen_uart_tell(decoder, ICD_EVENT_UNEXPECTED_START, on_event, context);
+        *kind = ICD_EVENT_UNEXPECTED_START;
         icdgen_uart_start(decoder);
     } else if (byte == framing->end) {
-        icdgen_uart_end(decoder, on_event, context);
-    } else if (byte == framing->escaped) {
-        icdgen_uart_data(decoder, framing->escape, on_event, context);
+        *kind = decoder->length != 0u ? ICD_EVENT_MESSAGE : ICD_EVENT_EMPTY;
+        decoder->pending = decoder->length != 0u ? 0u : decoder->pending;
+        icdgen_uart_outside(decoder, false);
     } else if (!framing->ignores_other) {
-        icdgen_uart_tell(decoder, ICD_EVENT_PROTOCOL_ERROR, on_event, context);
+        *kind = ICD_EVENT_PROTOCOL_ERROR;
         icdgen_uart_outside(decoder, byte == framing->escape);
     } else {
-        /* both bytes are skipped */
+        return false; /* both bytes are skipped */
+    }
+    return true;
+}
+
+/* Process a byte. Return whether there is an event, and set its kind. */
+static inline bool icdgen_uart_byte(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
+{
+    const icd_framing_t *const framing = decoder->framing;
+    decoder->pending++;
+    if (!decoder->inside) {
+        if (decoder->escaped && byte == framing->start) {
+            icdgen_uart_start(decoder);
+        } else {
+            icdgen_uart_outside(decoder, byte == framing->escape);
+        }
+    } else if (decoder->escaped) {
+        return icdgen_uart_escaped(decoder, byte, kind);
+    } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
+        decoder->escaped = true;
+    } else {
+        return icdgen_uart_data(decoder, byte, kind);
+    }
+    return false;
+}
+
+static inline void icdgen_uart_feed(
+    icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
+{
+    for (size_t i = 0; i < count; ++i) {
+        const size_t length = decoder->length;
+        icd_event_kind_t kind = ICD_EVENT_MESSAGE;
+        if (icdgen_uart_byte(decoder, bytes[i], &kind)) {
+            icd_event_t event;
+            icdgen_event_init(&event, kind);
+            if (kind == ICD_EVENT_MESSAGE) {
+                event.has_id = true;
+                event.id = decoder->buffer[0];
+                event.data = decoder->buffer;
+                event.length = length;
+            }
+            icdgen_tell(listener, &event);
+        }
     }
 }
 
 ICDGEN_API void icd_uart_feed(
     icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
-    const icd_framing_t *const framing = decoder->framing;
-    for (size_t i = 0; i < count; ++i) {
-        const uint8_t byte = bytes[i];
-        decoder->pending++;
-        if (!decoder->inside) {
-            if (decoder->escaped && byte == framing->start) {
-                icdgen_uart_start(decoder);
-            } else {
-                icdgen_uart_outside(decoder, byte == framing->escape);
-            }
-        } else if (decoder->escaped) {
-            icdgen_uart_escaped(decoder, byte, on_event, context);
-        } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
-            decoder->escaped = true;
-        } else {
-            icdgen_uart_data(decoder, byte, on_event, context);
-        }
-    }
+    const icdgen_caller_t caller = {on_event, context};
+    const icdgen_listener_t listener = {icdgen_tell_caller, &caller};
+    icdgen_uart_feed(decoder, bytes, count, &listener);
 }
 
-/* Return the number of slots that a mask selects. Missing bytes of an incomplete mask count as 0. */
-static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
+/* Return the number of slots that a mask selects. */
+static inline size_t icdgen_log_slots(const uint8_t *mask, size_t size)
 {
     size_t count = 0;
-    for (size_t i = 0; i < length && i < link->log_mask->size; ++i) {
+    for (size_t i = 0; i < size; ++i) {
         for (unsigned bits = mask[i]; bits != 0u; bits &= bits - 1u) {
             count++;
         }
@@ -207,9 +215,9 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     const uint8_t id = message[0];
     const icd_log_message_form_t *const log = link->log_message;
     if (log != NULL && id == log->id) {
-        const size_t given = length > log->mask_at ? length - log->mask_at : 0u;
-        const size_t slots = icdgen_log_slots(link, given != 0u ? message + log->mask_at : message, given);
-        return length == log->frames_at + (slots * link->log_mask->slot_bytes) ? ICD_UART_LOG : ICD_UART_OTHER;
+        const bool has_mask = length >= ICDGEN_SIZE(log->mask_at) + log->mask_bytes;
+        const size_t slots = has_mask ? icdgen_log_slots(message + log->mask_at, log->mask_bytes) : 0u;
+        return has_mask && length == log->frames_at + (slots * log->slot_bytes) ? ICD_UART_LOG : ICD_UART_OTHER;
     }
     if (id >= link->telemetry_first && id <= link->telemetry_last) {
         return ICD_UART_REPLY;

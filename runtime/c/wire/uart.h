@@ -44,7 +44,7 @@ typedef struct {
     size_t capacity;
     size_t length;      /**< Bytes of the current message received so far. */
     size_t pending;     /**< Received bytes that may still become part of a message. */
-    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
+    uint32_t discarded; /**< Number of received bytes that are not part of a message. May wrap around. */
     bool inside;
     bool escaped;
 } icd_uart_decoder_t;

@@ -24,37 +24,39 @@ static inline bool icdgen_uart_output(icd_client_t *client, uint8_t *buffer, siz
 }
 
 /* Process a message: id and data. */
-static inline void icdgen_uart_message(const icdgen_call_t *call, const uint8_t *message, size_t length)
+static inline void icdgen_uart_message(const icdgen_call_t *call, icd_event_t *event)
 {
     const icd_link_t *const link = call->client->link;
+    const uint8_t *const message = event->data;
+    const size_t length = event->length;
     const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
+    if (kind == ICD_UART_LOG) {
+        icdgen_bus_tell(call, ICD_EVENT_LOG, event);
+        return;
+    }
+    if (kind == ICD_UART_ACKNOWLEDGE) {
+        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, event);
+        return;
+    }
+    event->data++; /* without the id */
+    event->length--;
     if (kind == ICD_UART_REPLY) {
-        icdgen_bus_telemetry(call, message[0], message + 1, length - 1u);
-    } else if (kind == ICD_UART_ACKNOWLEDGE) {
-        icdgen_bus_packet(call, ICDGEN_ACKNOWLEDGE, message, length);
-    } else if (kind == ICD_UART_OTHER) {
-        icdgen_bus_stray(call, message[0], message + 1, length - 1u);
+        icdgen_bus_telemetry(call, event);
+    } else if (kind == ICD_UART_ARRIVED) {
+        event->id = icdgen_unsolicited(link, message, length)->telemetry;
+        event->link = link;
+        event->direction = ICD_TELEMETRY;
+        icdgen_bus_tell(call, ICD_EVENT_ARRIVED, event);
     } else {
-        icd_event_t event = icdgen_event_of(ICD_EVENT_LOG, message[0]);
-        event.data = message;
-        event.length = length;
-        if (kind == ICD_UART_ARRIVED) {
-            event.kind = ICD_EVENT_ARRIVED;
-            event.id = icdgen_unsolicited(link, message, length)->telemetry;
-            event.data = message + 1;
-            event.length = length - 1u;
-            event.link = link;
-            event.direction = ICD_TELEMETRY;
-        }
-        call->on_event(call->context, &event);
+        icdgen_bus_tell(call, ICD_EVENT_STRAY, event);
     }
 }
 
-static inline void icdgen_on_uart(void *context, const icd_event_t *event)
+static inline void icdgen_on_uart(const void *context, icd_event_t *event)
 {
     const icdgen_call_t *const call = ICDGEN_CAST(const icdgen_call_t *, context);
     if (event->kind == ICD_EVENT_MESSAGE) {
-        icdgen_uart_message(call, event->data, event->length);
+        icdgen_uart_message(call, event);
     } else {
         call->on_event(call->context, event);
     }
@@ -62,8 +64,8 @@ static inline void icdgen_on_uart(void *context, const icd_event_t *event)
 
 static inline void icdgen_uart_received(const icdgen_call_t *call, const uint8_t *bytes, size_t count)
 {
-    icdgen_call_t copy = *call;
-    icd_uart_feed(&call->client->uart->decoder, bytes, count, icdgen_on_uart, &copy);
+    const icdgen_listener_t listener = {icdgen_on_uart, call};
+    icdgen_uart_feed(&call->client->uart->decoder, bytes, count, &listener);
 }
 
 ICDGEN_API icd_status_t icd_client_uart(

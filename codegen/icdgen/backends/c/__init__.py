@@ -81,13 +81,18 @@ class CBackend:
             )
         links = links_of(description)
         if links:
+            from icdgen.backends.c.kinds import kinds_of
             from icdgen.backends.c.procedures import procedure_sizes
 
             longest = procedure_sizes(links.values())
-            sizes = {"wire/sizes.h": render("sizes.h.j2", sizes=longest)}
+            kinds = kinds_of(links.values())
+            of_icd = {
+                "wire/kinds.h": render("kinds.h.j2", kinds=kinds),
+                "wire/sizes.h": render("sizes.h.j2", sizes=longest),
+            }
             yield (
                 PurePosixPath("icdgen_wire.h"),
-                first + assembled("icdgen_wire.h", render, sizes),
+                first + assembled("icdgen_wire.h", render, of_icd),
             )
             yield (
                 PurePosixPath("icdgen_wire.c"),
@@ -168,9 +173,9 @@ def _link(
         "procedures": procedures,
         **shared,
     }
-    tables = links.tables(link, assumed)
+    code = links.link_code(link, assumed)
     yield folder / "link.h", render("link.h.j2", **values)
-    yield folder / "link.c", render("link.c.j2", tables=tables, **values)
+    yield folder / "link.c", render("link.c.j2", code=code, **values)
     if procedures:
         yield folder / "procedures.h", render("procedures.h.j2", **values)
     yield folder / "client.h", render("client.h.j2", **values)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from icdgen.backends.c.facts import TYPES, Row, boolean, or_none
 from icdgen.backends.c.stream_rows import (
+    content_name,
     field_row,
     message_row,
     number_place,
     only_id,
     stream_sizes,
+    verdict_mask,
     verdict_name,
 )
 from icdgen.backends.c.tables import Table, TableSet
@@ -28,12 +31,11 @@ from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.envelope import (
     CRC,
     DIRECTIONS,
-    NOTHING,
     Escaping,
     Stream,
 )
-from icdgen.protocol.exchange import Exchange, Response
-from icdgen.protocol.sections import BUSES, CAN_KINDS, Crc
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.sections import BUSES, CAN, CAN_KINDS, UART, Crc
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256
@@ -52,15 +54,15 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
             "Size in bytes of the longest message in either direction, with id and checksum.",
         )
     ]
-    slot = 1 + link.joined_bytes if facts.can else 0
     if facts.can:
+        slot = _can_slot_bytes(link)
         rows.append(
             ("CAN_SLOT_BYTES", slot, "Buffer size in bytes of a CAN joiner, per slot.")
         )
     rows.append(
         (
             "CLIENT_BYTES",
-            facts.longest_telecommand + max(slot, facts.longest),
+            facts.longest_telecommand + received_bytes(link),
             "Buffer size in bytes of a client with one slot.",
         )
     )
@@ -77,9 +79,50 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     return rows
 
 
-def tables(link: LinkDescription, assumed: Assumptions) -> list[Table]:
-    """Return the tables of a node, in the order of their declaration."""
-    return _Tables(link, assumed).all()
+def received_bytes(link: LinkDescription) -> int:
+    """Return the buffer size of a client for what it receives on any bus."""
+    slot = _can_slot_bytes(link) if link.facts.can else 0
+    return max(slot, link.facts.longest)
+
+
+def _can_slot_bytes(link: LinkDescription) -> int:
+    return 1 + link.joined_bytes
+
+
+class LinkTable(NamedTuple):
+    """Description of a protocol, or of its part on one bus, that a function returns."""
+
+    function: str
+    bus: str | None
+    table: Table
+
+
+class LinkCode(NamedTuple):
+    """Links of a node, and the tables to which they refer in the order of their
+    declaration.
+    """
+
+    tables: list[Table]
+    links: list[LinkTable]
+
+
+def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
+    """Return the links of a node, and their tables."""
+    tables = _Tables(link, assumed)
+    links = tables.links()
+    return LinkCode(tables.tables, links)
+
+
+class _Part(NamedTuple):
+    """Member of a link, which is absent in that of a bus where no client needs it."""
+
+    row: Row
+    buses: Collection[str] = BUSES
+    absent: str = "NULL"
+
+    def on(self, bus: str) -> Row:
+        """Return the member in the link of a bus."""
+        return self.row if bus in self.buses else self.row._replace(value=self.absent)
 
 
 class _Tables(TableSet):
@@ -88,8 +131,40 @@ class _Tables(TableSet):
     Each method declares a table and returns the expression that refers to it.
     """
 
-    def all(self) -> list[Table]:
-        """Return the tables of the parts, then that of the link."""
+    def __init__(self, link: LinkDescription, assumed: Assumptions) -> None:
+        super().__init__(link, assumed, f"icdgen_node_{link.facts.node.name}_")
+
+    def links(self) -> list[LinkTable]:
+        """Return the link of the node, and one for the clients on each bus: with these,
+        the linker of a program can drop the tables of everything else.
+        """
+        parts, exchanges = self.parts(), self.buses()
+        assumed = (
+            (key, why)
+            for section, key, why in self.assumed.others()
+            if not section.startswith("message ")
+        )
+        whole = [each.row for each in parts], exchanges
+        on_bus = {
+            bus: ([each.on(bus) for each in parts], {bus: exchanges.get(bus, "NULL")})
+            for bus in self.link.buses
+        }
+        links = []
+        for bus, (rows, on) in ((None, whole), *on_bus.items()):
+            every = _in_lines(on.get(each, "NULL") for each in BUSES)
+            row = Row(f"{{{every}}}", "exchanges on UART, I2C, CAN")
+            framing = Row(self.stream() if bus is None else "NULL", "framing")
+            table = self.table(
+                "link",
+                "icd_link_t",
+                [*rows, row, framing],
+                assumed if bus is None else (),
+            )
+            links.append(LinkTable(f"{bus}_link" if bus else "link", bus, table))
+        return links
+
+    def parts(self) -> list[_Part]:
+        """Return the members of a link up to the exchanges."""
         link, facts = self.link, self.facts_of_link
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
         codes = link.error_codes
@@ -98,72 +173,95 @@ class _Tables(TableSet):
         )
         longest = f"{telecommand}u, {facts.longest_reply}u, {facts.longest}u"
         settings = f"{{{self.values('client', facts.client)}}}"
-        rows = [
-            Row(
-                self.array(
-                    "nodes", "char *const", (f'"{name}"' for name in facts.owners)
+        checked = {
+            *(facts.checksum.telecommand_buses if facts.checksum else ()),
+            *(facts.checksum.telemetry_buses if facts.checksum else ()),
+        }
+        refusing = [
+            bus
+            for bus, exchanges in facts.bus_exchanges.items()
+            if exchanges.command
+            and any(each.reason for each in exchanges.command.responses)
+        ]
+        none = facts.errors.get("none", 0)
+        nodes = (f'"{name}"' for name in facts.owners)
+        sent = self.messages("telecommands", map(self.telecommand, telecommands))
+        requested = self.messages(
+            "telemetry", (self.message(sent, "0u") for sent in telemetry)
+        )
+        return [
+            _Part(Row(self.array("nodes", "char *const", nodes), "whose messages")),
+            _Part(Row(f"{len(facts.owners)}u", "how many")),
+            _Part(Row(boolean(facts.little), "byte order: little")),
+            _Part(
+                Row(
+                    boolean(facts.node.bit_order == "msb0"),
+                    "bit 0 is the most significant one",
+                )
+            ),
+            _Part(
+                Row(
+                    f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
+                    "ids of telemetry",
+                )
+            ),
+            _Part(Row(sent, "what can be sent")),
+            _Part(Row(requested, "what can be requested")),
+            _Part(Row(_count(sent), "how many can be sent")),
+            _Part(Row(_count(requested), "how many can be requested")),
+            _Part(Row(longest, "longest telecommand, reply, any")),
+            _Part(Row(f"{facts.longest_data}u", "longest without id and checksum")),
+            _Part(Row(f"{received_bytes(link)}u", "buffer for what is received")),
+            _Part(Row(or_none(facts.node.node_type), "node type")),
+            _Part(Row(or_none(facts.node.interface_version), "interface version")),
+            _Part(Row(settings, "times and limits: icd_client_settings_t")),
+            _Part(
+                Row(
+                    self.array("errors", "icd_error_code_t", map(_error_code, codes)),
+                    "error codes",
                 ),
-                "whose messages",
+                refusing,
             ),
-            Row(f"{len(facts.owners)}u", "how many"),
-            Row(boolean(facts.little), "byte order: little"),
-            Row(
-                boolean(facts.node.bit_order == "msb0"),
-                "bit 0 is the most significant one",
+            _Part(
+                Row(f"{len(codes)}u, {none}u", "how many; no error"),
+                refusing,
+                f"0u, {none}u",
             ),
-            Row(
-                f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
-                "ids of telemetry",
+            _Part(
+                Row(self.part("framing", facts.framing), "framing of the UART"), {UART}
             ),
-            Row(
-                self.messages("telecommands", map(self.telecommand, telecommands)),
-                "what can be sent",
-            ),
-            Row(
-                self.messages(
-                    "telemetry", (self.message(sent, "0u") for sent in telemetry)
+            _Part(
+                Row(
+                    self.part("acknowledge", facts.acknowledge),
+                    "acknowledges on the UART",
                 ),
-                "what can be requested",
+                {UART},
             ),
-            Row(_count("telecommands", telecommands), "how many can be sent"),
-            Row(_count("telemetry", telemetry), "how many can be requested"),
-            Row(longest, "longest telecommand, reply, any"),
-            Row(f"{facts.longest_data}u", "longest without id and checksum"),
-            Row(or_none(facts.node.node_type), "node type"),
-            Row(or_none(facts.node.interface_version), "interface version"),
-            Row(settings, "times and limits: icd_client_settings_t"),
-            Row(
-                self.array("errors", "icd_error_code_t", map(_error_code, codes)),
-                "error codes",
+            _Part(
+                Row(f"{self.unsolicited()}, {len(facts.unsolicited)}u", "unsolicited"),
+                {UART},
+                "NULL, 0u",
             ),
-            Row(f"{len(codes)}u, {facts.errors.get('none', 0)}u", "how many; no error"),
-            Row(self.part("framing", facts.framing), "framing of the UART"),
-            Row(
-                self.part("acknowledge", facts.acknowledge), "acknowledges on the UART"
+            _Part(Row(or_none(facts.i2c_address), "I2C address")),
+            _Part(
+                Row(
+                    boolean(facts.i2c_repeated_start),
+                    "I2C: a read may follow its write without a stop",
+                )
             ),
-            Row(f"{self.unsolicited()}, {len(facts.unsolicited)}u", "unsolicited"),
-            Row(or_none(facts.i2c_address), "I2C address"),
-            Row(
-                boolean(facts.i2c_repeated_start),
-                "I2C: a read may follow its write without a stop",
-            ),
-            Row(or_none(facts.boot_ms), "boot time in ms"),
-            Row(self.can(), "CAN"),
-            Row(self.checksum(), "checksums of messages"),
-            Row(self.crc16(), "CRC of files"),
+            _Part(Row(or_none(facts.boot_ms), "boot time in ms")),
+            _Part(Row(self.can(), "CAN"), {CAN}),
+            _Part(Row(self.checksum(), "checksums of messages"), checked),
+            _Part(Row(self.crc16(), "CRC of files"), ()),
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
-            Row(self.report("identification", link.identification), "identification"),
-            Row(self.buses(), "exchanges on UART, I2C, CAN"),
-            Row(self.stream(), "framing"),
+            _Part(
+                Row(
+                    self.report("identification", link.identification), "identification"
+                ),
+                (),
+            ),
         ]
-        assumed = (
-            (key, why)
-            for section, key, why in self.assumed.others()
-            if not section.startswith("message ")
-        )
-        self.add("link", "icd_link_t", rows, assumed)
-        return self.tables
 
     def unsolicited(self) -> str:
         telemetry = self.facts_of_link.telemetry
@@ -179,28 +277,23 @@ class _Tables(TableSet):
             ),
         )
 
-    def logs(self) -> Iterator[Row]:
+    def logs(self) -> Iterator[_Part]:
         facts = self.facts_of_link
-        yield Row(self.log_mask(), "mask of logs")
-        yield Row(self.part("log_file", facts.log_file), "log files")
-        yield Row(
-            self.part("log_message", facts.mask and facts.log_message),
-            "unsolicited logs",
-        )
+        yield _Part(Row(self.log_mask(), "mask of logs"), ())
+        yield _Part(Row(self.part("log_file", facts.log_file), "log files"), ())
+        yield _Part(Row(self.log_message(), "unsolicited logs"), {UART})
 
-    def of_files(self) -> Iterator[Row]:
-        yield Row(self.time(), "packed times")
-        yield Row(self.index(), "index of files")
+    def of_files(self) -> Iterator[_Part]:
+        yield _Part(Row(self.time(), "packed times"), ())
+        yield _Part(Row(self.index(), "index of files"), ())
 
-    def optional(self, what: str, rows: Iterable[Row]) -> Iterator[Row]:
-        """List rows that a program can omit, together with their tables."""
+    def optional(self, what: str, parts: Iterable[_Part]) -> Iterator[_Part]:
+        """List members that a program can omit, together with their tables."""
         first = len(self.tables)
-        for row in rows:
-            yield (
-                row
-                if row.value == "NULL"
-                else row._replace(value=f"ICDGEN_OF_{what}({row.value})")
-            )
+        for part in parts:
+            value = part.row.value
+            row = part.row._replace(value=f"ICDGEN_OF_{what}({value})")
+            yield part if value == "NULL" else part._replace(row=row)
         self.tables[first:] = [
             table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]
         ]
@@ -231,7 +324,7 @@ class _Tables(TableSet):
         return Row(
             f"{{{sent.id}u, {flags}, {sent.message.length}u}}",
             plain(sent.message.name),
-            f" || \\\n{STEP}".join(conditions),
+            f" || \\\n{STEP * 2}".join(conditions),
         )
 
     def report(self, name: str, report: ReportDescription | None) -> str:
@@ -395,7 +488,6 @@ class _Tables(TableSet):
         sizes = (
             f"{len(packet.fields)}u, {packet.header_bytes}u, {packet.trailer_bytes}u"
         )
-        content = "NOTHING" if packet.content == NOTHING else packet.content.upper()
         # Without an id field, a decoder takes the id of the only message from here.
         has_id = packet.of("id") is not None
         ids = ", ".join(
@@ -405,24 +497,22 @@ class _Tables(TableSet):
         sent = ", ".join(boolean(each in packet.directions) for each in DIRECTIONS)
         return Row(
             f"{{{{{ids}}}, {fields}, {check}, {sizes}, "
-            f"ICD_PACKET_{content}, {{{sent}}}, {packet.reserved}u}}",
+            f"ICD_PACKET_{content_name(packet).upper()}, {{{sent}}}, {packet.reserved}u}}",
             plain(packet.name),
         )
 
-    def buses(self) -> str:
-        """Return the initialiser of the exchanges on each bus."""
-        rows = []
-        for bus in BUSES:
-            exchanges = self.facts_of_link.bus_exchanges.get(bus)
-            if exchanges is None:
-                rows.append("NULL")
-                continue
+    def buses(self) -> dict[str, str]:
+        """Declare the exchanges on each bus, and return the expressions that refer to
+        them.
+        """
+        on = {}
+        for bus, exchanges in self.facts_of_link.bus_exchanges.items():
             given = [exchanges.request, exchanges.command]
             declared = [each for each in given if each]
             names = self.exchanges(f"{bus}_exchanges", declared)
             row = Row(", ".join(names.get(each, "NULL") for each in reversed(given)))
-            rows.append(self.add(f"on_{bus}", "icd_bus_exchanges_t", [row]))
-        return f"{{{', '.join(rows)}}}"
+            on[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
+        return on
 
     def exchanges(
         self, name: str, exchanges: Sequence[Exchange]
@@ -455,11 +545,11 @@ class _Tables(TableSet):
                 row = Row(f"{exchange.poll.telemetry}u, {until}")
                 poll = self.add("outcome_poll", "icd_outcome_poll_t", [row])
             rows.append(
-                f"{{{sources}, {responses}, {counts}, {exchange.timeout}u, {poll}}}"
+                f"{{{sources}, {responses},\n{STEP * 3}{counts}, {exchange.timeout}u, {poll}}}"
             )
-        self.array(name, "icd_exchange_t", rows)
+        table = self.array(name, "icd_exchange_t", rows)
         return {
-            exchange: f"&{name}[{number}]" for number, exchange in enumerate(exchanges)
+            exchange: f"&{table}[{number}]" for number, exchange in enumerate(exchanges)
         }
 
     def response(self, response: Response) -> str:
@@ -470,7 +560,7 @@ class _Tables(TableSet):
             "echoes",
             "icd_echo_t",
             (
-                f"{{{number_place(echo.place, ID_BYTES)}, {echo.source}u}}"
+                f"{{{self.place(echo.place)}, {echo.source}u}}"
                 for echo in response.echoes
             ),
         )
@@ -486,14 +576,19 @@ class _Tables(TableSet):
         source = response.packet if is_packet else response.telemetry
         numbers = (
             f"{source:#x}u, {verdict_name(response.verdict)}",
-            f"{len(response.echoes)}u, {boolean(is_packet)}, {len(response.meanings)}u",
-            f"{echoes}, {meanings}",
+            f"{len(response.echoes)}u, {boolean(is_packet)}, {verdict_mask(response)}, {len(response.meanings)}u",
         )
         places = (
-            number_place(place, ID_BYTES)
+            self.place(place)
             for place in (response.status, response.reason, response.detail)
         )
-        return f"{{{', '.join(numbers)},\n{STEP * 3}{', '.join(places)}}}"
+        lines = (", ".join(numbers), f"{echoes}, {meanings}", ", ".join(places))
+        return f"{{{_in_lines(lines)}}}"
+
+    def place(self, place: NumberPlace | None) -> str:
+        """Declare the place of a number; return NULL if there is none."""
+        rows = [number_place(place, ID_BYTES)] if place else []
+        return self.shared("place", "icd_number_place_t", rows)
 
     def log_mask(self) -> str:
         mask = self.facts_of_link.mask
@@ -509,6 +604,13 @@ class _Tables(TableSet):
             "log_mask", mask, Row(self.array("log_bits", "icd_log_bit_t", rows))
         )
 
+    def log_message(self) -> str:
+        mask = self.facts_of_link.mask
+        if mask is None:
+            return "NULL"
+        sizes = Row(f"{mask.size}u, {mask.slot_bytes}u", "size of the mask, slot_bytes")
+        return self.part("log_message", self.facts_of_link.log_message, sizes)
+
     def time(self) -> str:
         rows = [
             Row(f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name)
@@ -521,6 +623,11 @@ class _Tables(TableSet):
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         rows = (Row(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields)
         return self.part("index_entry", form, *rows)
+
+
+def _in_lines(values: Iterable[str]) -> str:
+    """Return values of a row with one of them per line."""
+    return f",\n{STEP * 3}".join(values)
 
 
 def _error_code(code: tuple[str, int]) -> str:
@@ -536,10 +643,10 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
     ]
 
 
-def _count(name: str, messages: list[SentMessage]) -> str:
-    return (
-        f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
-    )
+def _count(table: str) -> str:
+    if table == "NULL":
+        return "0u"
+    return f"ICDGEN_ROWS({table})"
 
 
 def _escaping(escaping: Escaping) -> str:

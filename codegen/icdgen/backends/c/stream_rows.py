@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from icdgen.backends.c.facts import Row, boolean
 from icdgen.backends.c.text import plain
+from icdgen.icd.responses import AGAIN, KINDS
 from icdgen.protocol.envelope import (
+    NOTHING,
     REQUESTED,
     WORD,
     EnvelopeField,
+    PacketFormat,
     Stream,
     StreamRow,
 )
-from icdgen.protocol.exchange import NumberPlace
+from icdgen.protocol.exchange import NumberPlace, Response
+
+_VERDICTS = (*KINDS, AGAIN)  # in the order of icd_verdict_t
 
 
 def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
@@ -76,6 +81,12 @@ def verdict_name(verdict: str) -> str:
     return f"ICD_VERDICT_{verdict.upper()}"
 
 
+def verdict_mask(response: Response) -> str:
+    """Return all that a response can mean, as a mask of verdicts."""
+    meanings = {response.verdict, *(verdict for _, verdict in response.meanings)}
+    return f"{sum(1 << _VERDICTS.index(each) for each in meanings):#x}u"
+
+
 def only_id(form: Stream, packet: int, direction: str) -> int:
     """Return the id of the only message of a packet, 0 without one."""
     if form.packets[packet].content == REQUESTED:
@@ -84,8 +95,13 @@ def only_id(form: Stream, packet: int, direction: str) -> int:
     return min(ids, default=0)
 
 
-def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Row:
-    """Return the row of a message in packets."""
+def content_name(packet: PacketFormat) -> str:
+    """Return what a packet contains, as the end of an enumerator."""
+    return "nothing" if packet.content == NOTHING else packet.content
+
+
+def stream_flags(form: Stream, row: StreamRow) -> list[str]:
+    """Return the flags of a message in packets."""
     flags = {
         "CUTS_ZEROS": row.cuts_zeros,
         "REPEATS": row.repeats,
@@ -93,10 +109,14 @@ def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Row:
         "REQUESTED": row.is_requested,
         "NAMELESS": form.packets[row.packet].content == REQUESTED,
     }
+    return [f"ICD_STREAM_{name}" for name, is_set in flags.items() if is_set]
+
+
+def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Row:
+    """Return the row of a message in packets."""
     values = (
         f"{row.id:#x}u, {row.least}u, {row.most}u",
-        " | ".join(f"ICD_STREAM_{name}" for name, is_set in flags.items() if is_set)
-        or "0u",
+        " | ".join(stream_flags(form, row)) or "0u",
         f"{row.seed}u, {row.packet}u, {row.requests or 0:#x}u",
         exchange or "NULL",
     )

@@ -91,7 +91,7 @@ class CNames(NamingPolicy):
         for file in ("link.h", "link.c", "client.h"):
             yield Identifier(FILES, f"{node.name}/{file}", owner, source)
         kinds = (
-            [f"client_{bus}" for bus in _BUSES]
+            [name for bus in _BUSES for name in (f"client_{bus}", f"{bus}_link")]
             if node.has_client
             else ["client_init", "sender_t", "sender_init", "refusal"]
         )

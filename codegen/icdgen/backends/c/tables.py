@@ -31,8 +31,11 @@ class TableSet:
     Each method declares a table and returns the expression that refers to it.
     """
 
-    def __init__(self, link: LinkDescription, assumed: Assumptions) -> None:
+    def __init__(
+        self, link: LinkDescription, assumed: Assumptions, prefix: str = ""
+    ) -> None:
         self.link, self.facts_of_link, self.assumed = link, link.facts, assumed
+        self.prefix = prefix  # of all names
         self.tables: list[Table] = []
         self._shared: dict[tuple[str, tuple[str, ...]], str] = {}
 
@@ -44,16 +47,22 @@ class TableSet:
         assumed: Iterable[tuple[str, str]] = (),
     ) -> str:
         """Declare a table, with a comment on assumed facts: their keys and reasons."""
+        table = self.table(f"{self.prefix}{name}", type, rows, assumed)
+        self.tables.append(table)
+        return f"&{table.name}"
+
+    def table(
+        self,
+        name: str,
+        type: str,
+        rows: Iterable[str | Row],
+        assumed: Iterable[tuple[str, str]] = (),
+    ) -> Table:
+        """Return a table, with a comment on assumed facts."""
         about = " ".join(f"Assumed {plain(f'{key}: {why}')}" for key, why in assumed)
-        self.tables.append(
-            Table(
-                comment([about], STEP) if about else "",
-                type,
-                name,
-                list(map(str, rows)),
-            )
+        return Table(
+            comment([about], STEP) if about else "", type, name, list(map(str, rows))
         )
-        return f"&{name}"
 
     def array(self, name: str, type: str, rows: Iterable[str | Row]) -> str:
         """Declare an array; return NULL if it is empty."""

@@ -1,0 +1,24 @@
+#ifndef ICDGEN_WIRE_KINDS_H
+#define ICDGEN_WIRE_KINDS_H
+
+/* Kinds of parts that the links of these nodes have, as masks. A compiler leaves out the code for other kinds. */
+
+/* Of icd_delimiter_t. */
+#define ICDGEN_DELIMITERS 0x3Fu
+
+/* Of icd_check_kind_t. */
+#define ICDGEN_CHECKS 0x1Fu
+
+/* Of icd_packet_content_t. */
+#define ICDGEN_CONTENTS 0x0Fu
+
+/* Of icd_envelope_role_t. */
+#define ICDGEN_ROLES 0x1FFFu
+
+/* Flags of messages in packets. */
+#define ICDGEN_STREAM_FLAGS 0x1Fu
+
+/* Of icd_verdict_t. */
+#define ICDGEN_VERDICTS 0x3Fu
+
+#endif /* ICDGEN_WIRE_KINDS_H */
