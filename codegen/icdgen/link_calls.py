@@ -153,7 +153,7 @@ class _LinkBuilder:
             ),
             "procedures": {
                 each.name: _commented(
-                    _procedure(each), self.assumed.of_procedure(each.name)
+                    _procedure(each), self.assumed.within(f"procedures.{each.name}")
                 )
                 for each in facts.procedures
             }
@@ -236,7 +236,10 @@ class _LinkBuilder:
     def checksum(self) -> object:
         """Return the call for the checksum of messages."""
         form = self.facts.checksum
-        return self.part(form, name=form.algorithm.name) if form else None
+        if form is None:
+            return None
+        call = self.part(form, name=form.algorithm.name)
+        return _commented(call, self.assumed.within("link.packets"))
 
     def mask(self) -> object:
         """Return the call for the log mask."""

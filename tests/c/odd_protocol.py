@@ -30,7 +30,7 @@ def _changed(node: Node) -> Node:
             "max_bytes": 1785,
         }
         buses["can"]["node_address"] = 9
-        protocol["crc16"] |= {
+        protocol["link"]["checksums"]["crc16"] |= {
             "init": 0xFFFF,
             "reflect_in": True,
             "reflect_out": True,
@@ -41,9 +41,13 @@ def _changed(node: Node) -> Node:
     for part in protocol.get("msdos_time", {}).get("parts", ()):
         if part["name"] == "hour":
             part["bits"] = 4
-    if "crc8" in protocol:
-        protocol["crc8"] |= {"reflect_in": True, "reflect_out": True, "covers_id": True}
-        protocol["crc8"].pop("empty", None)
+    link = protocol.get("link", {})
+    for packet in link.get("packets", {}).values():
+        for field in packet["trailer"]:
+            field["covers"]["from"] = "id"
+            crc = link["checksums"][field["checksum"]]
+            crc |= {"reflect_in": True, "reflect_out": True}
+            crc.pop("empty", None)
     if "log_mask" in protocol:
         protocol["log_mask"] |= {"bit_order": "msb0", "fill": 0x77}
     return dataclasses.replace(

@@ -31,11 +31,11 @@ PARTS = {
     "link.buses.i2c": ["exchanges[ICD_BUS_I2C]"],
     "link.buses.can": ["can", "exchanges[ICD_BUS_CAN]"],
     "procedures": [],
-    "crc16": ["crc16"],
+    "link.checksums": ["crc16"],
     "index_file": ["index"],
     "msdos_time": ["time"],
     "boot": [],
-    "crc8": ["checksum"],
+    "link.packets": ["checksum"],
     "log_mask": ["log_mask"],
     "telemetry_log": ["log_file"],
     "unsolicited_log": ["log_message"],
@@ -83,7 +83,8 @@ def icd() -> Icd:
         procedure.pop("nodes", None)
     protocols = {"whole": whole}
     sections = sections_of(whole)
-    needed = {"procedures": {"crc16"}}  # sections by those that need them
+    # Sections by those that need them
+    needed = {key: {"link.checksums"} for key in ("procedures", "link.packets")}
     for section in sections:
         title = section.replace(".", "_")
         protocols[f"without_{title}"] = protocol_of_sections(

@@ -130,6 +130,58 @@ def test_buses_are_in_the_link_with_the_keys_of_framed_links(tmp_path):
     assert load([tmp_path / "pump.yaml"]).findings == []
 
 
+CHECKSUMS = """\
+icdgen: 1
+node: {name: pump, title: Pump, byte_order: big, bit_order: msb0}
+protocol:
+  link: {buses: {uart: {line: {baud_rate: 9600}}, i2c: {write: {address_7bit: 0x57}}}}
+  # of section 5.5
+  crc8:
+    source: {section: "5.5"}
+    width: 8
+    polynomial: 0x07
+    init: 0
+    reflect_in: false
+    reflect_out: false
+    xor_out: 0
+    covers: [parameters, frame]
+    telecommand: {optional: true, extra_bytes: 1, failure_enum: Code, failure: 4}
+    telemetry: {optional: false, buses: [uart]}
+    covers_id: true
+    assumptions: {covers_id: Not said., telecommand: Of all buses., init: Not given.}
+  crc16: {width: 16, polynomial: 0x1021, init: 0, reflect_in: false, reflect_out: false, xor_out: 0, covers: [block, file]}
+messages:
+  - {name: Save, id: 8, kind: telecommand, length: 0}
+"""
+
+
+def test_checksums_are_in_the_link_and_packets_name_them():
+    text = format_text(CHECKSUMS, "pump.yaml")
+    protocol = yaml.safe_load(text)["protocol"]
+    assert protocol.keys() == {"link"}
+    crc8, crc16 = (protocol["link"]["checksums"][name] for name in ("crc8", "crc16"))
+    assert crc8 == {
+        "source": {"section": "5.5"}, "kind": "crc", "width": 8, "polynomial": 7, "init": 0,
+        "reflect_in": False, "reflect_out": False, "xor_out": 0, "assumptions": {"init": "Not given."},
+    }  # fmt: skip
+    assert (crc16["kind"], crc16["summary"]) == ("crc", "Covers block, file.")
+    trailer = {
+        "bits": 8,
+        "role": "checksum",
+        "checksum": "crc8",
+        "covers": {"from": "id", "to": "data"},
+    }
+    assert protocol["link"]["packets"] == {
+        "telecommand": {
+            "from": "host",
+            "trailer": [{**trailer, "optional": True}],
+            "assumptions": {"trailer": "Not said.", "buses": "Of all buses."},
+        },
+        "telemetry": {"from": "device", "buses": ["uart"], "trailer": [trailer]},
+    }
+    assert text.count("# of section 5.5") == 1
+
+
 ERRATA = """\
 errata: 1
 node: pump
@@ -160,7 +212,7 @@ def test_errata_name_the_present_places():
 
 
 @pytest.mark.parametrize(
-    "text", [EARLIER, BUSES, ERRATA, "icdgen: 1\nprotocol: {client: {}}\n"]
+    "text", [EARLIER, BUSES, CHECKSUMS, ERRATA, "icdgen: 1\nprotocol: {client: {}}\n"]
 )
 def test_a_second_time_nothing_changes(text):
     once = format_text(text, "pump.yaml")

@@ -12,15 +12,16 @@ from icdgen.icd import schema
 # Rules hold these, as most depend on other numbers, or they stand in no generated code.
 HELD_ELSEWHERE = {
     *(
-        f"{crc}/{key}"
-        for crc in ("crc8", "crc16")
-        for key in ("polynomial", "init", "xor_out", "empty", "check")
-    ),
-    *(
         f"link/checksums/additionalProperties/{key}"
-        for key in ("polynomial", "init", "xor_out", "empty", "check")
+        for key in (
+            "polynomial",
+            "init",
+            "xor_out",
+            "empty",
+            "check",
+            "printed_constant",
+        )
     ),
-    *(f"{crc}/printed_constant" for crc in ("crc8", "crc16")),
     "link/buses/can/extended/packets_left_in_last",
     "link/buses/can/extended/max_packets",
     "boot/attempts",

@@ -86,9 +86,10 @@ def device(folder: Path, link: str) -> Loaded:
 
 def test_a_device_adds_a_checksum_to_those_of_the_link_that_it_includes(tmp_path):
     loaded = device(tmp_path, ROM)
-    assert loaded.findings == []
+    (finding,) = loaded.findings
+    assert "no field of a packet has the checksum `rom`" in finding.message
     (packet,) = facts.of(loaded.icd, loaded.icd.node("device")).stream.packets
-    assert packet.check.kind == "xor"
+    assert packet.check.algorithm.kind == "xor"
 
 
 def test_another_framing_has_nothing_of_the_link_that_it_replaces(tmp_path):

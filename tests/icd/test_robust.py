@@ -32,7 +32,13 @@ protocol:
       telemetry: {direction: 1, first: 128, last: 255}
     buses:
       i2c: {write: {address_8bit: 0xAE, address_7bit: 0x57, binary: "0b1010 1110"}, read: {address_8bit: 0xAF}}
-  crc16: {width: 16, polynomial: 0x1021, init: 0, reflect_in: false, reflect_out: false, xor_out: 0, check: 0x31C3}
+    checksums:
+      crc: {kind: crc, width: 16, polynomial: 0x1021, init: 0, reflect_in: false, reflect_out: false, xor_out: 0, check: 0x31C3}
+    packets:
+      command:
+        from: host
+        buses: [i2c]
+        trailer: [{bits: 16, role: checksum, checksum: crc, covers: {from: id, to: data}, optional: true}]
   log_mask: {bytes: 10, frame_bytes: 4, set_by: [Set Mode]}
 enums:
   - name: Mode

@@ -63,8 +63,10 @@ def test_the_link_of_the_cubeadcs_is_that_of_its_icd():
         shown_link["buses"]["uart"]["framing"].items()
         <= link["buses"]["uart"]["framing"].items()
     )
-    crc = {key: value for key, value in shown["crc8"].items() if key != "telecommand"}
-    assert crc.items() <= acp["protocol"]["crc8"].items()
+    link = acp["protocol"]["link"]
+    crc, trailer = link["checksums"]["crc8"], link["packets"]["telecommand"]["trailer"]
+    assert shown_link["checksums"]["crc8"].items() <= crc.items()
+    assert shown_link["packets"]["telecommand"]["trailer"] == trailer
 
 
 @pytest.mark.parametrize("name", [*FILES, CUBEADCS])

@@ -67,7 +67,8 @@ def test_every_assumption_says_what_is_held_and_why(known):
     held = {(a.section, a.key): a for a in known.assumptions}
     assert held["link.buses.can.extended", "fill"].value == 0
     assert held["log_mask", "frame_order"].value == "rising bits"
-    assert held["crc8", "covers_id"].value is False
+    (field,) = held["link.packets.telecommand", "trailer"].value
+    assert field["covers"] == {"from": "data", "to": "data"}
     assert held["message Reset", "acknowledge"].value == "reset"
     assert all(a.why and a.value is not None for a in known.assumptions)
 

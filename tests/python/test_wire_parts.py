@@ -79,7 +79,8 @@ def test_a_node_is_identified(shipped, wire):
 
 def test_assumptions_are_data(shipped):
     found = {(one.section, one.key): one for one in link(shipped).assumptions}
-    assert found["crc8", "covers_id"].value is False
+    (field,) = found["link.packets.telecommand", "trailer"].value
+    assert field["covers"] == {"from": "data", "to": "data"}
     assert all(one.why for one in found.values())
     known = facts.of(shipped.icd, shipped.icd.node("cubeacp"))
     assert {(one.section, one.key) for one in known.assumptions} == set(found)

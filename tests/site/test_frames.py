@@ -100,7 +100,7 @@ def test_checksums_are_those_of_the_generator():
     ("node_name", "key"), [("cubeacp", "crc8"), ("common", "crc16")]
 )
 def test_checksums_give_the_check_value_of_the_icd(shipped, node_name, key):
-    protocol = shipped.node(node_name).protocol[key]
+    protocol = shipped.node(node_name).protocol["link"]["checksums"][key]
     assert links.crc(declared.read(Crc, protocol), b"123456789") == protocol["check"]
 
 

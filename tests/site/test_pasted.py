@@ -85,8 +85,7 @@ def facts(icd, id: int) -> tuple[dict, int]:
     owner = icd.node("cubeacp")
     known = of(icd, owner)
     message = known.telemetry[id]
-    section = {"crc8": owner.protocol["crc8"]}
-    link = link_of(icd, known)
+    section, link = owner.protocol, link_of(icd, known)
     return (
         wire.page_facts(
             message,

@@ -18,15 +18,15 @@ PAGE = "cubeacp/protocol.html"
 
 
 def test_the_calculator_computes_the_checksums_of_the_icd(browser, site, shipped):
-    protocol = shipped.protocol_of(shipped.node("cubeacp"))
+    checksums = shipped.protocol_of(shipped.node("cubeacp"))["link"]["checksums"]
     with opened(browser, site.as_uri() + "/", PAGE) as page:
         shown = page.inner_text("#crc-values")
         assert (
-            f"0x{protocol['crc8']['check']:X}" in shown
-            and f"0x{protocol['crc16']['check']:X}" in shown
+            f"0x{checksums['crc8']['check']:X}" in shown
+            and f"0x{checksums['crc16']['check']:X}" in shown
         )
         page.fill("#crc-bytes", "")
-        assert f"0x{protocol['crc8']['empty']:X}" in page.inner_text("#crc-values")
+        assert f"0x{checksums['crc8']['empty']:X}" in page.inner_text("#crc-values")
         page.fill("#crc-bytes", "3x")
         assert (
             "not hexadecimal" in page.inner_text("#crc-wrong")
@@ -109,11 +109,9 @@ def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(
         "check": check,
     }
     values |= {"reflect_in": reflected, "reflect_out": reflected}
-    text = path.read_text("utf-8").replace(
-        "extra_bytes: 1", f"extra_bytes: {width // 8}"
-    )
+    text = path.read_text("utf-8").replace("{bits: 8, role", f"{{bits: {width}, role")
     for key, value in values.items():
-        text = re.sub(rf"(\n    {key}: )\S+", rf"\g<1>{value}", text, count=1)
+        text = re.sub(rf"(\n        {key}: )\S+", rf"\g<1>{value}", text, count=1)
     path.write_text(text, "utf-8")
     built = icdgen("docs", "--out", "site")
     assert built.status == 0, built.err

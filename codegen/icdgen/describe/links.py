@@ -101,9 +101,10 @@ class Assumptions:
             if where == section
         ]
 
-    def of_procedure(self, name: str) -> list[tuple[str, str]]:
-        """Return step and key, and the reason, of the assumptions of a procedure."""
-        start = f"procedures.{name}"
+    def within(self, start: str) -> list[tuple[str, str]]:
+        """Return path and key, and the reason, of the other assumptions of a section
+        and of all sections in it.
+        """
         return [
             (f"{section[len(start) + 1 :]} {key}".lstrip(), self.why(section, key))
             for section, key in [*self._left]

@@ -247,9 +247,9 @@ def merged_protocols(protocols: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """Return one protocol section for several.
 
     A part of a later section replaces that of an earlier one. Procedures, checksums,
-    buses and the other parts of a link are parts of their own; but the packets and
-    responses of a link belong to its framing, which is replaced with them. A framed
-    link replaces buses, and buses replace a framed link.
+    buses, packets on buses and the other parts of a link are parts of their own; but
+    the packets and responses of a framed link belong to its framing, which is replaced
+    with them. A framed link replaces buses, and buses replace a framed link.
     """
     merged: dict[str, Any] = {}
     for protocol in protocols:
@@ -271,7 +271,7 @@ def _merged_links(earlier: Any, later: Any) -> Any:
         }
     both = {
         key: _by_name(earlier[key], later[key])
-        for key in ("checksums", "buses")
+        for key in ("checksums", "buses", "packets")
         if key in earlier and key in later
     }
     return {**earlier, **later, **both}

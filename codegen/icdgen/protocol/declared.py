@@ -182,12 +182,11 @@ def flag(
     )
 
 
-def buses(key: str, about: str) -> Any:
-    """Declare a set of buses out of UART, I2C and CAN.
-
-    `Reader.checksum` evaluates the key.
+def buses(about: str) -> Any:
+    """Declare a set of buses out of UART, I2C and CAN, which `Reader.checksum`
+    computes.
     """
-    return _declare(Kind.BUSES, key, about)
+    return _declare(Kind.BUSES, "", about)
 
 
 def span(about: str) -> Any:

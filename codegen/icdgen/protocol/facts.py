@@ -106,7 +106,7 @@ class Facts:
         parts = {
             "link.client": self.client, "link.buses.uart.framing": self.framing,
             "link.buses.uart.acknowledge": self.acknowledge, "link.buses.can": self.can,
-            "link.buses.can.extended": self.can and self.can.extended, "crc8": self.checksum,
+            "link.buses.can.extended": self.can and self.can.extended, "link.packets": self.checksum,
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
             "index_file": self.index,
         }  # fmt: skip

@@ -12,15 +12,13 @@ PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("link.buses.uart.acknowledge", sections.Acknowledge),
     ("link.buses.can", sections.Can),
     ("link.buses.can.extended", sections.Extended),
-    ("crc8", sections.Crc),
-    ("crc8", sections.Checksum),
-    ("crc16", sections.Crc),
+    ("link.packets", sections.Checksum),
     ("log_mask", sections.LogMask),
     ("telemetry_log", sections.LogFile),
     ("unsolicited_log", sections.LogMessage),
     ("index_file", sections.Index),
     ("link.checksums.*", sections.Crc),
-    *((path, sections.CheckValue) for path in ("crc8", "crc16", "link.checksums.*")),
+    ("link.checksums.*", sections.CheckValue),
 )
 """Where the facts of each part stand in the protocol section of an ICD; `*` is any
 name.

@@ -8,11 +8,17 @@ reads lists by role, messages by name, and values that depend on other sections.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from math import ceil
 from typing import Any, NamedTuple, TypeVar
 
-from icdgen.icd.checksum import CRC
-from icdgen.icd.model import Icd, Message, Node, framed_link
+from icdgen.icd.model import (
+    TELECOMMAND,
+    TELEMETRY,
+    Icd,
+    Message,
+    Node,
+    framed_link,
+)
+from icdgen.icd.packets import ID_ROLE, declared_packets
 from icdgen.icd.variants import ids_of
 from icdgen.once import cached_property
 from icdgen.protocol.declared import read
@@ -174,35 +180,37 @@ class Reader:
     @cached_property
     def checksums(self) -> dict[str, ChecksumAlgorithm]:
         """Checksums of the node by name, in the order of the ICD."""
-        declared = {name: name for name in ("crc8", "crc16") if self.section(name)}
-        for name in self.section("link", "checksums"):
-            declared[name] = f"link.checksums.{name}"
-        return {
-            name: algorithm_of(name, path, self.section(*path.split(".")))
-            for name, path in declared.items()
-        }
+        declared = self.section("link", "checksums")
+        return {name: algorithm_of(name, each) for name, each in declared.items()}
 
     def checksum(self) -> Checksum | None:
-        algorithm = self.checksums.get("crc8")
-        if algorithm is None:
+        """Return the checksum of messages on buses; None without one."""
+        link = self.section("link")
+        packets = () if framed_link(self.protocol) else declared_packets(link).all
+        places = [(packet, row) for packet in packets for row in packet.of("checksum")]
+        if not places:
             return None
-        given = self.section("crc8")
-        telecommand, telemetry = (
-            given.get("telecommand", {}),
-            given.get("telemetry", {}),
-        )
-        return self.part(
-            "crc8",
-            Checksum,
-            algorithm=algorithm,
-            telecommand_buses=_buses(telecommand, False),
-            telemetry_buses=_buses(telemetry, False),
-            telecommand_always=_buses(telecommand, True),
-            telemetry_always=_buses(telemetry, True),
-            bytes=telecommand.get(
-                "extra_bytes",
-                telemetry.get("extra_bytes", ceil(algorithm.crc.width / 8)),
-            ),
+        # Rule ICD175 ensures that all packets have the same.
+        _, first = places[0]
+
+        def buses(direction: str, mandatory: bool) -> tuple[str, ...]:
+            own = {
+                bus
+                for packet, row in places
+                if direction in packet.directions
+                and not (mandatory and row.get("optional", False))
+                for bus in packet.section.get("buses", BUSES)
+            }
+            return tuple(bus for bus in BUSES if bus in own)
+
+        return Checksum(
+            algorithm=self.checksums[first["checksum"]],
+            covers_id=first["covers"]["from"] == ID_ROLE,
+            telecommand_buses=buses(TELECOMMAND, False),
+            telemetry_buses=buses(TELEMETRY, False),
+            telecommand_always=buses(TELECOMMAND, True),
+            telemetry_always=buses(TELEMETRY, True),
+            bytes=first["bits"] // 8,
         )
 
     def stream(self) -> Stream | None:
@@ -308,24 +316,13 @@ class Reader:
                 )
 
 
-def algorithm_of(
-    name: str, path: str, declaration: Mapping[str, Any]
-) -> ChecksumAlgorithm:
+def algorithm_of(name: str, declaration: Mapping[str, Any]) -> ChecksumAlgorithm:
     """Return the algorithm of the checksum that a section declares."""
     # Kinds other than a CRC have only some of the parameters.
     given: dict[str, Any] = {"polynomial": 0, "init": 0, "xor_out": 0}
     given |= {"reflect_in": False, "reflect_out": False, **declaration}
-    kind, seeds = given.get("kind", CRC), given.get("seeds", {})
-    return ChecksumAlgorithm(name, path, kind, read(Crc, given), seeds)
-
-
-def _buses(use: Mapping[str, Any], is_mandatory: bool) -> tuple[str, ...]:
-    """Return the buses on which a direction has the checksum, or always has it.
-
-    Unless the ICD says `optional: false`, the client chooses.
-    """
-    is_used = bool(use) and (not is_mandatory or use.get("optional", True) is False)
-    return tuple(use.get("buses", BUSES)) if is_used else ()
+    kind, seeds = given["kind"], given.get("seeds", {})
+    return ChecksumAlgorithm(name, kind, read(Crc, given), seeds)
 
 
 def declared_value(message: Message, key: str) -> object:

@@ -137,33 +137,37 @@ class ChecksumAlgorithm:
     Kinds other than a CRC use only ``init``, ``xor_out`` and ``width`` of `crc`.
     """
 
-    name: str  # by which the ICD declares it
-    section: str  # in which the ICD declares it
+    name: str  # in `link: checksums`
     kind: str  # one of `icdgen.icd.checksum.KINDS`
     crc: Crc
     # By message: a byte that the checksum of a packet covers after all others
     seeds: Mapping[str, int]
 
+    @property
+    def section(self) -> str:
+        """Section of the ICD that declares it."""
+        return f"link.checksums.{self.name}"
+
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Checksum:
-    """Checksum of telecommands and telemetry frames on UART, I2C and CAN."""
+    """Checksum behind the data of telecommands and telemetry frames on buses: a trailer
+    of `link: packets`.
+    """
 
     algorithm: ChecksumAlgorithm
-    covers_id: bool = flag(
-        "covers_id", "whether the checksum covers the id byte", False
-    )
+    covers_id: bool = flag("", "whether the checksum covers the id byte", False)
     telecommand_buses: tuple[str, ...] = buses(
-        "telecommand", "buses on which telecommands may have a checksum"
+        "buses on which telecommands may have a checksum"
     )
     telemetry_buses: tuple[str, ...] = buses(
-        "telemetry", "buses on which telemetry may have a checksum"
+        "buses on which telemetry may have a checksum"
     )
     telecommand_always: tuple[str, ...] = buses(
-        "telecommand", "buses on which telecommands must have a checksum"
+        "buses on which telecommands must have a checksum"
     )
     telemetry_always: tuple[str, ...] = buses(
-        "telemetry", "buses on which telemetry always has a checksum"
+        "buses on which telemetry always has a checksum"
     )
     bytes: int = octets("", "length of the checksum", 1, BYTE)
 

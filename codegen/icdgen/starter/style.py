@@ -28,7 +28,6 @@ from icdgen.icd.rules.protocol_names import MESSAGES
 # of the node itself.
 _SECTIONS = (
     "identification",
-    "crc8",
     "link",
 )
 # Keys of these sections that name messages of the node, which are not copied.

@@ -912,11 +912,6 @@ static const uint8_t icdgen_node_cubeacp_crc8_table[] = {
     0x3bu, 0x7au, 0x28u, 0x69u, 0x1du, 0x5cu, 0x0eu, 0x4fu,
 };
 #endif
-/**
- * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
- * cover the frame only. Assumed telecommand: The checksum is offered for commands in general, CAN included. None is
- * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
- */
 static const icd_checksum_form_t icdgen_node_cubeacp_checksum = {
     false, /* covers_id */
     3u, /* telecommand_buses */
@@ -1205,10 +1200,13 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One
-     * attempt and two more are announced. But the status is raised before each start, so it reads 3 Failed boot
-     * attempts before the third, and at that value no start is said to follow. Assumed period_unit_ms: No unit is
-     * given. The control loop runs once a second.
+     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed trailer:
+     * Whether the id counts among the bytes of a command is not said. The extra byte of a frame can cover the frame
+     * only. Assumed buses: The checksum is offered for commands in general, CAN included. None is sent there by choice,
+     * for in an extended message the receiver could not tell the checksum from the fill. Assumed attempts: One attempt
+     * and two more are announced. But the status is raised before each start, so it reads 3 Failed boot attempts before
+     * the third, and at that value no start is said to follow. Assumed period_unit_ms: No unit is given. The control
+     * loop runs once a second.
      */
     static const icd_link_t link = {
         icdgen_node_cubeacp_nodes, /* whose messages */

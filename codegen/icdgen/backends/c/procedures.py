@@ -296,7 +296,7 @@ class _Tables(TableSet):
             "form",
             "icd_procedure_form_t",
             rows,
-            self.assumed.of_procedure(procedure.name),
+            self.assumed.within(f"procedures.{procedure.name}"),
         )
         return self.tables
 

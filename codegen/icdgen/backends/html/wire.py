@@ -181,12 +181,12 @@ def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
     return None
 
 
-def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
+def _crc_chunk(sent: bytes, speaker: Speaker, direction: str, bus: str) -> Chunk:
     form = speaker.facts.checksum
     assert form is not None
-    is_sent = direction == "telecommand"
-    always = form.telecommand_always if is_sent else form.telemetry_always
-    text = form.algorithm.name + ("" if always else ", optional")
+    is_telecommand = direction == "telecommand"
+    always = form.telecommand_always if is_telecommand else form.telemetry_always
+    text = form.algorithm.name + ("" if bus in always else ", optional")
     return Chunk("crc", _hex(sent), text)
 
 
@@ -275,7 +275,7 @@ def _framed(
     ]
     chunks += _data(data_sent)
     if checked:
-        chunks.append(_crc_chunk(check_sent, checked, "telecommand"))
+        chunks.append(_crc_chunk(check_sent, checked, "telecommand", "uart"))
     return [*chunks, Chunk("frame", _hex(line[ends[-1] :]), "end of message")]
 
 
@@ -329,7 +329,10 @@ def _with_crc(
         checked_bytes = i2c_write(checked.link, id, data, True)
         yield Line(
             "with CRC",
-            [*sent, _crc_chunk(checked_bytes[1 + len(data) :], checked, direction)],
+            [
+                *sent,
+                _crc_chunk(checked_bytes[1 + len(data) :], checked, direction, "i2c"),
+            ],
         )
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterator, Mapping
 
-from icdgen.icd.fmt.commented import Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 from icdgen.icd.fmt.scalars import name
 
 # Parts of the protocol section that are in `link`, with their present keys
@@ -19,7 +19,14 @@ _FRAMING = {
     "end_of_message": "end",
     "escaped_data": "data",
 }
+_CHECKSUMS = ("crc8", "crc16")  # of messages, and of files
+_DIRECTIONS = {"telecommand": "host", "telemetry": "device"}
 _PATHS = {
+    **{
+        f"protocol.crc8.{direction}": f"protocol.link.packets.{direction}"
+        for direction in _DIRECTIONS
+    },
+    **{f"protocol.{key}": f"protocol.link.checksums.{key}" for key in _CHECKSUMS},
     **{
         f"protocol.{key}": f"protocol.link.{present}" for key, present in _PARTS.items()
     },
@@ -73,7 +80,92 @@ def convert(root: Branch) -> bool:
             _move(section, _BUSES, buses)
             if uart := _entry(buses, "uart"):
                 _convert_uart(uart.value)
+    if any(_entry(section, key) for key in _CHECKSUMS):
+        link = _part_of(section, "link")
+        if link is None or not _convert_checksums(section, link):
+            return False
     return link is not None
+
+
+def _convert_checksums(section: Branch, link: Branch) -> bool:
+    """Move the checksums of messages and of files to the link, and the use of the former
+    to packets.
+
+    Return whether this was possible.
+    """
+    checksums = _part_of(link, "checksums")
+    if checksums is None:
+        return False
+    for key in _CHECKSUMS:
+        entry = _entry(section, key)
+        if entry is None or not isinstance(entry.value, Branch):
+            continue
+        checksum = entry.value
+        covers = _entry(checksum, "covers")
+        if any(_entry(checksum, direction) for direction in _DIRECTIONS):
+            packets = _part_of(link, "packets")
+            if packets is None:
+                return False
+            for direction, sender in _DIRECTIONS.items():
+                if use := _entry(checksum, direction):
+                    checksum.children.remove(use)
+                    use.value = _packet(key, checksum, use.value, sender)
+                    packets.children.append(use)
+            _move_reasons(checksum, packets)
+            if covers:
+                checksum.children.remove(covers)
+                covers = None
+        if covers and isinstance(covers.value, Branch):
+            data = [child.value for child in covers.value.children]
+            named = ", ".join(
+                str(text.value) for text in data if isinstance(text, Text)
+            )
+            covers.key, covers.value = _text("summary"), _text(f"Covers {named}.")
+        if covers_id := _entry(checksum, "covers_id"):
+            checksum.children.remove(covers_id)
+        place = 1 if _entry(checksum, "source") else 0
+        checksum.children.insert(place, Child(_text("kind"), _text("crc")))
+        _move(section, {key: key}, checksums)
+    return True
+
+
+def _packet(name: str, checksum: Branch, use: object, sender: str) -> Branch:
+    """Return the packet of messages with a checksum, for its use in one direction."""
+    covers_id = _value(checksum, "covers_id")
+    first = "id" if isinstance(covers_id, Text) and covers_id.value else "data"
+    size, optional = _value(use, "extra_bytes"), _value(use, "optional")
+    width = _value(checksum, "width")
+    bits = width if isinstance(width, Text) else Text(8, "8")
+    if isinstance(size, Text) and isinstance(size.value, int):
+        bits = Text(8 * size.value, str(8 * size.value))
+    field: dict[str, Text | Branch] = {
+        "bits": bits,
+        "role": _text("checksum"),
+        "checksum": _text(name),
+        "covers": _mapping({"from": _text(first), "to": _text("data")}),
+    }
+    if not isinstance(optional, Text) or optional.value:
+        field["optional"] = Text(True, "true")
+    trailer = Branch(False, True, 0, [Child(NOTHING, _mapping(field))])
+    packet: dict[str, Text | Branch] = {"from": _text(sender)}
+    for key in ("source", "buses"):
+        if isinstance(value := _value(use, key), Branch):
+            packet[key] = value
+    return _mapping({**packet, "trailer": trailer}, False)
+
+
+def _move_reasons(checksum: Branch, packets: Branch) -> None:
+    """Move the reasons for assumptions about the use of a checksum to packets."""
+    for direction in _DIRECTIONS:
+        packet = _value(packets, direction)
+        if isinstance(packet, Branch):
+            for key, present in (("covers_id", "trailer"), (direction, "buses")):
+                _move_assumptions(checksum, {key: present}, packet)
+
+
+def _mapping(entries: Mapping[str, Text | Branch], flow: bool = True) -> Branch:
+    children = [Child(_text(key), value) for key, value in entries.items()]
+    return Branch(True, flow, 0, children)
 
 
 def _convert_errata(root: Branch) -> bool:

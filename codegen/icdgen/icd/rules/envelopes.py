@@ -4,7 +4,7 @@ roles.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from icdgen.icd.fault import Fault
@@ -36,11 +36,12 @@ ONLY_WITH = {
     "checksum": ("checksum",),
     "covers": ("checksum",),
     "enum": ("status", "reason"),
+    "optional": ("checksum",),
 }
 # Keys of a protocol section with a framed link.
 ALLOWED_WITH_LINK = ("link", "boot", "procedures")
 # Keys of `link` that other links have as well.
-ALLOWED_WITHOUT_FRAMING = ("source", "ids", "reasons", "buses", "client", "assumptions")
+ALLOWED_WITHOUT_FRAMING = ("source", "ids", "reasons", "buses", "packets", "checksums", "client", "assumptions")  # fmt: skip
 # Keys of `link` that framed links do not have.
 WITHOUT_FRAMING_ONLY = ("ids", "reasons", "buses")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
@@ -107,10 +108,22 @@ class Link(NamedTuple):
 
 
 def links(ctx: Context) -> Iterator[Link]:
+    """Yield the framed links of the nodes that declare a valid one themselves."""
+    return (link for link in all_links(ctx) if "framing" in link.section)
+
+
+def links_on_buses(ctx: Context) -> Iterator[Link]:
+    """Yield the other links of the nodes that declare a valid `link` themselves."""
+    for link in all_links(ctx):
+        if not framed_link(ctx.protocol_of(link.node)):
+            yield link
+
+
+def all_links(ctx: Context) -> Iterator[Link]:
     """Yield the links of the nodes that declare a valid `link` themselves."""
     for node in ctx.icd.nodes:
         section = section_of(node, "link")
-        if section is None or "framing" not in section:
+        if section is None:
             continue
         telecommands = [message for _, message in ids_of(ctx, node, TELECOMMAND)]
         declared = declared_packets(section, telecommands)
@@ -183,9 +196,9 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at_key(client, key, message, "remove it")
     for node in ctx.icd.nodes:
         section = section_of(node, "link") or unread()
-        allowed = set(ALLOWED_WITHOUT_FRAMING)
+        allowed = {*ALLOWED_WITHOUT_FRAMING}
         if framed_link(ctx.protocol_of(node)):  # of an included file
-            allowed.add("checksums")
+            allowed.remove("packets")
         key = next((key for key in section if key not in allowed), None)
         if key is not None and "framing" not in section:
             message = f"`{key}` belongs to a framed link, and `framing` is missing"
@@ -412,47 +425,59 @@ def _lengths(
 
 @rule("ICD173")
 def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in all_links(ctx):
         checksums = link.checksums
-        fields = list(_checksum_fields(link))
-        procedures = link.node.source["protocol"].get("procedures")
-        in_procedures = set(_checksums_in_steps(procedures))
-        for packet, part, row in fields:
+        # Without places: it is a copy if several nodes have checksums.
+        names = ctx.fact(link.node, "link", "checksums")
+        names = names if isinstance(names, Mapping) else {}
+        for packet, part, row in _checksum_fields(link):
             name = row.get("checksum", "")
             declared = checksums.get(name)
-            if declared is None:
+            if name not in names:
                 message = (
                     f"no checksum is called {quote(name)}"
                     if name
                     else "the field names no checksum"
                 )
-                names = (
-                    listing(f"`{key}`" for key in checksums)
-                    if checksums
-                    else "there are none"
+                known = (
+                    listing(f"`{key}`" for key in names) if names else "there are none"
                 )
                 yield Fault.at(
                     row,
                     "role",
                     message,
-                    f"name one of `checksums` in `checksum:`: {names}",
+                    f"name one of `checksums` in `checksum:`: {known}",
                 )
-            elif _is_valid(declared):
-                yield from _checksum(ctx, link, packet, part, row, declared)
-                yield from _covered(packet, part, row, row.get("covers"))
-        for name in checksums:
-            own = [row for *_, row in fields if row.get("checksum") == name]
-            if not own and name in in_procedures:
-                continue
-            if not own:
-                message = f"no field of the frame has the checksum {quote(name)}"
+            elif isinstance(declared, Map) and _is_valid(declared):
+                yield from _field_of(row, declared)
+                if "framing" in link.section:
+                    yield from _covered(packet, part, row, row.get("covers"))
+        for name, declared in checksums.items():
+            if _is_valid(declared):
+                yield from _checksum(ctx, link, declared)
+            if ctx.complete and name not in _used_checksums(ctx, link.node):
+                message = f"no field of a packet has the checksum {quote(name)}"
                 help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
                 yield Fault.at_key(checksums, name, message, help)
 
 
+def _used_checksums(ctx: Context, node: Node) -> set[str]:
+    """Return the names of the checksums in packets and procedures of a node, and of the
+    nodes that include it.
+    """
+    used: set[str] = set()
+    for user in ctx.users(node):
+        protocol = ctx.protocol_of(user)
+        used.update(_checksums_in_steps(protocol.get("procedures")))
+        link = protocol.get("link")
+        for packet in declared_packets(link).all if isinstance(link, Mapping) else ():
+            used.update(str(row.get("checksum")) for row in packet.of("checksum"))
+    return used
+
+
 def _checksums_in_steps(procedures: object) -> Iterator[str]:
     """Yield the names of the checksums that steps of procedures compare."""
-    for procedure in procedures.values() if isinstance(procedures, Map) else ():
+    for procedure in procedures.values() if isinstance(procedures, Mapping) else ():
         for step in nested_steps(at_path(procedure, ["steps"])):
             if isinstance(name := at_path(step, ("verify", "checksum")), str):
                 yield name
@@ -483,15 +508,21 @@ def _is_valid(checksum: object) -> bool:
     return isinstance(checksum.get("kind"), str)
 
 
-def _checksum(
-    ctx: Context,
-    link: Link,
-    packet: LinkPacket,
-    part: str,
-    row: Map,
-    checksum: Map,
-) -> Iterator[Fault]:
-    """Yield the faults of a checksum and of the field that it is sent in."""
+def _field_of(row: Map, checksum: Map) -> Iterator[Fault]:
+    """Yield the fault of a checksum that is sent in a field of another width."""
+    width: int = checksum["width"]
+    required = BITS_OF.get(checksum["kind"])
+    if (not required or width == required) and width != row["bits"]:
+        yield Fault.at(
+            row,
+            "bits",
+            f"the checksum has {width} bits, its field {row['bits']}",
+            f"correct `bits` of the field, or `width` ({line_of(checksum.at('width'), row.at('bits'))})",
+        )
+
+
+def _checksum(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
+    """Yield the faults of the parameters of a checksum."""
     width: int = checksum["width"]
     required = BITS_OF.get(checksum["kind"])
     if required and width != required:
@@ -506,14 +537,6 @@ def _checksum(
             str(required),
         )
         width = required  # the values below are checked against the right width
-    elif width != row["bits"]:
-        message = f"the checksum has {width} bits, its field {row['bits']}"
-        yield Fault.at(
-            row,
-            "bits",
-            message,
-            f"correct `bits` of the field, or `width` ({line_of(checksum.at('width'), row.at('bits'))})",
-        )
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         if isinstance(checksum.get(key), int) and checksum[key] >> width > 0:
             yield Fault.at(

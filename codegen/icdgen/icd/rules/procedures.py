@@ -130,8 +130,7 @@ def _procedures(ctx: Context) -> Iterator[Names]:
         protocol = ctx.protocol_of(node)
         # Without places: it is a copy if several nodes have checksums.
         declared = at_path(protocol, ("link", "checksums"))
-        own = {*declared} if isinstance(declared, Mapping) else set()
-        checksums = frozenset({*own, *({"crc8", "crc16"} & {*protocol})})
+        checksums = frozenset(declared if isinstance(declared, Mapping) else ())
         for procedure in procedures_in(node):
             frames = {
                 str(step.get("as", step.get(kind))): messages[step[kind]]

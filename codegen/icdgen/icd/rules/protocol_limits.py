@@ -21,7 +21,7 @@ from icdgen.icd.model import (
 from icdgen.icd.rules.context import BUSES, Context, own_fact, section_of
 from icdgen.icd.rules.protocol_sizes import of_one_number
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, of_wide_value
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import at_path, mappings
 from icdgen.wording import count, listing, quote
 
@@ -101,9 +101,6 @@ def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
                 f"{code} stands for both `{first}` and `{role}`",
                 "give each its own code",
             )
-    for name in ("crc8", "crc16"):
-        for crc in ctx.sections(name):
-            yield from _checksum(crc)
 
 
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
@@ -142,32 +139,6 @@ def _fits(
         yield Fault.at(
             owner, key, message, f"correct `{key}`, or `bits` of the identifier"
         )
-
-
-def _checksum(crc: Map) -> Iterator[Fault]:
-    """Yield the faults of parameters of a CRC that have more bits than its width."""
-    width = crc.get("width")
-    if not isinstance(width, int) or width < 1:
-        return  # the schema check reports it
-    for key in ("polynomial", "init", "xor_out", "empty", "check"):
-        value = crc.get(key)
-        if isinstance(value, int) and value >= 1 << width:
-            yield Fault.at(
-                crc,
-                key,
-                f"`{key}` does not fit {width} bits",
-                *of_wide_value(key, value, width),
-            )
-    for direction in ("telecommand", "telemetry"):
-        extra = at_path(crc, (direction, "extra_bytes"))
-        if isinstance(extra, int) and extra * 8 < width:
-            message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
-            yield Fault.at(
-                crc[direction],
-                "extra_bytes",
-                message,
-                "correct `extra_bytes` or `width`",
-            )
 
 
 def roles_occur_once(

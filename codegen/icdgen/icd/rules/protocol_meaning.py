@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
-from icdgen.icd.located import Map
+from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import (
     CAN_DATA_BYTES,
     KEYS_OF_IDS,
@@ -138,15 +138,16 @@ def acknowledges_have_all_parts(ctx: Context) -> Iterator[Fault]:
 def named_buses_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         users = [user for user in ctx.icd.nodes if node in ctx.scope(user)]
-        for path in (("crc8", TELECOMMAND), ("crc8", TELEMETRY), ("unsolicited_log",)):
-            buses = own_fact(node, *path, "buses")
-            for bus, place in buses.placed() if buses is not None else ():
+        packets = section_of(node, "link", "packets") or unread()
+        for section in (*packets.values(), section_of(node, "unsolicited_log")):
+            buses = section.get("buses") if isinstance(section, Map) else None
+            for bus, place in buses.placed() if isinstance(buses, Seq) else ():
                 if not any(bus in buses_of(ctx.protocol_of(user)) for user in users):
                     text, help = (
                         f"`link: buses` has no `{bus}`",
                         f"add it, or remove `{bus}`",
                     )
-                    yield Fault(section_of(node, *path), place, text, help)
+                    yield Fault(section, place, text, help)
 
 
 @rule("ICD107", needs_complete=True)

@@ -309,6 +309,17 @@ LINK: link.Link[_Node] = link.Link(
         ),
     ),
     checksums={
+        "crc16": link.ChecksumAlgorithm(
+            kind="crc",
+            crc=link.CrcForm(
+                width=16,
+                polynomial=4129,
+                init=0,
+                reflect_in=False,
+                reflect_out=False,
+                xor_out=0,
+            ),
+        ),
         "crc8": link.ChecksumAlgorithm(
             kind="crc",
             crc=link.CrcForm(
@@ -321,25 +332,14 @@ LINK: link.Link[_Node] = link.Link(
                 empty=255,
             ),
         ),
-        "crc16": link.ChecksumAlgorithm(
-            kind="crc",
-            crc=link.CrcForm(
-                width=16,
-                polynomial=4129,
-                init=0,
-                reflect_in=False,
-                reflect_out=False,
-                xor_out=0,
-            ),
-        ),
     },
+    # Assumed, telecommand trailer: Whether the id counts among the bytes of a command
+    #   is not said. The extra byte of a frame can cover the frame only.
+    # Assumed, telecommand buses: The checksum is offered for commands in general, CAN
+    #   included. None is sent there by choice, for in an extended message the receiver
+    #   could not tell the checksum from the fill.
     checksum=link.Checksum(
-        # Assumed: Whether the id counts among the bytes of a command is not said. The
-        #   extra byte of a frame can cover the frame only.
         covers_id=False,
-        # Assumed: The checksum is offered for commands in general, CAN included. None
-        #   is sent there by choice, for in an extended message the receiver could not
-        #   tell the checksum from the fill.
         telecommand_buses=("uart", "i2c"),
         telemetry_buses=("i2c",),
         telecommand_always=(),
@@ -878,6 +878,30 @@ LINK: link.Link[_Node] = link.Link(
             why="No time-out between packets is given.",
         ),
         link.Assumption(
+            section="link.packets.telecommand",
+            key="trailer",
+            value=(
+                {
+                    "bits": 8,
+                    "role": "checksum",
+                    "checksum": "crc8",
+                    "covers": {
+                        "from": "data",
+                        "to": "data",
+                    },
+                    "optional": True,
+                    "at": 0,
+                },
+            ),
+            why="Whether the id counts among the bytes of a command is not said. The extra byte of a frame can cover the frame only.",
+        ),
+        link.Assumption(
+            section="link.packets.telecommand",
+            key="buses",
+            value=("uart", "i2c"),
+            why="The checksum is offered for commands in general, CAN included. None is sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.",
+        ),
+        link.Assumption(
             section="boot",
             key="attempts",
             value=3,
@@ -1040,24 +1064,6 @@ LINK: link.Link[_Node] = link.Link(
             key="for_ms",
             value=60000,
             why="No time is given.",
-        ),
-        link.Assumption(
-            section="crc8",
-            key="covers_id",
-            value=False,
-            why="Whether the id counts among the bytes of a command is not said. The extra byte of a frame can cover the frame only.",
-        ),
-        link.Assumption(
-            section="crc8",
-            key="telecommand",
-            value={
-                "optional": True,
-                "extra_bytes": 1,
-                "failure_enum": "TcErrorReason",
-                "failure": 4,
-                "buses": ("uart", "i2c"),
-            },
-            why="The checksum is offered for commands in general, CAN included. None is sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.",
         ),
         link.Assumption(
             section="log_mask",

@@ -9,6 +9,13 @@ pub const LONGEST: usize = 506;
 
 /// The protocol of node `cubeacp`. Facts that the manual omits are marked as assumed.
 ///
+/// Assumed (`link.packets.telecommand`, `trailer`): Whether the id counts among the bytes of a
+/// command is not said. The extra byte of a frame can cover the frame only.
+///
+/// Assumed (`link.packets.telecommand`, `buses`): The checksum is offered for commands in general,
+/// CAN included. None is sent there by choice, for in an extended message the receiver could not
+/// tell the checksum from the fill.
+///
 /// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
 /// start is said to follow.
@@ -311,16 +318,11 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         }),
     }),
     checksums: &[
-        ("crc8", link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 8, polynomial: 0x12, init: 0x00, reflect_in: true, reflect_out: true, xor_out: 0x00, empty: Some(0xff) } }),
         ("crc16", link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 16, polynomial: 0x1021, init: 0x0000, reflect_in: false, reflect_out: false, xor_out: 0x0000, empty: None } }),
+        ("crc8", link::ChecksumAlgorithm { kind: link::CheckKind::Crc, crc: link::CrcForm { width: 8, polynomial: 0x12, init: 0x00, reflect_in: true, reflect_out: true, xor_out: 0x00, empty: Some(0xff) } }),
     ],
     checksum: Some(link::Checksum {
-        // Assumed. Whether the id counts among the bytes of a command is not said. The extra byte
-        // of a frame can cover the frame only.
         covers_id: false,
-        // Assumed. The checksum is offered for commands in general, CAN included. None is sent
-        // there by choice, for in an extended message the receiver could not tell the checksum from
-        // the fill.
         telecommand_buses: link::PerBus { uart: true, i2c: true, can: false },
         telemetry_buses: link::PerBus { uart: false, i2c: true, can: false },
         telecommand_always: link::PerBus { uart: false, i2c: false, can: false },
