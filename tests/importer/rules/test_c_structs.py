@@ -12,6 +12,7 @@ import pytest
 
 from icdgen.diagnostics import Findings
 from icdgen.importer import profile, run, sources
+from icdgen.importer.document import SourceTable
 from icdgen.importer.reading import c_structs
 from tests.importer.rules.drawing import draw, heading, text
 from tests.importer.rules.test_rules import NODE, fields
@@ -127,6 +128,15 @@ def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
     ]
 
 
+def test_numbers_of_c_have_its_notations():
+    blocks, _ = c_structs.read_structs(
+        "enum e { A = 010, B = 0x1Ful, C = 0, D = 12u };"
+    )
+    (table,) = (block for block in blocks if isinstance(block, SourceTable))
+    values = [row.cells[0].text for row in table.rows]
+    assert values == ["Value", "8", "31", "0", "12"]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -138,6 +148,9 @@ def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
         ("struct a { union { int i; float f; } u; };", "struct `a`: `u` is a union"),
         ("struct a { uint8_t n; uint8_t data[]; };", "`data` has no size"),
         ("struct a { struct b { int8_t x; } b[100]; };", "`b` has 100 elements"),
+        ("struct a { uint8_t n['x']; };", "is not a constant that can be computed"),
+        ("struct a { uint8_t n[1 << -1]; };", "a shift by -1"),
+        ("struct a { uint8_t n[1 << 4000000000]; };", "a shift by 4000000000"),
     ],
 )
 def test_what_is_no_frame_is_an_error(tmp_path, text, message):

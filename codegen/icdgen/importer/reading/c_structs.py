@@ -45,6 +45,10 @@ _STANDARD = {
     "int8_t": "signed char", "int16_t": "short", "int32_t": "int", "int64_t": "long long",
     "bool": "_Bool",
 }  # fmt: skip
+# C99 6.4.4.1: a number that begins with 0 is octal, which Python writes as `0o17`.
+_INTEGER = re.compile(
+    r"(?:0(?P<octal>[0-7]+)|(?P<other>0[xX][0-9A-Fa-f]+|0[bB][01]+|0|[1-9][0-9]*))[uUlL]*"
+)
 _PRELUDE = " ".join(f"typedef {base} {name};" for name, base in _STANDARD.items())
 
 
@@ -502,13 +506,22 @@ class _Reader:
     def number(self, node: Any) -> int:
         """Return the value of a constant expression. Raise `Unreadable`."""
         if isinstance(node, self.ast.Constant):
-            return int(node.value.rstrip("uUlL"), 0)
+            if match := _INTEGER.fullmatch(node.value):
+                return (
+                    int(match["octal"], 8) if match["octal"] else int(match["other"], 0)
+                )
         if isinstance(node, self.ast.ID) and node.name in self.values:
             return self.values[node.name]
         if isinstance(node, self.ast.UnaryOp) and node.op == "-":
             return -self.number(node.expr)
         if isinstance(node, self.ast.BinaryOp) and node.op in ("+", "-", "*", "<<"):
             left, right = self.number(node.left), self.number(node.right)
+            # C99 6.5.7: a shift by less than 0, or by all bits or more, is undefined.
+            if node.op == "<<" and not 0 <= right < 64:
+                raise Unreadable(
+                    f"a shift by {right}, which C leaves undefined",
+                    "write it as a number",
+                )
             return {
                 "+": left + right,
                 "-": left - right,
