@@ -59,6 +59,8 @@ class RustBackend:
             message.layout.sequence for node in icd.nodes for message in node.messages
         )
         links = links_of(description)
+        # Nodes come after the nodes that they include, so the procedures of these are
+        # in the table when a node asks for their code.
         known: dict[str, NodeProcedures] = {}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         of_crate = {
@@ -135,6 +137,8 @@ def _functions() -> dict[str, object]:
         text.described, text.doc, text.integer, text.mask, text.prose, text.signature, text.string,
         types.enum_path, types.message_path, types.open_type, types.raw_type, types.reason_number, words,
     )  # fmt: skip
+    # Templates find a function by its bare name. Of two functions with the same name,
+    # the later one would replace the other without a warning.
     return {function.__name__: function for function in functions}
 
 

@@ -61,6 +61,7 @@ def texts(composite: Composite[Any]) -> list[Accessor]:
 def _code(accessor: Accessor) -> AccessorCode:
     field = accessor.field
     if accessor.kind == "single":
+        # A single has a getter only. The accessor in double precision sets the field.
         return AccessorCode(accessor.name, "f32", accessor.comment, single(field))
     if accessor.kind == "integer":
         type, refused = f"i{accessor.integers.bits}", "if it does not fit"
@@ -99,6 +100,8 @@ def scale_of(field: FieldDescription) -> str:
     """Return the constant of a field with a scale, or of a field whose type can store
     values that do not fit.
     """
+    # Without a scale, generated code uses only the limits of the raw value. The terms
+    # of the identity fill the places of the others.
     terms = field.steps.terms if field.steps else (1, 0, 1)
     place = field.model
     numbers = [
@@ -127,6 +130,8 @@ def curve_of(field: FieldDescription) -> str:
     assert field.curve is not None
     place = field.model
     ends = (
+        # `Curve::raw` searches the whole numbers between these ends. A float has none:
+        # `Curve::number` solves the equation of its line.
         place.settable_raws if place.type != "float" and place.is_invertible else (0, 0)
     )
     pieces = [

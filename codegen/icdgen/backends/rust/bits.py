@@ -42,6 +42,8 @@ def reading(
     if field.struct is not None:
         return _struct(field, field.struct, tables, depth, within)
     if field.model.is_count:
+        # A count has no bits in the frame. The template sets it from the length of the
+        # frame after it has read the fields.
         return "0"
     if field.count:
         return (
@@ -53,6 +55,8 @@ def reading(
     if place.type == "bool":
         byte, shift = row[0].byte, row[0].shift
         return (
+            # `&` binds tighter than `!=` in Rust, unlike in C, so the test of a bit
+            # needs no parentheses.
             f"flags_{byte}[{shift}]"
             if byte in tables
             else f"bytes[{byte}] & {mask(1 << shift)} != 0"
@@ -78,6 +82,8 @@ def _helper(field: FieldDescription) -> str:
 
 
 def _called(field: FieldDescription, helper: str, within: str, depth: int) -> str:
+    # The call follows the name of its field on the line. The name counts for the width,
+    # but the caller writes it.
     target = f"{own_name(field)}: "
     arguments = (
         "bytes",
@@ -136,6 +142,8 @@ def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
 def _whole(field: FieldDescription, size: int) -> str:
     first = field.model.at // 8
     if size > 8:
+        # `take!` is a macro and no function, so that every index is a constant at any
+        # level of optimisation.
         value = f"{_word(field)}::from_{field.order}_bytes(take!(bytes[{first}; {size // 8}]))"
     else:
         value = (
@@ -179,6 +187,9 @@ def _signed(field: FieldDescription, value: str, size: int) -> str:
     unused = size - field.model.bits
     if size == 8:
         shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
+        # The conversion to a signed type goes through bytes, because clippy
+        # (`cast_possible_wrap`, pedantic) refuses `as`. Bits that `<<` moves out are no
+        # overflow in Rust, which checks only the distance of a shift.
         signed = f"i8::from_le_bytes([{shifted}])"
     else:
         shifted = value if not unused else f"({value} << {unused})"
@@ -191,6 +202,8 @@ def _one_byte(piece: Piece) -> str:
     if piece.shift == 0:
         return byte if piece.is_byte else f"{byte} & {mask(piece.mask)}"
     if piece.reaches_top:
+        # `>>` of a `u8` fills with zeros, so a run at the top of its byte needs no
+        # mask.
         return f"{byte} >> {piece.shift}"
     return f"({byte} >> {piece.shift}) & {mask(piece.low_mask)}"
 
@@ -265,6 +278,8 @@ def writing(
     if place.is_bytes:
         return [f"put_array(&mut bytes, {place.at // 8}, &{source});"]
     if place.type == "bool":
+        # The array of bytes starts with zeros, so `|=` writes flags of both values and
+        # keeps other fields in the byte.
         shift = f" << {row[0].shift}" if row[0].shift else ""
         return [f"bytes[{row[0].byte}] |= u8::from({source}){shift};"]
     if field.is_plain_word:
@@ -275,6 +290,8 @@ def writing(
     elif place.type == "float":
         source = f"{source}.to_bits()"
     if len(row) > 1:
+        # A later field of the function can declare `value` as well: in Rust a `let`
+        # shadows the earlier variable.
         lines.append(f"let value = {source};")
         source = "value"
     if place.is_signed:
@@ -314,6 +331,8 @@ def _put_whole(field: FieldDescription, source: str) -> list[str]:
     )
     if size == 8 and not field.model.is_signed:
         return [f"bytes[{first}] = {source}{'.raw()' if is_enum else ''};"]
+    # A byte in memory has no order, but an `i8` needs a conversion, so it takes this
+    # way, too.
     copied = f"put!({'value' if is_enum else source}.to_{field.order}_bytes() => bytes[{first}; {size // 8}]);"
     return [f"let value = {source}.raw();", copied] if is_enum else [copied]
 
@@ -330,6 +349,8 @@ def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
     for piece in row:
         part = f"{source} >> {piece.at}" if piece.at else source
         if size > 8:
+            # This is the low byte without `as u8`, which clippy
+            # (`cast_possible_truncation`, pedantic) refuses.
             part = f"{_parenthesised(part)}.to_le_bytes()[0]"
         lines.append(_put(piece, part))
     return lines
@@ -340,6 +361,8 @@ def _put(piece: Piece, part: str) -> str:
     if piece.is_byte:
         return f"bytes[{piece.byte}] = {part};"
     if not piece.reaches_top:
+        # A shift to the top of the byte drops the higher bits of a `u8`. Anywhere else
+        # they would change a neighbouring field.
         part = f"{_parenthesised(part)} & {mask(piece.low_mask)}"
     if piece.shift:
         part = f"{_parenthesised(part)} << {piece.shift}"

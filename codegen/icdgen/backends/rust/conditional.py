@@ -23,6 +23,8 @@ def write_optional(field: FieldDescription) -> list[str]:
     """Return the statements that write an optional field into ``bytes``."""
     member = f"self.{field_name(field)}"
     return [
+        # A field that must be present can still be `None`. `there` then returns an
+        # error in place of a frame with zeros.
         f"let {bits.RAW} = there({string(field.model.name)}, {member})?;",
         *(bits.fitting(field) if field.is_narrow else ()),
         *bits.writing(field),
@@ -44,6 +46,8 @@ def _test(need: Need) -> str:
     """Return the test whether a field has one of the values."""
     field, member = need.field, f"self.{field_name(need.field)}"
     if field.model.type == "bool":
+        # A flag has two values, so with more than one value the condition is always
+        # met.
         is_any = len(need.values) > 1
         return "true" if is_any else member if need.values[0] else f"!{member}"
     member += ".raw()" if field.enum is not None else ""

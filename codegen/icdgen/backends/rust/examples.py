@@ -64,8 +64,10 @@ def read_example(shown: Shown) -> str:
 def write_example(shown: Shown) -> str:
     """Return the statement that sets the value in ``command``."""
     field = shown.field
+    # The first accessor is that of the double. Without a setter, the raw value is set.
     if shown.physical is not None and accessors(field)[0].raw:
         return f"command.{setter(field.physical_name)}({double(shown.physical)})?;"
+    # The member has the type `Coded`, which also stores numbers without a name.
     into = ".into()" if field.enum else ""
     return f"command.{field_name(field)} = {_value(shown)}{into};"
 

@@ -16,6 +16,7 @@ def struct(name: str, *items: Item) -> Brackets:
     return Brackets(f"link::{name} {{ ", items, " }")
 
 
+# The slash keeps `name` free for a field of the struct that has this name.
 def flat(name: str, /, **parts: Expression | int) -> Brackets:
     """Return a struct of the wire layer on one line."""
     items = (
@@ -58,6 +59,7 @@ def some(value: Expression | int | None) -> Expression:
 
 def spelled(value: bool | int | str) -> str:
     """Return the literal of a truth value or number. Expressions stay unchanged."""
+    # `bool` is a subclass of `int`, so it is tested first.
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:_}" if isinstance(value, int) else value

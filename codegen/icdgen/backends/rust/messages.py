@@ -15,6 +15,9 @@ from icdgen.describe.description import Composite, Into, VariablePartDescription
 from icdgen.describe.groups import bytes_of_flags
 from icdgen.describe.lengths import ElementBytes
 
+# A name of the support module that templates use but this set lacks is missing in
+# `use`, and the generated crate does not compile. A name that a module does not use
+# would be a warning of rustc, so each module imports only its own.
 _SUPPORT = frozenset(
     """
     array arrays beginning counted each element_of elements exact first flags longest message number power present put put_array
@@ -27,6 +30,7 @@ _SUPPORT = frozenset(
 _USED = re.compile(
     r'//.*|"(?:[^"\\]|\\.)*"|(?<![\w.:&])(?<!fn )([A-Za-z]\w*)(?=[(!<>]|::| = Wide)'
 )
+# Arrays have `Default` for each length up to 32 and not for any `N`.
 DERIVES_DEFAULT = 32
 """Largest array for which the standard library implements `Default`."""
 
@@ -74,6 +78,7 @@ def part_bytes(part: VariablePartDescription, is_limited: bool = False) -> str:
     """
     model, step = part.model, 1 if part.inner else part.model.step
     count = f"number(self.{field_name(part.counter)}, {model.low}, {model.fewest})"
+    # The counter is a public member, so it can have a value that no frame can have.
     return times(step, f"{count}.min({model.most})" if is_limited else count)
 
 
@@ -96,6 +101,7 @@ def imports(body: str) -> str:
     ``use`` statement.
     """
     names = sorted(
+        # For comments and texts, `findall` returns an empty group, which is no name.
         _SUPPORT.intersection(_USED.findall(body)),
         key=lambda name: (name[0].isupper(), name),
     )
@@ -183,6 +189,9 @@ def _is_default(field: FieldDescription) -> bool:
 def _initial(field: FieldDescription) -> str:
     value = _valued(field, field.initial_raw)
     if field.is_in_last_part and field.count:
+        # Decoding gives missing elements the values of zero bytes. These can differ
+        # from the initial values of the struct, so absent elements are read from zeros
+        # here, too.
         length = field.struct.model.length if field.struct is not None else 0
         absent = (
             f"Self::{reader(field.name)}(&[0; {length}])"

@@ -15,12 +15,12 @@ RESERVED = frozenset(
     """.split()
 )
 
-# Those of them that cannot be written with `r#` either.
+# Keywords that cannot be raw identifiers (Rust reference, "Identifiers").
 NEVER = frozenset(("self", "Self", "super", "crate", "_"))
 _RAW = RESERVED - NEVER
 
-# Types and traits that the generated modules call by their bare name, in the scope
-# where a message's type stands.
+# Types and traits that generated modules use by their bare names. A type of a message
+# with such a name would hide them.
 USED_TYPES = (
     "Result",
     "Error",
@@ -31,9 +31,9 @@ USED_TYPES = (
     "Telecommand",
     "Node",
 )
-# What stands beside the modules of the nodes.
+# Modules of the crate, next to those of the nodes.
 USED_MODULES = ("support", "std", "wire")
-# What a folder of that name in `src` means to Cargo and rustc.
+# Names in `src` that have a meaning for Cargo, which finds targets by them.
 ROOTS = {
     "lib": "the root of the crate",
     "main": "the root of a program",
@@ -41,8 +41,8 @@ ROOTS = {
 }
 ENUMS_MODULE = "enums"
 PROCEDURES_MODULE = "procedures"
-# What stands beside the modules of a node's messages, and what their parent calls by
-# its bare name.
+# Modules next to those of the messages of a node, and types and crates that the module
+# of the node uses by their bare names.
 USED_IN_NODES = (
     ENUMS_MODULE,
     PROCEDURES_MODULE,
@@ -58,14 +58,16 @@ USED_IN_NODES = (
 
 
 def field_name(field: FieldDescription) -> str:
-    """``estimated_roll_angle``; ``r#type`` where the name is a keyword;
-    ``temperatures[3]``; ``satellites[2].gnss``.
+    """Return the expression of a field in its message: ``estimated_roll_angle``,
+    ``temperatures[3]``, ``satellites[2].gnss``; ``r#type`` if the name is a keyword.
     """
     return raw_words(field.member)
 
 
 def raw_words(expression: str) -> str:
-    """An expression of members, keywords among them as names."""
+    """Return an expression of members with keywords as raw identifiers."""
+    # Only the name in front of an index can be a keyword: `type[3]` becomes
+    # `r#type[3]`.
     return ".".join(
         f"r#{part}" if part.partition("[")[0] in _RAW else part
         for part in expression.split(".")
@@ -73,7 +75,7 @@ def raw_words(expression: str) -> str:
 
 
 def own_name(field: FieldDescription) -> str:
-    """What it is called in the message, or in the struct, that declares it."""
+    """Return the name of a field in the message or struct that declares it."""
     return (
         f"r#{field.declared_name}"
         if field.declared_name in _RAW
@@ -82,35 +84,43 @@ def own_name(field: FieldDescription) -> str:
 
 
 def variant(word: str) -> str:
-    """``UnknownId`` of ``unknown_id``: a word of the protocol as a variant of its
-    enumeration.
+    """Return the variant of an enumeration for a word of the protocol: ``UnknownId``
+    for ``unknown_id``.
     """
     return camel(tuple(word.split("_")))
 
 
 def has(field: FieldDescription) -> str:
-    """``has_rate``: the method that tells whether a field is there."""
+    """Return the name of the method that returns whether a field is present:
+    ``has_rate``.
+    """
     return f"has_{field.name}"
 
 
 def scale_name(field: FieldDescription) -> str:
-    """``RATE``: constant of the module of a message with the scale of a field."""
+    """Return the name of the constant with the scale of a field, in the module of its
+    message: ``RATE``.
+    """
     return field.declared_name.upper()
 
 
 def constant_name(name: str) -> str:
-    """``TIMEOUT_NO_TIMEOUT``: constant of a message with this name in snake case."""
+    """Return the name of a constant of a message by its name in snake case:
+    ``TIMEOUT_NO_TIMEOUT``.
+    """
     return name.upper()
 
 
 def memory_constant(procedure: str) -> str:
-    """``DOWNLOAD_MEMORY``: constant with the memory in bytes that a procedure needs."""
+    """Return the name of the constant with the memory in bytes that a procedure needs:
+    ``DOWNLOAD_MEMORY``.
+    """
     return f"{constant_name(procedure)}_MEMORY"
 
 
 def setter(name: str) -> str:
-    """``set_rate_deg_per_s``: the method that sets a physical value by its name in
-    snake case.
+    """Return the name of the method that sets a physical value, by the name of the
+    value in snake case: ``set_rate_deg_per_s``.
     """
     return f"set_{name}"
 

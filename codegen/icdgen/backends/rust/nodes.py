@@ -18,6 +18,8 @@ from icdgen.icd.model import Node
 
 def summary(node: Node) -> str:
     """Return the entry of a node on the front page of the crate."""
+    # The text is wrapped as continuation lines of a list item. Then the first line gets
+    # its dash.
     item = f"[`{node.name}`], {prose(sentence(node.title))} {prose(sentence(node.summary))}".rstrip()
     return doc([item], mark="//!  ").replace("//!  ", "//! -", 1)
 
@@ -54,6 +56,8 @@ def guarded(candidate: MessageOfId, path: str) -> str:
     terms = _lengths(candidate.length_tests, f"{path}::LENGTH")
     for constant in candidate.constant_bytes:
         byte = f"bytes[{constant.byte}]"
+        # Indexing would panic here: a guard runs before the length of the frame is
+        # certain.
         if candidate.can_lack(constant):
             byte = f"bytes.get({constant.byte}).map_or(0, |byte| *byte)"
         masked = byte if constant.mask == 0xFF else f"{byte} & {mask(constant.mask)}"
@@ -82,6 +86,8 @@ def _lengths(length_tests: Iterable[LengthTest], longest: str) -> list[str]:
     ]
     if multiple:
         counted = (
+            # The difference cannot underflow, because `&&` tests the shortest length
+            # before it.
             f"(bytes.len() - {multiple.without})" if multiple.without else "bytes.len()"
         )
         terms.append(f"{counted} % {multiple.value} == 0")

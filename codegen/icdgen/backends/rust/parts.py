@@ -90,6 +90,7 @@ def _struct(
 def _value(copied: CopiedMember) -> str:
     name = own_name(copied.member)
     sources = [f"message.{field_name(source)}" for source in copied.sources]
+    # Members are `Copy`, so an expression over a reference copies an array as well.
     if copied.is_whole:
         return f"{name}: {sources[0]}"
     return bracketed(f"{name}: [", sources, "]", WIDTH - len(STEP) * 4, STEP * 4)

@@ -13,6 +13,8 @@ from icdgen.describe.arithmetic import IntegerAccess
 from icdgen.describe.derived import derived
 from icdgen.describe.steps import Steps, wide_parts
 
+# A derived value computes in local variables. These must not shadow the functions of
+# the support module that it calls.
 _TAKEN = RESERVED | {"power", "quiet", "whole"}
 
 
@@ -74,10 +76,13 @@ def double_value(field: FieldDescription) -> str:
         if is_long and field.model.type != "float":
             return f"{curve_name(field)}.whole({raw})"
         return (
+            # A float of 64 bits is a double already, and clippy (`useless_conversion`)
+            # refuses `f64::from` of it.
             f"{curve_name(field)}.physical({raw if is_long else f'f64::from({raw})'})"
         )
     if not field.arithmetic.is_exact_in_doubles:
         return f"{scale_name(field)}.physical({raw})"
+    # Such a raw value has at most 32 bits: `f64` has no `From` for wider integers.
     return _quotient(field.arithmetic.steps, f"f64::from({raw})")
 
 
@@ -97,6 +102,7 @@ def integer_value(field: FieldDescription, access: IntegerAccess) -> str:
     """Return the physical value in whole parts of the unit."""
     raw, factor, offset = raw_value(field), access.scale.factor, access.scale.offset
     value = (
+        # clippy (`useless_conversion`) refuses `i32::from` of an `i32`.
         raw if field.storage == (access.bits, True) else f"i{access.bits}::from({raw})"
     )
     value = value if factor == 1 else f"{value} * {integer(factor)}"
@@ -119,10 +125,13 @@ def single(field: FieldDescription) -> str:
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_singles:
         return f"{scale_name(field)}.single({raw_value(field)})"
+    # Such a raw value has at most 16 bits: `f32` has no `From` for wider integers.
     return _quotient(field.arithmetic.steps, f"f32::from({raw_value(field)})")
 
 
 def _quotient(steps: Steps, raw: str) -> str:
+    # Only the division rounds here, so the result is the float nearest to the physical
+    # value.
     p, c, q = steps.terms
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:

@@ -117,6 +117,8 @@ class NodeProcedures:
         self.included: dict[str, list[ProcedureText]] = {}
         self.all: list[ProcedureText] = []
         for procedure in link.facts.procedures:
+            # A node can have procedures of the nodes that it includes. Code that is the
+            # same is generated once, in the module of the included node.
             text = _Writer(procedure, link.facts, description, crate).text()
             owners = (
                 name
@@ -205,6 +207,7 @@ class _Writer:
             yield prose(f"Source: {source[0].lower()}{source[1:]}")
         section = f"{SECTION}{procedure.name}"
         for assumption in self._facts.assumptions:
+            # The final dot keeps `copy` from matching the sections of `copy_all`.
             if f"{assumption.section}.".startswith(f"{section}."):
                 where = assumption.section.removeprefix(SECTION)
                 why = prose(sentence(assumption.why))
@@ -318,6 +321,8 @@ class _Writer:
         blocks = self._procedure.blocks
         if blocks is None:
             return ""
+        # Bytes to send stay in the input of the caller. Both directions need a bit for
+        # each packet.
         received = 0 if blocks.sends else blocks.packets * blocks.packet_bytes
         return integer(received + -(-blocks.packets // 8))
 
@@ -378,6 +383,8 @@ def _angle(parameters: list[str]) -> str:
 def _parameter(each: model.Input) -> str:
     """Return the name of the parameter of an input."""
     if each.name in _OWN or each.name in ("self", "super", "crate"):
+        # Of the keywords that `r#` cannot escape, only `self`, `super` and `crate` are
+        # names in snake case.
         return f"{each.name}_"
     return f"r#{each.name}" if each.name in RESERVED else each.name
 
@@ -413,6 +420,8 @@ def _map(map: model.PacketMap | None) -> Brackets | None:
         for message in map.messages
     )
     values = {**members(map), "messages": flat_rows(messages)}
+    # The messages of a map have the same layout, so the first one gives the length of
+    # all.
     return _of("PacketMap", length=map.messages[0].length, **values)
 
 

@@ -40,6 +40,7 @@ _CONTENTS = {NOTHING: "Nothing"}
 
 def stream_of(form: Stream) -> Brackets:
     """Return the expression of packet formats and their messages."""
+    # Messages share exchanges, so each row has the index of its exchange in the table.
     indices = {exchange: index for index, exchange in enumerate(form.exchanges)}
     tables = crc_tables(form)
     return struct(
@@ -127,6 +128,8 @@ def crc_tables(form: Stream | None) -> dict[Brackets, str]:
     ]
     return {
         crc: f"TABLE_{number}" if number > 1 else "TABLE"
+        # Packets with the same CRC share its table, which is 256 words of read-only
+        # memory.
         for number, crc in enumerate(dict.fromkeys(crcs), 1)
     }
 
@@ -174,6 +177,8 @@ def _field(field: EnvelopeField) -> Brackets:
 
 
 def _row(row: StreamRow, indices: Mapping[Exchange, int]) -> Brackets:
+    # The runtime identifies messages by their ids. Names would only need memory on the
+    # target.
     items = {key: value for key, value in members(row).items() if key != "name"}
     return flat(
         "StreamRow",

@@ -44,6 +44,7 @@ class RustNames(NamingPolicy):
         yield from _used(_CRATE, names.USED_MODULES)
         for name, use in names.ROOTS.items():
             yield Identifier(_CRATE, name, use, None)
+        # Modules are files, and Windows opens a device for `nul.rs`.
         yield from _used(_CRATE, DEVICES, "a device of Windows")
 
     def node(self, node: NodeDescription) -> Symbols:
@@ -116,6 +117,8 @@ class RustNames(NamingPolicy):
         )
         for field in fields:
             name, is_read_only = names.own_name(field), field.model.is_read_only
+            # Fields and methods have separate namespaces in Rust, so the member and the
+            # method that returns its present elements can have the same name.
             if has_variable_parts and (
                 field.is_in_last_part or field.is_in_earlier_part
             ):
@@ -152,6 +155,8 @@ def _catch_all(enum: EnumDescription) -> str:
     member has.
     """
     taken = {member.camel_name for member in enum.members}
+    # If members have all of these names, the table lists one of them twice, and the
+    # rules on names report it.
     return next((name for name in _CATCH_ALL if name not in taken), _CATCH_ALL[0])
 
 

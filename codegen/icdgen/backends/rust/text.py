@@ -11,6 +11,9 @@ from icdgen.describe.comments import Comment
 
 WIDTH = 100
 
+# `_` is markup only at the edge of a word, and `&` only where an entity can begin. The
+# colon of a URL is escaped because rustdoc (`bare_urls`) warns about URLs that are no
+# links.
 _MARKDOWN = re.compile(
     r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[#A-Za-z])|(?<=http):|(?<=https):"
 )
@@ -25,6 +28,7 @@ def prose(text: str) -> str:
     if text.replace(" ", "").isalnum():
         return text
     parts = text.split("`")
+    # The number of backticks is odd, so one of them opens no code. All are escaped.
     if len(parts) % 2 == 0:
         return _MARKDOWN.sub(r"\\\g<0>", text)
     return "`".join(
@@ -97,6 +101,7 @@ def double(value: float) -> str:
     fraction = fraction or "0"
     if len(fraction) > 3:
         fraction = "_".join(fraction[i : i + 3] for i in range(0, len(fraction), 3))
+    # The sign was removed before, because `int("-0")` would lose it.
     text = f"{sign}{int(integral):_}.{fraction}"
     return f"{text}e{int(exponent)}" if exponent else text
 

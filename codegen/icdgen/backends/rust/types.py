@@ -14,7 +14,7 @@ from icdgen.icd.model import Node
 
 
 def enum_path(enum: EnumDescription, node: Node) -> str:
-    """The type as the messages of ``node`` write it."""
+    """Return the path of an enumeration in the modules of the messages of ``node``."""
     name = f"{ENUMS_MODULE}::{RUST_NAMES.symbol(enum, 'type')}"
     return name if enum.node.name == node.name else f"crate::{enum.node.name}::{name}"
 
@@ -32,7 +32,7 @@ def reason_number(enum: EnumDescription) -> str:
 
 
 def message_path(message: MessageDescription, node: Node) -> str:
-    """The type of a message as the module of ``node`` writes it."""
+    """Return the path of the type of a message in the module of ``node``."""
     name = RUST_NAMES.symbol(message, "type")
     return (
         name
@@ -42,30 +42,34 @@ def message_path(message: MessageDescription, node: Node) -> str:
 
 
 def struct_path(struct: Composite[Any], node: Node) -> str:
-    """The type of a struct, or of a message, as the messages of ``node`` write it."""
+    """Return the path of the type of a struct or message in the modules of the messages
+    of ``node``.
+    """
+    # The module of a message is private to the module of its node, which exports the
+    # types of all its messages and structs.
     module = "super" if struct.node.name == node.name else f"crate::{struct.node.name}"
     return f"{module}::{RUST_NAMES.symbol(struct, 'type')}"
 
 
 def integer_type(field: FieldDescription) -> str:
-    """The integer that holds the raw value."""
+    """Return the integer type that stores the raw value."""
     return f"{'i' if field.storage.signed else 'u'}{field.storage.bits}"
 
 
 def raw_type(field: FieldDescription) -> str:
-    """Type of the raw value in the message's struct."""
+    """Return the type of the raw value in the struct of the message."""
     if field.model.conditions:
         return f"Option<{one_type(field)}>"
     return f"[{one_type(field)}; {field.count}]" if field.count else one_type(field)
 
 
 def open_type(field: FieldDescription) -> str:
-    """Type of the elements that are in a frame."""
+    """Return the type of a slice of the elements that are in a frame."""
     return f"[{one_type(field)}]" if field.count else "[u8]"
 
 
 def one_type(field: FieldDescription) -> str:
-    """Type of the raw value, or of an element."""
+    """Return the type of the raw value; for an array that of an element."""
     one = field.model
     if field.struct is not None:
         return struct_path(field.struct, field.message.node)
