@@ -74,6 +74,7 @@ class PythonBackend:
         yield root / "py.typed", ""
         for name in render.runtime_files(str(_RUNTIME)):
             path = PurePosixPath(name).relative_to(_RUNTIME)
+            # The generated package has an `__init__.py` of its own.
             if path != PurePosixPath("__init__.py"):
                 yield root / path, f"# {origin()}\n{render.source(name)}"
         for node in description.nodes:

@@ -38,6 +38,8 @@ def annotation(field: FieldDescription) -> str:
 
 def _optional(field: FieldDescription, note: str) -> str:
     """Return the type of an attribute. Absent optional fields have the value None."""
+    # `_lazy` imports `typing` only if something evaluates the annotation, so importing
+    # a message stays fast.
     return f"_lazy.Optional[{note}]" if field.model.conditions else note
 
 
@@ -81,6 +83,8 @@ def _default(field: FieldDescription) -> str:
             if kind == "float"
             else str(value)
         )
+    # An initial value can be without a name. The class then gives a member for the
+    # number.
     name, member = PYTHON_NAMES.symbol(field.enum, "class"), field.enum.member(value)
     return f"{name}.{constant_name(member.name)}" if member else f"{name}({value})"
 
@@ -93,6 +97,8 @@ def _keywords(field: FieldDescription) -> list[str]:
     if field.is_in_last_part:
         items.append("is_open=True")
         items += [f"fewest={field.initial_count}"] if field.initial_count else []
+    # `_base.field` takes the enumeration from the first element of the default, and an
+    # empty array has none.
     if field.is_in_last_part and field.enum is not None:
         items.append(f"enum={PYTHON_NAMES.symbol(field.enum, 'class')}")
     if field.needs:
@@ -186,6 +192,7 @@ def nested(message: MessageDescription) -> list[str]:
 
 def _placed_part(part: VariablePartDescription) -> str:
     """Return a variable part, its place, and the bits of its counter."""
+    # A tuple of one item needs a comma at its end.
     pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in part.counter.pieces]
     return f"{open_part(part)}, {part.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)})"
 
@@ -196,6 +203,7 @@ def open_part(part: VariablePartDescription) -> str:
     """
     counter = "" if part.is_rest else part.counter.name
     plus, behind = part.model.plus, part.model.behind
+    # The arguments are positional, so the last one needs the one before it.
     more = f", {plus}" if plus or behind else ""
     more += f", {behind}" if behind else ""
     return f'_base.Tail("{part.field.name}", "{counter}", {part.model.step}, {part.model.most}{more})'
@@ -232,6 +240,8 @@ def view_info(field: FieldDescription) -> str:
         )
         steps = tuple(tuple(step) for step in place.derived.steps)
         items.append(
+            # No text in these tuples has a quote, so the quotes of `repr` can be
+            # replaced.
             f"derived=({attributes!r}, {place.derived.numbers!r}, {steps!r})".replace(
                 "'", '"'
             )
@@ -252,6 +262,8 @@ def physical(field: FieldDescription) -> str:
         return f'_base.on_curve(self, "{field.name}")'
     assert field.steps is not None
     p, c, q = field.steps.terms
+    # Python divides whole numbers of any size with a single rounding, so the result is
+    # the double nearest to the exact value for any terms.
     return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
 
 
@@ -286,6 +298,7 @@ def _scaled(field: FieldDescription) -> str:
     )
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]
+        # By default, `_base.curve` searches the whole range of raw values.
         if field.is_settable and field.model.settable_raws != (
             field.model.raw_min,
             field.model.raw_max,
@@ -313,6 +326,7 @@ def _pieces(curve: Curve) -> list[str]:
 
 def _double(value: float) -> str:
     """Return the literal of a double."""
+    # `repr` of NaN and of the infinities is the name of an undefined variable.
     return repr(value) if math.isfinite(value) else f'float("{value}")'
 
 

@@ -53,6 +53,8 @@ def _spelled(value: object) -> str | Brackets:
         return Brackets(
             "(",
             tuple(map(_item, value)),
+            # Only flat brackets need this comma of a tuple. Others have one after each
+            # item.
             ",)" if is_flat and len(value) == 1 else ")",
             is_flat,
         )

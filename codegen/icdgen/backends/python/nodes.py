@@ -119,6 +119,7 @@ def node_docstring(node: Node) -> str:
     """Return the docstring of the module of a node."""
     source = dict(node.document)
     cited = [source[key] for key in ("document", "version", "date") if key in source]
+    # The slice is empty if nothing is cited, so that this does not need a test.
     cited[-1:] = [
         f"{last}, section {source['section']}" if "section" in source else last
         for last in cited[-1:]

@@ -52,6 +52,8 @@ class ProcedureClass:
     @property
     def parameters(self) -> list[str]:
         """Parameters of the constructor, required ones first."""
+        # Python refuses a parameter without a default after one with a default.
+        # `sorted` is stable, so both groups keep the order of the ICD.
         inputs = sorted(self.model.inputs, key=lambda each: each.is_optional)
         parameters = [f"{each.name}: {self._type(each)}" for each in inputs]
         if self.model.blocks:

@@ -36,6 +36,7 @@ class PythonNames(NamingPolicy):
                 scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None
             )
         for name in DEVICES:
+            # A module is a file, and Windows opens a device for `con.py`.
             yield Identifier(self._files(node.name), name, "a device of Windows", None)
 
     def link(self, node: NodeDescription) -> Symbols:
@@ -88,6 +89,8 @@ class PythonNames(NamingPolicy):
         for field in fields:
             values = (
                 ()
+                # A count is the length of the tuple, so the class has no attribute for
+                # it.
                 if field.model.is_count
                 else (
                     field.name,

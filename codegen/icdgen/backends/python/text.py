@@ -66,6 +66,8 @@ def paragraph(text: str) -> str:
 
 
 def _spelled(parts: list[str]) -> str:
+    # Every second part is code. Backticks come in pairs: `describe.comments` replaces
+    # those of the ICD.
     parts[::2] = [
         part if part.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", part)
         for part in parts[::2]
@@ -73,6 +75,8 @@ def _spelled(parts: list[str]) -> str:
     text = _BLOCK.sub(r"\g<1>\\", "`".join(parts))
     if _PLAIN.match(text):
         return text
+    # The docstring is no raw string. The backslashes of markup are doubled here, and a
+    # quote at its end cannot join the closing quotes.
     return "".join('\\"' if c == '"' else _character(c) for c in text)
 
 
@@ -82,6 +86,7 @@ def docstring(indent: int, paragraphs: Iterable[str]) -> str:
     """
     pad = " " * indent
     first, *further = paragraphs
+    # Text without a blank cannot be wrapped, so it stays on the line of the quotes.
     if not further and (len(first) + 6 + indent <= WIDTH or " " not in first):
         return f'"""{first}"""'
     blocks = [f'"""{first}', *further]
