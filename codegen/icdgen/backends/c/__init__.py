@@ -147,6 +147,7 @@ def includes(composite: Composite[Any]) -> list[str]:
         f"{name}.h" if folder == composite.node.name else f"../{folder}/{name}.h"
         for folder, name in used
     )
+    # `icdgen_wide.h` includes `icdgen.h`, so one of them is enough.
     support = "../icdgen_wide.h" if composite.has_wide_steps else "../icdgen.h"
     return [support, *dict.fromkeys(headers)]
 

@@ -95,6 +95,9 @@ def _derived(field: FieldDescription) -> AccessorCode:
         for name, operand in computation.fields
     ]
     for name, value in computation.expressions(repr, "icdgen_power({}, {})"):
+        # Compilers may keep intermediate results in a wider format (`FLT_EVAL_METHOD`,
+        # C99 5.2.4.2.2) and fuse a product with a sum (6.5). A volatile object makes
+        # each step a double, so that all targets compute the same bits.
         lines.append(_constant(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
     return AccessorCode(
@@ -133,6 +136,8 @@ def overlay_comment(field: FieldDescription) -> str:
     """Return the comment of the getter of an overlay field."""
     about = field.comment
     if field.message.is_narrow:
+        # Only such a message can fail to encode: its types can store values that its
+        # fields cannot.
         about = about._replace(details=(*about.details, _FROM_FRAME))
     return described(about)
 

@@ -97,6 +97,8 @@ def _low_bits(piece: Piece, frame: str) -> str:
 
 def _shifted(piece: Piece, wide: int, frame: str) -> str:
     """Return a run of bits, shifted to its place in the value."""
+    # The byte is widened before the shift: it is promoted to `int`, and a shift into or
+    # beyond the sign bit is undefined (C99, 6.5.7).
     low = cast(_low_bits(piece, frame), wide)
     return f"{low} << {piece.at}" if piece.at else low
 
@@ -113,6 +115,7 @@ def put(field: FieldDescription, piece: Piece) -> str:
             f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
         )
     if storage.bits > 8 or storage.signed:
+        # A `uint8_t` is promoted to `int`, so all terms of a byte have the same type.
         value = cast(value, 8)
     # Above the top bits of an unsigned value there are only zeros: encode has tested
     # that it fits.
@@ -154,6 +157,8 @@ def excess(field: FieldDescription, member: str) -> str:
         beyond = ((1 << wide) - 1) ^ ((1 << place.bits) - 1)
         excess_bits = f"({cast(f'message->{member}', wide)} + {mask(1 << (place.bits - 1), wide)}) & {mask(beyond, wide)}"
     else:
+        # `raw_max` of an unsigned field is all ones, so its complement has the bits
+        # that must be 0.
         beyond = ((1 << storage.bits) - 1) ^ place.raw_max
         excess_bits = f"message->{member} & {mask(beyond, storage.bits)}"
     return (

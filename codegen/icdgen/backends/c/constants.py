@@ -72,6 +72,8 @@ def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
     """Return whether values of an enumeration must be macros because an `int` may be
     too small, and the function for literals.
     """
+    # An enumerator is an `int` (C99 6.7.2.2), which may have only 16 bits (5.2.4.2.1).
+    # If one value is larger, all values are macros.
     are_macros = any(
         abs(member.model.value) > _MAX_ENUMERATOR for member in enum.members
     )
@@ -114,6 +116,8 @@ def field_table(composite: Composite[Any]) -> Fields:
     table = Fields([], [])
     for field in composite.members:
         model, bounds = field.model, field.bounds
+        # Fields have different numbers of limits. All limits are one array, and each
+        # row points to the first of its own.
         limits = f"&limits[{len(table.limits)}]" if bounds else "NULL"
         unit = literal(model.unit_symbol)
         inside = (

@@ -63,6 +63,8 @@ def decode_statements(message: MessageDescription) -> list[str]:
         lines.append(f"message->{last.counter.name} = {count};")
     if last is not None and last.element_struct is not None:
         name, function = last.field.member, element_reader(message, last.field.name)
+        # A frame has only some of the elements. The message may have values of an
+        # earlier frame in the others.
         lines.append(f"(void)memset(message->{name}, 0, sizeof message->{name});")
         lines.append(for_each(name, elements_received(last), function, last.place))
     return lines
@@ -95,6 +97,7 @@ def _statements(
 def _count(part: VariablePartDescription) -> str:
     """Return the number of elements in ``length`` bytes beyond the fewest."""
     before, step = part.bytes_beyond_fewest
+    # The difference does not underflow: the function tests the length before.
     remaining = f"length - {before}u" if before else "length"
     if step == 1:
         return remaining
@@ -200,6 +203,8 @@ def first_byte(bytes: ElementBytes, per_iteration: int = 1) -> str:
 
 def elements(part: VariablePartDescription, counter: str = "") -> str:
     """Return the number of elements of a variable part in a message."""
+    # Bytes are counted in `size_t`, which can hold the size of any object (C99 7.17).
+    # An `unsigned int` need not.
     count = f"ICDGEN_SIZE({counter or f'message->{part.counter.name}'})"
     if not part.model.plus:
         return count
@@ -232,6 +237,8 @@ def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> 
     )
     pointer = f"{const}uint8_t *const part = &buffer[{begin}];"
     body = "".join(
+        # Statements on several lines are indented for the body of a function, which is
+        # one step less than that of the loop.
         f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}")
         for line in (pointer, *lines)
     )

@@ -49,6 +49,7 @@ def size(message: MessageDescription) -> list[str]:
         return parts
     # Without gaps there is exactly one variable-length part.
     (part,) = message.variable_parts
+    # The product gets parentheses next to the sum (MISRA C:2012, rule 12.1).
     return [f"{fixed}u", *(parts if part.model.step == 1 else [f"({parts[0]})"])]
 
 
@@ -77,6 +78,7 @@ def counted_text(last: VariablePartDescription) -> str:
     """Return the value of the counter for a ``text``."""
     more = last.counter_of_text
     if more < 0:
+        # The difference of two `size_t` would wrap around for a text that is too short.
         return f"(strlen(text) > {-more}u) ? (strlen(text) - {-more}u) : 0u"
     return f"strlen(text) + {more}u" if more else "strlen(text)"
 
@@ -89,6 +91,7 @@ def encode_statements(message: MessageDescription) -> list[str]:
         function, (begin, step) = element_writer(message, last.field.name), last.place
         each = for_each(last.field.member, elements(last), function, last.place)
         frame.bytes.add_whole(begin, last.model.most * step, each)
+    # Without these lines, compilers warn about parameters that are not used.
     unused = [] if message.members else ["(void)message;"]
     if not message.members and not message.model.length:
         unused.append("(void)buffer;")
@@ -137,6 +140,8 @@ class _Frame:
             self.bytes.add_whole(first, size, bits.store(field, self.frame))
         else:
             for piece in field.pieces:
+                # Other fields can share the byte, so its terms are collected and
+                # written by one statement.
                 self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
 
     def _add_group(self, group: Flags | Row | LoopElements | StructArray) -> None:

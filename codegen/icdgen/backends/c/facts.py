@@ -57,6 +57,8 @@ def spelled(fact: Fact, value: Any) -> str:
         return f"{boolean(value is not None)}, {_literal(fact, value or 0)}"
     if fact.is_optional and fact.least == 0:
         return or_none(value)
+    # If the smallest value of an optional fact is above 0, a 0 means that it is not
+    # given.
     return _literal(fact, value or 0)
 
 
@@ -64,6 +66,7 @@ def _literal(fact: Fact, value: Any) -> str:
     if fact.kind is Kind.FLAG:
         return boolean(value)
     if fact.kind is Kind.BUSES:
+        # Buses are a mask: bit n is bus n in the order of `BUSES`.
         return f"{sum(1 << BUSES.index(bus) for bus in value or ())}u"
     if fact.kind is Kind.SPAN:
         return f"{{{value[0]}u, {value[1]}u}}"

@@ -86,6 +86,7 @@ def received_bytes(link: LinkDescription) -> int:
 
 
 def _can_slot_bytes(link: LinkDescription) -> int:
+    # The joiner stores the id of a message in front of its data.
     return 1 + link.joined_bytes
 
 
@@ -293,6 +294,8 @@ class _Tables(TableSet):
         for part in parts:
             value = part.row.value
             row = part.row._replace(value=f"ICDGEN_OF_{what}({value})")
+            # The macro becomes NULL if a program omits these tables, so that no member
+            # refers to them.
             yield part if value == "NULL" else part._replace(row=row)
         self.tables[first:] = [
             table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]
@@ -314,6 +317,8 @@ class _Tables(TableSet):
         """Return the row of a message."""
         conditions = []
         if not any(sent.message is needed for needed in self.link.always_needed):
+            # A program that defines `DEMO_CHOSEN` has only the messages that it
+            # selects. Without it, all messages are there.
             node = self.facts_of_link.node.name.upper()
             conditions = [
                 f"!defined({node}_CHOSEN)",
@@ -442,6 +447,8 @@ class _Tables(TableSet):
                 "escaping", "icd_escaping_t", [Row(_escaping(form.escaping))]
             )
         around = (
+            # -1 means that no packet has this direction. 0 is a packet without header
+            # and trailer.
             max((packet.overhead for packet in form.packets_of(each)), default=-1)
             for each in DIRECTIONS
         )
@@ -639,6 +646,7 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
     return [
         sent
         for sent in messages
+        # `icd_message_t` stores the id in 8 bits and the length in 16.
         if sent.id <= _MOST_ID and sent.message.length <= _MOST_LENGTH
     ]
 

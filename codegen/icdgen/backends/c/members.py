@@ -37,6 +37,8 @@ def _statements(
     name, member = of + field.model.name, owner + field.member
     if not field.count:
         return lines_of(field, member, name)
+    # An inner loop has an index of its own name: compilers warn if a variable hides
+    # another one (`-Wshadow`).
     index = "0" if count == "1u" else "element" if depth == 1 else f"element_{depth}"
     member += f"[{index}]"
     if field.element_struct is None:

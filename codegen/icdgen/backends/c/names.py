@@ -16,8 +16,8 @@ _HEADERS = """
     stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
     alloca endian features pthread sched strings unistd
     """.split()
-"""Of the language and the system: a node's header of that name would be found in their
-place.
+"""Headers of the language and of the system. A compiler could find the header of a node
+with such a name in their place.
 """
 
 RESERVED = frozenset(
@@ -46,15 +46,16 @@ macros can't be met.
 
 
 def stem(part: Composite[Any] | EnumDescription) -> str:
-    """``demo_estimated_roll``: stem of the functions and the type; of ``DemoState``
-    ``demo_state``, because it has the node's name.
+    """Return the beginning of the names of the functions and of the type:
+    ``demo_estimated_roll``. A name that begins with that of the node keeps it once:
+    ``demo_state`` for ``DemoState``.
     """
     prefix = f"{part.node.name}_"
     return part.name if part.name.startswith(prefix) else prefix + part.name
 
 
 def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
-    """``DEMO_MODE_IDLE``"""
+    """Return the name of an enumerator: ``DEMO_MODE_IDLE``."""
     return f"{stem(enum)}_{member.name}".upper()
 
 
@@ -79,25 +80,31 @@ def received_element_reader(message: MessageDescription, name: str) -> str:
 
 
 def has(composite: Composite[Any], name: str) -> str:
-    """``demo_wheel_has_rate``: the function that returns whether a frame has a field."""
+    """Return the name of the function that returns whether a field is present:
+    ``demo_wheel_has_rate``.
+    """
     return f"{stem(composite)}_has_{name}"
 
 
 def constant(message: Composite[Any], name: str) -> str:
-    """``DEMO_RESET_MAGIC_NUMBER_CONST``; ``DEMO_RESET_ID``"""
+    """Return the name of a macro of a message or struct:
+    ``DEMO_RESET_MAGIC_NUMBER_CONST``, ``DEMO_RESET_ID``.
+    """
     return f"{stem(message)}_{name}".upper()
 
 
 def enumerator_of(direction: str, message: MessageDescription) -> str:
-    """``DEMO_TELEMETRY_IS_STATUS``, where messages of ``demo_telemetry`` share ids."""
+    """Return the enumerator of a message whose direction has shared ids:
+    ``DEMO_TELEMETRY_IS_STATUS``.
+    """
     return f"{direction}_is_{message.name}".upper()
 
 
 def selector(
     node: NodeDescription, direction: str, message: MessageDescription, id_name: str
 ) -> str:
-    """Constant that selects a message in ``demo_telemetry_t``: that of its id, or an
-    enumerator if messages share ids.
+    """Return the constant that selects a message in ``demo_telemetry_t``: that of its
+    id, or an enumerator if messages share ids.
     """
     if node.shares_ids(direction):
         return enumerator_of(f"{node.name}_{direction}", message)
@@ -105,21 +112,23 @@ def selector(
 
 
 def getter(composite: Composite[Any], name: str) -> str:
-    """``demo_status_rate_deg_per_s``: the function that returns a value by its name in
-    snake case.
+    """Return the name of the function that returns a value, by the name of the value in
+    snake case: ``demo_status_rate_deg_per_s``.
     """
     return f"{stem(composite)}_{name}"
 
 
 def setter(composite: Composite[Any], name: str) -> str:
-    """``demo_status_set_rate_deg_per_s``: the function that sets a physical value."""
+    """Return the name of the function that sets a physical value:
+    ``demo_status_set_rate_deg_per_s``.
+    """
     return f"{stem(composite)}_set_{name}"
 
 
 def client_verbs(node: NodeDescription, direction: str) -> tuple[str, ...]:
-    """Actions of a client of the node with a message; each is a function.
+    """Return the actions of a client of the node with a message; each is a function.
 
-    Only a client of a stream can ask and put.
+    Only a client of a link with packets can ask and put.
     """
     if direction == "telemetry":
         return "request", "receive"
@@ -127,7 +136,7 @@ def client_verbs(node: NodeDescription, direction: str) -> tuple[str, ...]:
 
 
 def client_function(node: str, verb: str, message: MessageDescription) -> str:
-    """``demo_send_reset``: the function of a client for a message."""
+    """Return the name of the client's function for a message: ``demo_send_reset``."""
     return f"{node}_{verb}_{message.name}"
 
 
@@ -154,14 +163,14 @@ PROCEDURE_PARAMETERS = {
 
 
 def procedure(node: NodeDescription, name: str, end: str = "") -> str:
-    """``demo_download``: the function that initializes a procedure;
-    ``demo_download_size``: the function that returns an output.
+    """Return the name of the function that initializes a procedure, ``demo_download``;
+    with an ``end`` that of an output, ``demo_download_size``.
     """
     return "_".join(filter(None, (node.name, name, end)))
 
 
 def procedure_size(node: NodeDescription, name: str, end: str) -> str:
-    """``DEMO_DOWNLOAD_BLOCK_BYTES``: the size of a buffer."""
+    """Return the name of the size of a buffer: ``DEMO_DOWNLOAD_BLOCK_BYTES``."""
     return procedure(node, name, end).upper()
 
 

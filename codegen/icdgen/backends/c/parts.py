@@ -31,6 +31,7 @@ def part_statements(
 
 def _statements(copied: CopiedMember) -> Iterator[str]:
     member = copied.member
+    # Arrays cannot be assigned in C (C99 6.5.16).
     if copied.is_whole and (member.count or member.model.is_bytes):
         target = f"part->{member.member}"
         yield call(

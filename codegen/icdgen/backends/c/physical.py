@@ -32,7 +32,10 @@ def _curve(curve: Curve) -> Iterator[str]:
     terms = [", ".join(map(repr, piece.terms)) for piece in curve.pieces]
     begin = accumulate((len(piece.terms) for piece in curve.pieces), initial=0)
     pieces = (
+        # A piece without terms has no physical value and does not read its pointer.
+        # `&terms[at]` could be beyond the array there.
         f"{{{start!r}, {f'&terms[{at}]' if own_terms else 'terms'}, {len(own_terms)}u}}"
+        # `accumulate` with an initial value yields one sum more than there are pieces.
         for (start, own_terms), at in zip(curve.pieces, begin, strict=False)
     )
     yield from _array("static const double terms[]", list(filter(None, terms)))
@@ -64,6 +67,8 @@ def _wide_scale(steps: Steps) -> Iterator[str]:
 def int64(value: int) -> str:
     """Return the literal of a signed integer of 64 bits."""
     return (
+        # A minus sign is an operator and no part of a literal (C99 6.4.4.1), and
+        # 9223372036854775808 does not fit into 64 bits with a sign.
         "INT64_MIN"
         if value == -INT64 - 1
         else f"INT64_C({value})"
@@ -117,6 +122,8 @@ def double_setter(field: FieldDescription) -> tuple[str, ...]:
     limits = [_limit(end, storage) for end in ends]
     if field.curve is not None:
         if field.model.type == "float":
+            # A float has no whole numbers to search, so its calibration is a single
+            # line that has an inverse.
             return f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
         return (
             f"icdgen_set_curve_{_kind(storage)}",
@@ -152,6 +159,8 @@ def _scaled(raw: str, factor: int, offset: int, bits: int, storage: Storage) -> 
 
 def _plus(value: str, offset: int, bits: int) -> str:
     return (
+        # `icdgen.describe.integer_scale` ensures that the negative of the offset fits,
+        # too.
         f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})"
         if offset
         else value

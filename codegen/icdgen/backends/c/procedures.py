@@ -72,6 +72,8 @@ def procedure_sizes(links: Iterable[LinkDescription]) -> ProcedureSizes:
     """Return the longest message and the largest number of registers."""
     procedures = [each for link in links for each in link.facts.procedures]
     lengths = (message.length for each in procedures for message in each.messages)
+    # The runtime has an array of registers even without procedures, and C has no arrays
+    # without elements (C99 6.7.5.2).
     registers = [each.registers for each in procedures] + [len(FIXED_NAMES)]
     return ProcedureSizes(max(lengths, default=1), max(registers))
 
@@ -323,6 +325,7 @@ class _Tables(TableSet):
     def _row(self, table: str, row: str) -> int:
         """Return the index of a row, which is added unless it is there."""
         rows = self._rows[table]
+        # Steps often repeat the same message or test. They then share the row.
         if Row(row) not in rows:
             rows.append(Row(row))
         return rows.index(Row(row))

@@ -27,6 +27,8 @@ def assembled(
     def part(include: re.Match[str]) -> str:
         name = include["file"]
         text = replaced[name] if name in replaced else render.source(name)
+        # The assembled file has a guard of its own, and the headers that a part
+        # includes are in it already.
         guarded = _GUARDED.fullmatch(text)
         return guarded["body"] if guarded else text
 

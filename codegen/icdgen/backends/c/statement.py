@@ -21,6 +21,8 @@ _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 
 def grouped(term: str) -> str:
     """Return a term as an operand: in parentheses if it ends with an operation."""
+    # Other terms are names, indices or calls, which bind tighter than any binary
+    # operator.
     return f"({term})" if _COMPOUND.search(term) else term
 
 
@@ -33,6 +35,7 @@ def either(tests: Sequence[str], operator: str = " || ") -> str:
     """Return the disjunction of the tests; with ``&&`` as the operator their
     conjunction.
     """
+    # The parentheses make the precedence visible (MISRA C:2012, rule 12.1).
     return operator.join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
 
 
@@ -51,6 +54,8 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
     """Return the statement that assigns terms, combined by ``|``, to a byte."""
     value = joined(terms)
     if not (len(terms) == 1 and value.startswith("ICDGEN_U8(") and value.endswith(")")):
+        # `|` and `<<` have promoted the terms to `int`. Without the conversion,
+        # `-Wconversion` warns about the assignment.
         value = f"ICDGEN_U8({value})"
     line = f"{target} = {value};"
     if len(STEP) + len(line) <= WIDTH or len(terms) == 1:
@@ -91,6 +96,8 @@ def length_test(
     """
     operator = operators[test.kind]
     if test.kind == "multiple":
+        # The test of the shortest length comes before, so the difference does not
+        # underflow.
         counted = f"(length - {test.without}u)" if test.without else "length"
         return f"({counted} % {test.value}u) {operator} 0u"
     bound = f"{test.value}u" if test.kind == "at least" else longest

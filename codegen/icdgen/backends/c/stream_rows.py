@@ -56,6 +56,8 @@ def field_row(field: EnvelopeField) -> Row:
     if field.role == "id":
         pair = field.id_shift, field.id_shift
     elif field.role in ("length", "response_length"):
+        # The member is an unsigned word, so a negative number becomes its two's
+        # complement.
         pair = field.plus & (1 << WORD) - 1, field.unit
     values = ", ".join(f"{value:#x}u" for value in pair)
     numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"

@@ -47,6 +47,8 @@ class CNames(NamingPolicy):
     reserved = names.RESERVED
 
     def fixed(self, description: Description) -> Symbols:
+        # All names of a node begin with its name, so only a node `icd` or `icdgen` can
+        # declare one of these.
         for name in _SUPPORT:
             yield Identifier(FILE, name, "the support header", None)
         yield Identifier(FILES, "icdgen.h", "the support header", None)
@@ -118,6 +120,8 @@ class CNames(NamingPolicy):
             yield Identifier(FILE, names.procedure(node, name, output), owner, source)
         for end in ("BLOCK_BYTES", "BITMAP_BYTES"):
             yield Identifier(FILE, names.procedure_size(node, name, end), owner, source)
+        # The parameters that the generator adds are in the scope as well, so that the
+        # rules report an input of the same name.
         for parameter in names.PROCEDURE_PARAMETERS:
             yield Identifier(f"parameters of {stem}", parameter, owner, None)
         for input, row in section.get("inputs", {}).items():

@@ -81,6 +81,8 @@ class TableSet:
         """
         items = tuple(rows)
         number = len([other for other, _ in self._shared if other == name])
+        # Many exchanges refer to the same places and echoes. Each table exists once in
+        # the memory of the target.
         if items and (name, items) not in self._shared:
             self._shared[name, items] = self.array(f"{name}_{number}", type, items)
         return self._shared.get((name, items), "NULL")

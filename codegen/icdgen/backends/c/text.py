@@ -43,6 +43,8 @@ def plain(text: str) -> str:
     # Trigraphs (C99 5.2.1.1) are replaced before comments are recognized: `??/` at the
     # end of a line is a backslash, which continues the line.
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
+        # A replacement can leave the sequence again, such as in `???`, so it is
+        # repeated until nothing is left.
         while unsafe in text:
             text = text.replace(unsafe, safe)
     return text

@@ -31,6 +31,7 @@ def declaration(field: FieldDescription) -> str:
 @cache
 def mask(value: int, bits: int) -> str:
     """Return an unsigned literal of the width: ``0x0Fu``."""
+    # C99 7.18.4.1: the macro adds the suffix that the target needs for 64 bits.
     if bits == 64:
         return f"UINT64_C(0x{value:016X})"
     return f"0x{value:0{bits // 4}X}u"
