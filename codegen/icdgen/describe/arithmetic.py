@@ -91,6 +91,8 @@ class Arithmetic:
 
     def _is_exact(self, most_bits: int, largest: int) -> bool:
         return (
+            # Languages convert the integer of the storage, which can be wider than the
+            # field.
             self.storage.bits <= most_bits
             and not self.steps.is_wide
             and self.steps.exact_up_to(largest)

@@ -93,6 +93,8 @@ class ArrayLoop(NamedTuple):
         ``name`` gives their names in code.
         """
         elements = []
+        # All iterations share their code, so positions are those in the bytes of one
+        # iteration.
         for index in range(self.per_iteration):
             element = first.moved(
                 replace(first.model, at=index * first.model.bits, count=0)
@@ -130,6 +132,7 @@ def loop_of(field: FieldDescription) -> ArrayLoop | None:
     if not field.count or field.struct is not None:
         return None
     loop = loop_from(field, field.count)
+    # Elements behind the last iteration would need statements of their own.
     return loop if loop is not None and loop.elements == field.count else None
 
 
@@ -145,6 +148,8 @@ def looped_arrays(
         if loop_of(field) is not None:
             name = prefix + field.name
             if field.element_struct is not None:
+                # A C function is declared before the functions that call it, so those
+                # of inner arrays come first.
                 yield from looped_arrays(field.element_struct, f"{name}_")
             yield field, name
 

@@ -61,6 +61,7 @@ class Bound(NamedTuple):
 
     def holds(self, value: Fraction | float) -> bool:
         """Return whether a value is within the limit. NaN is not."""
+        # Python compares a `Fraction` and a float exactly, without rounding either.
         return self.kind.holds(value, self.value)
 
 
@@ -78,6 +79,7 @@ def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
     """
     if field.type == "float" or not field.is_invertible:
         return None
+    # The calibration can fall, so the first value can be the larger one.
     first, last = (Fraction(curve.double(raw)) for raw in field.settable_raws)
     return min(first, last), max(first, last)
 

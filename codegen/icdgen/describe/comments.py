@@ -56,6 +56,7 @@ class Comment(NamedTuple):
 def one_line(text: str) -> str:
     """Return a text on one line, with single blanks between its words."""
     return (
+        # Most texts are on one line already. Line breaks and tabs are not printable.
         text.strip()
         if text.isprintable() and "  " not in text
         else " ".join(text.split())
@@ -162,6 +163,7 @@ def _value_of(field: LayoutNode | None, value: int) -> str:
         (
             words(member.name)
             for member in members
+            # The name of a range would mean its other values, too.
             if member.value == value and member.to is None
         ),
         str(value),
@@ -221,6 +223,8 @@ def _used(users: Mapping[str, Sequence[str]]) -> str:
         for field, owners in users.items()
     ]
     if len(fields) > _LISTED:
+        # The note takes the last place of the list, so it stands for two fields at
+        # least.
         fields[_LISTED - 1 :] = [f"{len(fields) - _LISTED + 1} other fields"]
     return f"Used by {'; '.join(fields)}." if fields else ""
 
@@ -296,6 +300,7 @@ def field_comment(
     )
     front = message.layout.part_in_front_of(field.node)
     if front is not None and own_part is None:
+        # Behind a part of variable length the position depends on the frame.
         place = f"behind {words(front.name)}, in the longest frame {place}"
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(

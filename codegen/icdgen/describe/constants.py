@@ -58,6 +58,7 @@ def constants(
         # named after their value.
         if not 0 < len(meaning) <= MOST_WORDS or end in taken:
             end = (
+                # A name can have neither a sign nor a point.
                 f"special_{special.number or special.value}".replace("-", "minus_")
                 .replace(".", "_")
                 .replace("+", "")
@@ -70,6 +71,8 @@ def constants(
     unit = f" in {words(field.unit.symbol)}" if field.unit else ""
     for bound in bounds(field.limits):
         value, has_raw = bound.value, not field.has_formula and field.type != "float"
+        # A limit can be between two raw values or beyond the raw type. It then has no
+        # literal of that type.
         is_raw = (
             has_raw
             and value.denominator == 1

@@ -52,6 +52,7 @@ class ContainedDescription(NamedTuple):
         for member in self.message.walk(Into.ARRAYS_OF_STRUCTS):
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
+            # The composite may declare the elements of an array as separate fields.
             if array is not None and array.count == member.count:
                 yield CopiedMember(member, (array,))
             else:
@@ -71,6 +72,7 @@ def contained_messages(
     """
     positions: dict[MessageDescription, list[int]] = {}
     for part, begin in composite.contained:
+        # A message without fields has no values that could be returned.
         if part.members:
             positions.setdefault(part, []).append(begin)
     return tuple(

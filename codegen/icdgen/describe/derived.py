@@ -45,6 +45,7 @@ class Derived(NamedTuple):
                 operand if isinstance(operand, str) else number(operand)
                 for operand in operands
             )
+            # `^` is the exclusive or in C and Rust, which have no operator for powers.
             is_power = operator == "^"
             yield (
                 name,

@@ -223,6 +223,8 @@ class FieldDescription(ScalarDescription):
         return tuple(
             Need(members[condition.field], tuple(sorted(condition.values)))
             for condition in self.model.conditions
+            # In an ICD with errors, a condition can name a field that the message does
+            # not have.
             if condition.field in members
         )
 
@@ -342,6 +344,7 @@ class VariablePartDescription(NamedTuple):
         return tuple(
             test
             for test in tests
+            # Compilers warn about a comparison that is true for all values of the type.
             if test.kind != "at most" or test.value < self.counter.storage.max
         )
 
@@ -372,6 +375,7 @@ class VariablePartDescription(NamedTuple):
         chunks, begin = [], 0
         for inner in self.inner:
             chunks.append(Chunk(begin, inner.model.begin - begin, inner))
+            # In the longest element, the array has all its elements.
             begin = inner.model.begin + inner.model.most * inner.model.step
         end = self.model.step - begin
         return (*chunks, Chunk(begin, end, None)) if end else tuple(chunks)
@@ -614,6 +618,8 @@ class Declarations:
         self._enum_bits = enum_widths(icd)
         self._enums: dict[tuple[str, str], EnumDescription] = {}
         self._structs = {
+            # Structs can have equal layouts, so layouts are identified by their `id`.
+            # The ICD keeps them alive, so no other object gets the same `id`.
             id(struct.layout): StructDescription(self, struct, node)
             for node in icd.nodes
             for struct in node.structs

@@ -124,8 +124,10 @@ def number_text(field: FrameField | NodePlace, value: float | Fraction) -> str:
             text = f"{exact.quantize(Decimal(1).scaleb(-digits.decimals)):f}"
             if not digits.is_fixed and "." in text:
                 text = text.rstrip("0").rstrip(".")
+            # A small negative number must not become `-0.00`.
             return text if text.strip("-0.") else text.removeprefix("-")
         context.prec = digits.significant or 1
+        # Unary plus rounds to the precision of the context.
         return _plain(repr(float(+exact)))
 
 
@@ -162,6 +164,8 @@ def _resolution(curve: Curve, low: int, high: int) -> float:
     not count.
     """
     if curve.points:
+        # Beyond its points a lookup table is constant, extrapolated or without a value,
+        # so only raw values between them count.
         low, high = (
             max(low, math.ceil(curve.points[0][0])),
             min(high, math.floor(curve.points[-1][0])),

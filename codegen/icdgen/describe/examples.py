@@ -59,6 +59,8 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
     # Counters keep their smallest value, because the frame of an example has the fewest
     # elements.
     counters = {part.counter for part in message.model.layout.counted_parts}
+    # A value of a selector could make optional fields present, and these would need
+    # values as well.
     selectors = {
         need.field.model.name
         for member in message.optional_members

@@ -47,6 +47,7 @@ def integer_scale(steps: Steps) -> IntegerScale | None:
     """Return the scale in thousandths if every raw value is a whole number of them;
     else in millionths; else None.
     """
+    # Thousandths come first, because their numbers are smaller.
     for per in (1000, 1_000_000):
         factor, offset = (
             Fraction(steps.p * per, steps.q),
@@ -72,6 +73,8 @@ def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
     """Return the bits of the integer that can store the values of all values of the
     storage, 32 or 64; None if none can.
     """
+    # A raw value beyond the field can be in the storage, and overflow of a signed
+    # integer is undefined in C (C99 6.5), so all values of the storage count.
     bits = 32 if computable(storage, scale.factor, scale.offset, 32) else 64
     ends = Storage(bits, True)
     differences = (
@@ -98,6 +101,8 @@ def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
 
 def within(bits: int, *values: int) -> bool:
     """Return whether a signed integer can store the values and their negatives."""
+    # Code subtracts the absolute value of a negative term, which must be a literal of
+    # the type.
     return max(map(abs, values)) <= (1 << bits - 1) - 1
 
 
@@ -112,6 +117,8 @@ def part_of_unit(field: NodePlace, per: int) -> tuple[str, str]:
     words, is_known = f"{part} of {symbol}", symbol in STANDARD
     shifted = _PREFIXED[unit][per > 1000] if unit in _PREFIXED else ""
     if shifted:
+        # The unit loses its prefix (`km` becomes `m`) or gets another one (`km` becomes
+        # `mm`).
         base = symbol[1:] if shifted == unit[1:] else f"{shifted[0]}{symbol[1:]}"
         return shifted, base if is_known else words
     if unit in _PREFIXABLE:

@@ -23,6 +23,8 @@ from icdgen.protocol.sections import Can, Crc, Index, Report, TimePart
 REASONS = ("none", "unknown_id", "length", "parameter", "checksum")
 """Meanings of error codes that the runtimes support."""
 
+# The orders of these tuples are those of the members in the structs of the C runtime,
+# which are initialised by position.
 CAN_PARTS = ("type", "channel", "source", "destination")
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 INDEX_PARTS = ("type", "counter", "checksum", "size", "time", "meta")
@@ -66,6 +68,8 @@ class Assumptions:
     """
 
     def __init__(self, facts: Facts) -> None:
+        # CRCs of different sections can be equal, so parts are identified by their
+        # `id`.
         self._sections = {id(part): section for section, part in facts.parts.items()}
         self._sections |= {
             id(each.crc): each.section for each in facts.checksums.values()
@@ -84,6 +88,8 @@ class Assumptions:
     def why_fact(self, part: object, fact: Fact) -> str:
         """Return why a declared fact of a part is assumed; empty if it is not."""
         return (
+            # An assumption is about a key of the section itself, which is the first
+            # part of a dotted key.
             self.why(self._sections[id(part)], fact.key.partition(".")[0])
             if fact.key
             else ""
@@ -96,6 +102,7 @@ class Assumptions:
     def of_section(self, section: str) -> list[tuple[str, str]]:
         """Return key and reason of the other assumptions of a section."""
         return [
+            # `why` removes entries, so the loop runs over a copy.
             (key, self.why(section, key))
             for where, key in [*self._left]
             if where == section

@@ -143,6 +143,7 @@ class MessageDescription(Composite[Message]):
         return tuple(
             (messages[part.message], part.at)
             for part in self.model.contains
+            # In an ICD with errors, a message can contain one that no node declares.
             if part.message in messages
         )
 
@@ -517,6 +518,7 @@ class Description:
         """Return the description of a message, whichever node uses it."""
         key = message.node, message.name
         description = self._messages.get(key)
+        # In an ICD with errors, two messages of a node can have the same name.
         if description is None or description.model is not message:
             description = self._messages[key] = MessageDescription(
                 self, message, self.icd.node(message.node)

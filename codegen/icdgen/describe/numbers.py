@@ -39,6 +39,7 @@ def exact_text(value: Fraction | int) -> str:
 def factor_text(factor: Fraction) -> str:
     """Return a factor as text: ``0.01``; ``5/9`` if the decimal does not end."""
     text = exact_text(factor)
+    # `exact_text` gives a rounded double if the decimal does not end soon.
     return text if Fraction(text) == factor else str(factor)
 
 
@@ -63,6 +64,7 @@ def value_text(raw: int) -> str:
     """Return a raw value with a meaning as text: ``90 (0x5A)``; values below 10 in
     decimal only.
     """
+    # Up to 9 both notations have the same digit.
     return f"{raw} (0x{raw:X})" if raw > 9 else str(raw)
 
 

@@ -87,6 +87,7 @@ class ScalarDescription(Named[NodePlace]):
     @property
     def is_narrow(self) -> bool:
         """Whether `storage` can store raw values that do not fit the field."""
+        # A flag needs no test: its type has only two values.
         return self.model.bits != self.storage.bits and self.model.type in (
             "uint",
             "int",

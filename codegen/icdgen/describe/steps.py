@@ -20,6 +20,8 @@ def wide_parts(value: int, bits: int) -> list[int]:
     """Return a term in 256 bits of two's complement as unsigned parts of ``bits`` bits,
     the least significant first.
     """
+    # `>>` of a negative number in Python extends its sign without end, as if in two's
+    # complement, so this is right for negative terms, too.
     return [value >> shift & (1 << bits) - 1 for shift in range(0, 256, bits)]
 
 
@@ -70,6 +72,7 @@ class Steps(NamedTuple):
         """Return whether every step before the division is a whole number of this size
         at most.
         """
+        # p needs no test of its own: one of the products is at least as large.
         products = self.raw_min * self.p, self.raw_max * self.p
         return all(
             abs(n) <= most
