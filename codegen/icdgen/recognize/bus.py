@@ -127,6 +127,7 @@ def _reading(endpoint: Endpoint, can_message: CanMessage) -> Reading | None:
         can_message.id
     )
     if message is None or (
+        # An acknowledge has the id of its message, but not its data.
         can_message.kind in CAN_WITH_DATA and len(can_message.data) != message.length
     ):
         return None
@@ -152,6 +153,8 @@ def _can_events(
 ) -> tuple[list[CanEvent], list[CanEvent]]:
     """Return the events of the packets, and the events of messages that lack packets."""
     joiner = CanJoiner(endpoint.link, senders=len(packets))
+    # After an infinite time every incomplete message is overdue, so `expire` returns
+    # all of them.
     return [
         event for packet in packets for event in joiner.feed(0, packet)
     ], joiner.expire(math.inf)
@@ -163,6 +166,7 @@ def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
     All packets of a message have one identifier.
     """
     for id in dict.fromkeys(packet.id for packet in packets):
+        # A packet that was captured twice counts once.
         own = list(dict.fromkeys(packet for packet in packets if packet.id == id))
         if _can_events(endpoint, own)[1]:
             return len(own)

@@ -32,6 +32,8 @@ def dump(text: str) -> bytes | None:
     if (
         not rows
         or len(rows) != len(lines)
+        # The first number of a single line can be data as well. In several lines,
+        # addresses that count the bytes leave no doubt.
         or not (all(row.is_sure for row in rows) or len(rows) > 1)
     ):
         return None
@@ -42,6 +44,7 @@ def dump(text: str) -> bytes | None:
             continue
         if all(
             later - at == len(row.data)
+            # The last line has no address behind it.
             for (at, later), row in zip(pairwise(places), rows, strict=False)
         ):
             return b"".join(row.data for row in rows)

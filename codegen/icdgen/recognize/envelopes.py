@@ -151,6 +151,7 @@ def readings(
     requests = _requests(usable)
 
     def decided(span: Span, candidates: list[Reading]) -> Reading:
+        # A response belongs to the last request in front of it.
         before = [request for at, request in requests if at < span.at]
         requested = [
             each for each in candidates if before and _answers(each, before[-1])
@@ -158,6 +159,7 @@ def readings(
         return match.most_likely(requested or candidates, "a packet", selection)
 
     chosen = {}
+    # All of the best results have the same number of packets.
     for at in range(-fewer):
         readings = [each for result in best for each in result.readings[at]]
         chosen[best[0].spans[at]] = decided(best[0].spans[at], readings)
@@ -175,6 +177,7 @@ def readings(
             if span.is_free(taken):
                 chosen[span] = decided(span, readings)
                 span.mark(taken)
+                # The decoder of the chosen direction has counted these bytes as unused.
                 least -= span.end - span.at
     reports = _left_out(
         [result for result in results if result.endpoint is best[0].endpoint], taken
@@ -279,6 +282,7 @@ def _decode_direction(
     lost = decoder.discarded + decoder.pending + unread
     result = DirectionResult(endpoint, direction, lost)
     for number, event in enumerate(events):
+        # A gap in the sequence numbers is about packets that are missing here.
         if event.event == "gap" or number not in decoder.packets:
             continue
         span, packet = decoder.packets[number]
@@ -357,6 +361,7 @@ def _nameless(
         named = event._replace(event="message", id=row.id, data=data)
         reading = _reading(endpoint, "telemetry", named)
         if reading:
+            # The packet does not transmit the id.
             yield replace(reading, id=None, remarks=(f"packet `{packet.name}`",))
 
 

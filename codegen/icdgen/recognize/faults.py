@@ -14,6 +14,9 @@ from icdgen_runtime.wire.envelope import (
     Stream,
     StreamRow,
 )
+
+# A report on a damaged packet must show what the decoder compared, so it uses private
+# functions of the decoder.
 from icdgen_runtime.wire.stream import (
     ReceivedPacket,
     _checksum,
@@ -82,6 +85,8 @@ def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
     """Return whether bytes begin with the delimiter or the constants of a direction."""
     if form.escaping and form.escaping.start is None:
         has_escape = data[:1] == bytes((form.escaping.escape,))
+        # An escape byte at the end of the data can begin a packet, too: `all` of
+        # nothing is true.
         return has_escape and all(map(form.escaping.begins, data[1:2]))
     if form.delimited_by in _DELIMITED_AHEAD:
         return data.startswith(_opening(form))
@@ -124,6 +129,7 @@ def sync_text(stream: Stream, form: PacketForm, direction: Direction) -> str:
     }
     constant_bytes, at = b"", 0
     while (field := constants.get(at)) is not None and field.bits == 8 * field.size:
+        # A constant has a value for each direction: telecommands first.
         constant_bytes += field.values[direction == "telemetry"].to_bytes(
             field.size, "little" if field.little else "big"
         )
@@ -430,6 +436,7 @@ def packet_begun(
             if _bits_of_constants(packet.form, direction, data) >= 0
         )
         needed = next(sizes, None)
+        # If the length is unknown, the slice up to None has all bytes.
         return data[:needed], needed is not None and len(data) >= needed
     line = unstuffer(form, endpoint.link.longest)
     assert line

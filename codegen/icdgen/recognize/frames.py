@@ -66,6 +66,7 @@ def _line_by_line(
         return []
     with suppress(Ambiguous, BadHex, BadLength, NotFound):
         pasted = [read(line) for line in lines]
+        # A log of CAN packets, a dump or base64 is one input on several lines.
         if not any(pasted_line.packets or pasted_line.form for pasted_line in pasted):
             return [
                 reading
@@ -122,6 +123,8 @@ def _framed(
         with_framing = [
             endpoint for endpoint in endpoints if endpoint.link.framing == framing
         ]
+        # The limit is that of the data and not that of the link, so that a message
+        # which is too long gets a report with its id.
         decoder = UartDecoder(with_framing[0].link, max(len(data), 1))
         events = decoder.feed(data)
         bodies = [event.message for event in events if event.event == "message"]
@@ -142,6 +145,8 @@ def _framed(
             f"the stream has an error: {error_name.replace('_', ' ')}"
             for error_name in errors
         ]
+        # A single byte is an escape byte at the end of the data, which need not begin a
+        # message.
         if decoder.pending > 1:
             reports.append(_framing_error([]))
         remarks = match.stream_remarks(decoder.discarded + decoder.pending, ())

@@ -100,6 +100,8 @@ def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[Reading]:
         return
     yield from _with_id(endpoint, *parts)
     form = facts.acknowledge
+    # The bytes of an acknowledge have no mark of their own, so an id of telemetry has
+    # precedence.
     if form and len(body) == form.length and parts[0] not in facts.telemetry:
         acknowledged, error = body[form.id_at], body[form.error_at]
         if acknowledged in facts.telecommands:
@@ -117,6 +119,8 @@ def _with_id(endpoint: Endpoint, id: int, data: bytes) -> Iterator[Reading]:
     for what, variants in _directions(endpoint):
         message = _message(endpoint, variants, id, data)
         yield from _with_checksum(endpoint, what, id, message, data)
+        # A request of telemetry is its id alone. A message that can be empty would look
+        # the same.
         if message and what == TELEMETRY and not data and message.layout.shortest:
             yield Reading(endpoint, REQUEST, message, id)
 
@@ -182,6 +186,8 @@ def checksum(
     form = endpoint.facts.checksum
     if form is None or message.layout.parts or len(data) != message.length + form.bytes:
         return None
+    # The checksum covers the id, which is not in the data. The runtime computes it for
+    # a write on I2C.
     return i2c_write(endpoint.link, id, data[: message.length], crc=True)[-form.bytes :]
 
 
@@ -210,6 +216,7 @@ def most_likely(
             alternative.message is first.message and alternative.data == first.data
             for alternative in alternatives
         ):
+            # The kind of a configuration message leaves the direction open.
             return replace(first, what=first.message.kind)
     if len(likely) > 1:
         contrast = (

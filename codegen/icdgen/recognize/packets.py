@@ -10,7 +10,7 @@ from typing import NamedTuple
 _BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"
 _ID = r"(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})"
 # candump; its log files (`##` and a digit are CAN FD, `R` is a remote request); slcan
-# adapters with identifiers of 29 and 11 bits, and their remote requests.
+# adapters with identifiers of 29 and 11 bits, and remote requests with 29 bits.
 _FORMS = (
     re.compile(
         _BEFORE
@@ -73,6 +73,8 @@ def _packet(line: str) -> Iterator[Printed]:
     ):
         return
     time = (match.groupdict().get("time") or "").strip()
+    # The bytes beyond the size are the time of the adapter.
     if len(data) > size:
         time = f"{int.from_bytes(data[size:], 'big') / 1000:.3f}"
+    # Tools print an identifier of 29 bits with 8 digits, even if its value is small.
     yield Printed(int(match["id"], 16), data[:size], len(match["id"]) == 8, time)

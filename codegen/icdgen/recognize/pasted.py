@@ -129,6 +129,7 @@ def _of_code(text: str) -> Pasted | None:
         if word.strip()
     ]
     values = [int(word, 16 if word[:2] in ("0x", "0X") else 10) for word in words]
+    # Up to 9 a decimal number is the same in hexadecimal, so the form needs no remark.
     decimal = any(
         value > 9 and word[:2] not in ("0x", "0X")
         for word, value in zip(words, values, strict=True)
@@ -167,6 +168,7 @@ def _base64(text: str) -> Pasted | None:
     is_word = len(joined) < 8 or joined in (joined.lower(), joined.upper())
     if not _BASE64.fullmatch(joined) or (is_word and not joined.endswith("=")):
         return None
+    # RFC 4648 has two alphabets, which differ in two characters.
     with suppress(binascii.Error):
         return Pasted(
             base64.b64decode(

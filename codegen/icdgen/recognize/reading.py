@@ -88,8 +88,8 @@ class Reading:
     error: int | None = None
     checked: bool = False
     remarks: tuple[str, ...] = ()
-    # Packets of the input that cannot be decoded, with reason. Only the first reading has
-    # them.
+    # Packets of the input that cannot be decoded, with reason. Only the first reading
+    # has them.
     left_out: tuple[str, ...] = ()
     time: str = ""  # time of reception, as printed by the recording tool
 

@@ -45,6 +45,8 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
         else message.telemetry_id
     )
     assert plain is not None
+    # The user has named the message, so bytes of its length are its data, even if the
+    # first one equals the id.
     if len(data) in message.layout.lengths:
         error = match.counter_error(endpoint, message, data)
         if error is not None:

@@ -47,6 +47,7 @@ class Selection:
 
     def of(self, candidates: Sequence[Reading]) -> list[Reading]:
         """Return the matching readings, or all readings if none matches."""
+        # If none matches, the caller can report what the frame is instead.
         return [reading for reading in candidates if self.fits(reading)] or list(
             candidates
         )
