@@ -17,6 +17,8 @@ from icdgen.protocol.sections import CAN, I2C, UART, Acknowledge, Can, Framing, 
 
 ACKNOWLEDGE, REFUSAL, REQUEST_REFUSAL = range(3)
 
+# The id as one number. An id on these buses is a byte, so that one byte of a response
+# can repeat it.
 _ID = NumberPlace(0, ID_BYTES, 0, 8 * ID_BYTES, False)  # in `Exchange.sources`
 _ECHO = Echo(NumberPlace(0, 1, 0, 8, False), 0)  # the first byte of a packet
 _REQUESTED = Response(None, REPLY, (), None, (), None, ())
@@ -50,6 +52,8 @@ def bus_exchanges(
             _acknowledged(acknowledge, errors) if acknowledge else ()
         )
     if i2c_address is not None:
+        # The ACK bit of I2C (UM10204, 3.1.6) confirms a byte on the bus, and not that
+        # the node accepts a telecommand.
         if polled:
             response, poll = _polled(node, polled, errors)
             buses[I2C] = _exchanges((response,), poll=poll)
@@ -89,6 +93,7 @@ def _polled(
     places = [place_of(node, field_of(polled.message, role)) for role in roles]
     id, processed, error, parameter = places
     assert id and processed and error, "a field that a client compares is one number"
+    # Of a set id and a get id, the last one is the get id.
     telemetry = polled.message.ids[-1]
     response = _with_code(telemetry, None, Echo(id, 0), error, errors, parameter)
     return response, Poll(telemetry, processed)

@@ -90,6 +90,7 @@ class Fact:
         if value is None:
             return self.default(preceding) if callable(self.default) else self.default
         if self.kind is Kind.FLAG:
+            # The schema allows no value but those in `words`.
             return self.listed in value if self.listed else value == self.words[1]  # type: ignore[operator]
         return value
 

@@ -86,6 +86,7 @@ class StreamRow:
     most: int
     # Whether trailing zeros of the data are not sent (at least one byte is)
     cuts_zeros: bool
+    # Byte that the checksum covers last, such as CRC_EXTRA of MAVLink.
     seed: int
     name: str
     # Of a telecommand: its responses; None if nothing responds to it
@@ -171,12 +172,13 @@ class Stream:
         exchanges = [row.exchange for row in self.telecommands if row.exchange]
         if self.request:
             exchanges.append(self.request.exchange)
+        # Equal exchanges share a row in the tables of generated code.
         return tuple(dict.fromkeys(exchanges))
 
     @property
     def confirming(self) -> tuple[int, ...]:
-        """Return the ids of the telemetry that only responds: what is neither a reply
-        nor sent unasked.
+        """Return the ids of the telemetry that responds to telecommands or requests,
+        and is the reply to none of them.
         """
         responses = {
             (response.telemetry, response.is_reply)
@@ -263,6 +265,8 @@ class Stream:
         if self.escaping:
             # Without a start byte, the first byte of a packet is not escaped.
             return 2 * self.longest + (2 if self.escaping.start is None else 4)
+        # A delimiter on each side, although the first is optional in RFC 1055, and two
+        # frames may share one in RFC 1662.
         if self.delimited_by in (SLIP, HDLC):
             return 2 * self.longest + 2
         return self.longest + (

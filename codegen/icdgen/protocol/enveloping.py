@@ -109,6 +109,7 @@ def rows_of(
         exchange = next(
             (exchanges[each.name] for each in messages if each.name in exchanges), None
         )
+        # A message without values that a user could choose can request its reply.
         is_blank = not first.layout.shortest or not raw_fields_in(first.layout)
         packet, *_ = packets.of(first.name, direction)
         algorithm = algorithm_of(packet, checksums)
@@ -175,6 +176,7 @@ def packet_of(
         bytes_of((row["at"], row["bits"]) for row in rows)
         for rows in (packet.header, packet.trailer)
     ]
+    # By identity: mappings have no hash, and two rows can be equal.
     shifts = {id(row): shift for row, shift in id_shifts(packet.rows)}
     fields = tuple(
         field_of(node, row, in_trailer, shifts.get(id(row), 0), sum(sizes))
@@ -252,6 +254,8 @@ def stream_of(
     if requesting is not None:
         exchange = request_exchange(sources, section["requests"])
         request = TelemetryRequest(requesting, exchange)
+    # Without its telemetry for now: `confirming`, on which the requested telemetry
+    # depends, uses only the telecommands and the request.
     stream = Stream(
         delimited_by=section["framing"]["by"],
         per_id=sequence.get("per", "link") == "id",
@@ -261,6 +265,8 @@ def stream_of(
         request=request,
         escaping=escaping_of(section["framing"]),
     )
+    # Telemetry that a telecommand requests, or that only responds, is not requested by
+    # the packet.
     unrequested = {row.requests for row in telecommands if row.requests is not None}
     unrequested |= {*stream.confirming}
     requested = {

@@ -140,6 +140,7 @@ class Facts:
         sizes = [1 + extra + m.length for m in self.telemetry.values()]
         if self.acknowledge:
             sizes.append(self.acknowledge.length)
+        # Positions count from the id, and each bit of the mask can select a slot.
         if self.log_message and self.mask:
             sizes.append(
                 self.log_message.frames_at + self.mask.size * 8 * self.mask.slot_bytes

@@ -134,6 +134,7 @@ class ProcedureReader:
         register = self._registers.get(("", name))
         # An input must fit into each field that gets it.
         most = (1 << self._bits.get(name, 32)) - 1
+        # A number that fits into its field can still exceed the bytes of the procedure.
         if self._blocks and register is not None and register == self._blocks.total:
             most = min(most, self._blocks.most)
         is_flag = row.get("type") == FLAG
@@ -257,6 +258,8 @@ class ProcedureReader:
             case {"verify": verify}:
                 self._steps.append(self._verify(verify, row.get("else") == AGAIN))
             case {"repeat": steps}:
+                # The loop has no condition: a step in it, such as `end_if_zeros`, ends
+                # the procedure, or a limit does.
                 first = len(self._steps)
                 self._add(steps)
                 self._steps.append(Jump(first))
@@ -366,6 +369,7 @@ class ProcedureReader:
             bytes=field.bits // 8,
             msb0=row.get("bit_order") == "msb0",
             received=bool(row.get("received", 1)),
+            # By default, packets beyond the end do not count as missing.
             beyond_end=bool(row.get("beyond_end", row.get("received", 1))),
         )
 

@@ -99,6 +99,7 @@ class Reader:
     def telemetry_ids(self) -> Direction:
         ids = self.section("link", "ids", "telemetry")
         if framed_link(self.protocol):
+            # Empty: framed links have no range of ids for telemetry.
             return Direction(1, 0)
         # Without telemetry the range is empty (first above last), and no received
         # message is a reply.
@@ -127,6 +128,7 @@ class Reader:
         """
         given = self.bus("i2c", "write")
         eight = given.get("address_8bit")
+        # UM10204, 3.1.10: the R/W bit follows the seven bits of the address.
         return given.get("address_7bit", None if eight is None else eight >> 1)
 
     def i2c_repeated_start(self) -> bool:

@@ -186,9 +186,13 @@ def _exchange(
             )
             assert number and source, f"rule ICD177 checks {name} and {repeated}"
             pairs = [(number.place, source)]
+            # Several fields of a packet can contain parts of the id. Each repeats its
+            # own part.
             if packet is not None and repeated == ID:
                 pairs = sources.id_parts(packet, name) or pairs
             for place, source in pairs:
+                # Responses that repeat the same number share a source: `MOST_SOURCES`
+                # limits their number.
                 if (in_header, source) not in every:
                     every.append((in_header, source))
                 echoes.append(Echo(place, every.index((in_header, source))))

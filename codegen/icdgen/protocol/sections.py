@@ -98,6 +98,7 @@ class Polled:
 class Crc:
     """Parameters of a CRC in the notation of common catalogues."""
 
+    # The Rocksoft model names them WIDTH, POLY, INIT, REFIN, REFOUT and XOROUT.
     width: int = number("width", "bits of the checksum", 1, 32, holds=U32)
     polynomial: int = code(
         "polynomial",
@@ -184,6 +185,7 @@ class CanPart:
 class Extended:
     """Extended CAN messages, which consist of several packets."""
 
+    # ISO 11898-1: a classical frame has at most 8 data bytes.
     data_bytes: int = octets("data_bytes", "data bytes of a packet", 1, 8)
     left_at: int = octets(
         "packets_left_byte",
@@ -268,6 +270,7 @@ class LogMask:
         for bit in range(self.size * 8):
             weight = 7 - bit % 8 if self.msb0 else bit % 8
             if mask[bit // 8] >> weight & 1:
+                # An entry has a slot for an unassigned bit, too.
                 slots.append(
                     self.bits.get(bit) or LogBit(bit, None, self.slot_bytes, None)
                 )
@@ -305,6 +308,7 @@ class LogMessage:
 class TimePart:
     at: int
     bits: int
+    # MS-DOS time counts seconds in steps of 2, and years from 1980.
     factor: int
     offset: int
 
