@@ -42,6 +42,7 @@ def lines(vectors: NodeVectors, text: str) -> NodeLines:
     these vectors.
     """
     numbers = NodeLines()
+    # One iterator for all loops: each goes on where the one before it ended.
     remaining_lines = enumerate(text.split("\n"), 1)
     for number, line in remaining_lines:
         if line.startswith('"ids": {'):

@@ -151,6 +151,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         for count in (last.fewest, last.most):
             yield from _miscounted_inside(node, message, count)
         return
+    # Without a counter, nothing can contradict the length.
     if last.is_rest:
         return
     frame = patterns.random_frame(message, "miscounted")
@@ -176,6 +177,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         *pairs,
         *([(few, few - 1), (most, low)] if last.plus else ()),
     ):
+        # Fewer elements than the minimum are a wrong length (`_refused_lengths`).
         if stated != count >= few and low <= stated <= high:
             invalid = patterns.with_counts(message, node, frame, {last.name: stated})
             yield invalid[: last.begin + count * last.step]
@@ -203,6 +205,7 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
         # Above the maximum, in a frame of the maximum length
         if high < counter.raw_max:
             invalid.append(codec.frame_of(longest, highest | {counter: high + 1}))
+    # The last part takes the remaining bytes and can make up for a wrong counter.
     yield from (
         candidate
         for candidate in dict.fromkeys(invalid)

@@ -67,6 +67,7 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     fields = {field.name: field for field in fixed_fields(message.layout, node.orders)}
     yielded = set()
     for field in fields.values():
+        # The other conditions of a field hold while one is tested.
         chosen = {
             fields[condition.field]: condition.values[0]
             for condition in field.conditions
@@ -85,6 +86,7 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
                 why = ", ".join(
                     f"{field.name} {number}" for field, number in values.items()
                 )
+                # Several fields can depend on the same value.
                 if why not in yielded:
                     yielded.add(why)
                     yield (
@@ -109,6 +111,7 @@ def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
         *(longest * part // 8 for part in range(1, 8)),
         longest - 1,
     }
+    # The first byte is always sent.
     for size in sorted(sizes - {0}):
         yield (
             f"ended early, bytes: {size}",
@@ -219,6 +222,7 @@ def random_frame(message: Message, seed: str) -> bytes:
 
     ``seed`` distinguishes frames of one message.
     """
+    # A hash, so that the bytes do not depend on the frames that were made before.
     return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(
         message.length
     )
@@ -265,6 +269,7 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
         yield from (-1, 1, low + 1)
     for pattern in _DISTINCT:
         value = pattern >> (64 - field.bits)
+        # In two's complement, a signed field has the same bits.
         yield value - (1 << field.bits) if value > high else value
     # Off-by-one errors at the upper end, which the maximum alone would not show.
     yield high - 1
@@ -323,6 +328,8 @@ def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]
             for index, (field, column) in enumerate(zip(fields, columns, strict=True))
         }
         yield raw
+        # Without these rows, a field is absent unless its selector has the right value
+        # by chance.
         for chosen in filter(None, alternatives):
             yield {**raw, **dict(chosen)}
 

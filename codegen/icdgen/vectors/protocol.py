@@ -80,6 +80,8 @@ def text(icd: Icd) -> str | None:
 
 
 def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
+    # Shared: an additional request changes the random bytes of those after it. Scripts
+    # of clients and procedures have sources of their own.
     source = random.Random(node_facts.node.name)
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
     link = link_of(icd, node_facts)

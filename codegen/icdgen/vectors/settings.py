@@ -58,6 +58,7 @@ def _settings(
     for value in _doubles(field) if curve is None else _on_curve(field, curve):
         if math.isfinite(value):
             assignments[bits_of(value)] = _raw(field, value)
+    # Other fields refuse all of them, so that the file lists them once (`never_set`).
     if type == "float":
         assignments |= {bits: _raw(field, float_of(bits)) for bits in NEVER}
     return assignments
@@ -107,6 +108,7 @@ def _on_curve(field: Scalar, curve: Curve) -> Iterator[float]:
     """
     yield from (-0.0, 5e-324, 1e300, -1e300)
     if field.type == "float":
+        # The last two are near the largest and the smallest positive single.
         numbers = (0.0, 1.0, -1.5, 0.1, 1e-3, -123456.789, 3.4028234663852886e38, 1e-45)
         yield from (curve.double(raw) for raw in numbers)
         return
@@ -138,6 +140,8 @@ def _ties(field: Scalar) -> Iterator[float]:
     # part of the denominator cancels.
     a, b = int(half * common), int(offset * common)
     odd = common // (common & -common)
+    # Solve 2 a r = -(a + b) modulo `odd`. Divided by their greatest common divisor, 2 a
+    # has an inverse.
     divisor = math.gcd(2 * a, odd)
     if (a + b) % divisor:
         return

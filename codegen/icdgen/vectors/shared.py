@@ -105,17 +105,22 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
             if message.may_end_early:
                 yield from (background[:1], background[: (message.length + 1) // 2])
             for frame in _cut(message, node, background):
+                # All other fields keep the values of the frame, counters among them.
                 values = codec.decode(node, message, frame) | {
                     field.name: field.const or 0 for field in constant_fields
                 }
                 frame_with_constants = codec.frame_with(node, message, values)
                 yield frame_with_constants
                 if message.may_end_early:
+                    # The first byte is always sent, even if it is zero.
                     yield frame_with_constants.rstrip(b"\0") or frame_with_constants[:1]
         # A decoder that ignores any bit of a constant fails here.
         for field in constant_fields:
+            # `values` are those of the last frame above, with random bytes around the
+            # constants.
             for bit in range(field.bits):
                 inverted = int(values[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
+                # The highest bit of a signed field counts negative.
                 signed = inverted - (
                     inverted >> field.bits - 1 << field.bits if field.is_signed else 0
                 )

@@ -78,6 +78,8 @@ def raw_json(field: AnyScalar, value: int | bytes | None) -> int | str | None:
     """
     if isinstance(value, bytes):
         return value.hex()
+    # JSON represents neither NaN nor infinity (RFC 8259, section 6), so that floats are
+    # given by their bits.
     if value is not None and field.type == "float":
         return f"{value:0{field.bits // 4}x}"
     return value
@@ -131,6 +133,7 @@ def _message(vectors: MessageVectors) -> str:
             head["inner"] = [
                 _variable_part(part, {"begin": part.begin}) for part in inner
             ]
+    # Without its braces: the other parts follow in lines of their own.
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in vectors.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')

@@ -22,6 +22,7 @@ def pieces(
     """Yield the stream in one piece, byte by byte, and cut at random positions."""
     yield why, [stream]
     yield f"{why}, byte by byte", [bytes([byte]) for byte in stream]
+    # Cuts at the ends give empty pieces, which a decoder must accept.
     cuts = sorted(source.sample(range(len(stream) + 1), min(5, len(stream))))
     ends = zip([0, *cuts], [*cuts, len(stream)], strict=True)
     yield f"{why}, cut at odd places", [stream[begin:end] for begin, end in ends]

@@ -100,6 +100,7 @@ class Sample:
         if response.status and status is not None:
             wire_place(response.status).put(status, data)
         if response.packet is not None:
+            # A status that is the reason as well is already set.
             is_decided = response.reason == response.status and status is not None
             if response.reason and not is_decided:
                 place = wire_place(response.reason)
@@ -112,6 +113,7 @@ class Sample:
     def header_of(self, asked: Row) -> bytes:
         """Return the header of what a row sends, with the first sequence number."""
         stream = need(self.link.stream, "stream")
+        # Without delimiters and byte stuffing, the header begins with the first byte.
         link = self.link._replace(stream=stream._replace(delimited_by="datagram"))
         if "telecommand" not in asked:
             return stream_encode_request(link, asked["telemetry"])
@@ -460,6 +462,7 @@ def _declared_times(
             asked, s.respond(0, asked, exchange, response), {"at": pause - 1}, {"at": pause},
         ]  # fmt: skip
         statuses = [value for value, what in response.meanings if what == PROGRESS]
+        # Each report comes just before the time-out, which it extends.
         moments = range(end - 1, settings.progress_for + end, end - 1)
         if (response.verdict == PROGRESS or statuses) and len(moments) <= MOST_MOMENTS:
             status = statuses[0] if statuses else None

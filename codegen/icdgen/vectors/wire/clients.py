@@ -424,6 +424,7 @@ def _i2c(
     )
 
     def frame(message: Message, data: bytes) -> str:
+        # `i2c_write` begins with the id, which a reply does not repeat.
         return i2c_write(s.link, message.telemetry_id or 0, data, checked_frames)[
             1:
         ].hex()

@@ -287,6 +287,7 @@ def _streams(
         )
     for more in (-1, 0):
         limit = form.packets[short.packet].overhead + short.most + more
+        # A decoder refuses a buffer that is smaller than header and trailer.
         if limit >= max(each.overhead for each in form.packets):
             why = "that it just fits" if more == 0 else "too small by one"
             yield (
@@ -393,6 +394,8 @@ def _undefined_messages(
     if row.most:
         variants.append(("that is too short by one", row.id, row.most - 1, row.seed))
     for why, id, size, seed in variants:
+        # The encoder refuses messages that it does not know, so this is the only one in
+        # its table.
         only = (WireRow(id, 0, size, False, seed, packet=row.packet),)
         stream = need(link.stream, "stream")._replace(telecommands=only, telemetry=only)
         try:
@@ -416,6 +419,7 @@ def _gaps(
         ("the same message twice", (3, 3, 4)),
         ("the sequence restarts", (7, 0, 1)),
     ):
+        # A narrow field has only the lower bits of these numbers.
         fitting = [number & place.mask for number in numbers]
         yield (
             why,

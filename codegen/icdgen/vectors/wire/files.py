@@ -20,6 +20,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             (1 << bit for bit in range(32)),
             (source.getrandbits(32) for _ in range(20)),
         )
+        # 0x00210000 is the beginning of 1980, the earliest MS-DOS time.
         for value in (0, 0xFFFFFFFF, 0x00210000, *bits, *some):
             yield f"{value:08x}", {"op": "dos_time", "value": value}
         dates = [

@@ -36,6 +36,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
                     "crc": checked,
                 },
             )
+            # `i2c_write` begins with the id, which a reply does not repeat.
             data = i2c_write(link, id, frame, checked)[1:]
             about = {"op": "i2c_reply", "id": id, "crc": checked}
             yield f"telemetry {id}", {**about, "bytes": data.hex()}

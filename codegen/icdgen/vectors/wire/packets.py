@@ -30,6 +30,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         if kind not in CAN_WITH_DATA:
             samples += [CanMessage(kind, id, node, other) for id in list(ids)[:2]]
             continue
+        # Reversed, so that the first message of each length remains.
         by_length = {m.length: id for id, m in reversed(ids.items())}
         for length, id in sorted(by_length.items()):
             ends = (other, node) if kind == "telecommand" else (node, other)
@@ -141,6 +142,7 @@ def _joins(
         ),
         (
             "a message type that does not exist",
+            # ISO 11898-1: an extended identifier has 29 bits.
             [CanPacket((1 << 29) - 1, b"\x01"), *first],
         ),
     ]

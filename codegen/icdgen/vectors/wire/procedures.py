@@ -75,7 +75,10 @@ class _Scripts:
         self.size, self.block = 0, {}
         if self.blocks:
             packet = self.blocks.packet_bytes
+            # The last packet is not complete.
             self.size = min(PACKETS * packet + packet // 2 + 1, self.blocks.most)
+            # Blocks are shorter than in the ICD, so that the bytes need several of
+            # them.
             if BLOCK_PACKETS * packet < self.blocks.size:
                 self.block = {"block": BLOCK_PACKETS * packet}
         source = Random(f"{facts.node.name} {procedure.name}")
@@ -136,6 +139,7 @@ class _Scripts:
         assert self.procedure.entry
         length = self.procedure.entry.length
         source = Random(count)
+        # A frame of zeros could end the list (`end_if_zeros`).
         return [bytes([source.randrange(1, 256)] * length) for _ in range(count)]
 
     def case(
@@ -436,6 +440,7 @@ class _Scripts:
             packets = [each for each in reports if each.event["event"] == "arrived"]
             if packets:
                 again = packets[:1] * REPETITIONS
+                # Packets that are not new must not extend the silence.
                 later = [Report(each.event, receive.silence - 1) for each in again]
                 return [packets[0], *reports[len(packets) :], *later]
             if (

@@ -132,6 +132,7 @@ def record(
             at = now
             for event, after in _of_client(now, pending, respond):
                 at, count = at + after, count + 1
+                # The order makes entries comparable, because events are mappings.
                 heapq.heappush(reports, (at, count, event))
         deadline = None if procedure.deadline is None else int(procedure.deadline)
         next_report = reports[0][0] if reports else None
@@ -155,5 +156,6 @@ def _of_client(now: int, request: Request, respond: Respond) -> list[Report]:
     """Return the reports of a client, which repeats a request after a time-out."""
     reports, tries = respond(now, request), 1
     while request.repeat and reports[-1].event == TIMEOUT and tries < ATTEMPTS:
+        # Packets that arrived before the time-out stay.
         reports, tries = reports[:-1] + respond(now, request), tries + 1
     return reports

@@ -177,6 +177,7 @@ def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, b
         )
     for head, id in facts.unsolicited.items():
         for more in (-1, 0, 1):
+            # The index -1 takes the last text.
             why = f"unsolicited telemetry{('', ' too long', ' too short')[more]}"
             size = facts.telemetry[id].length + more
             yield why, bytes([head]) + source.randbytes(size)
