@@ -136,6 +136,8 @@ def columns_of(
     columns: dict[str, Column] = {}
     for field in icd.longest_frame(message):
         operand_names = field.derived.fields if field.derived is not None else ()
+        # A derived field has no bits of its own: it is left out with its operands, and
+        # not by its place.
         if (
             field.role == "count"
             or not columns.keys() >= set(operand_names)

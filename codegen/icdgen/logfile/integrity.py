@@ -27,6 +27,7 @@ from icdgen.logfile.strided import numbers_at
 
 MINUTE, DAY, MONTH, YEAR = 60_000, 86_400_000, 30 * 86_400_000, 366 * 86_400_000  # ms
 YEAR_1990 = 631_152_000_000  # ms: an earlier time may be a counter
+# `datetime`, which writes the times of rows, has no later year.
 LATEST_SECOND = 253_402_300_799  # the last one of the year 9999
 # an entry later than this number of usual steps is checked for damage
 STEPS_IN_LIMIT = 5
@@ -162,6 +163,7 @@ class LogSurvey:
             self.plan.milliseconds,
         )
         little = self.plan.order == "little"
+        # The last entry need not be complete: only its time must be within the data.
         count = min(count, (len(data) - self.time_end) // stride + 1)
         if count < FIRST_CHUNK or not _has_numpy():
             times = []
@@ -205,6 +207,7 @@ class LogSurvey:
         the header.
         """
         begin, size = self.begin, self.entry_bytes
+        # Not even one entry is complete, so that nothing contradicts the header.
         if begin + size > self.size:
             return begin
         first = self._time(begin)
@@ -218,6 +221,7 @@ class LogSurvey:
             and second is not None
             and abs(second - first) <= DAY
         )
+        # `_rises` compares three entries.
         for low in range(begin + 1, self.size - 3 * size + 1, WINDOW):
             fresh = [
                 at for at in self._candidates(low, WINDOW) if self._rises(at, MONTH)
@@ -231,6 +235,7 @@ class LogSurvey:
                 if first is not None and 0 <= (self._time(at) or 0) - first <= MONTH
             ]
             pool = recent or fresh
+            # Starts that are farther away can be later entries of these.
             near = [at for at in pool if at < pool[0] + size]
             ending = [at for at in near if (self.size - at) % size == 0]
             steadier = [
@@ -286,7 +291,10 @@ class LogSurvey:
         )
         count = 1 + sum(1 for _ in regular)
         if count > 1:
+            # Place 0 is the time of the entry itself.
             places = set(range(1, size))
+            # Not the last entry: `here` has a time at each byte of an entry, and those
+            # at its last bytes reach into the next entry.
             for number in range(min(count - 1, COMPARED_ENTRIES)):
                 here = self._times(data[number * size :], 1, size)
                 places = {
@@ -333,6 +341,7 @@ class LogSurvey:
         remaining, last = self.size - end, end - self.entry_bytes
         if not remaining or last < self.begin:
             return True
+        # An incomplete entry that has its time must have a valid one.
         if remaining >= self.time_end and self._time(end, self.time_end) is None:
             return False
         # Bytes were lost in the last entry if a whole one ends at the end of the file.
@@ -353,6 +362,8 @@ class LogSurvey:
             self._time(broken + number * size) for number in range(3)
         )
         lead = self._deviation(before, previous) if before is not None else 0.0
+        # Infinite behind an earlier fault, which must not exclude two of the
+        # explanations below.
         lead = min(lead, self.limit)
         follow = (
             self._deviation(next_, second) if broken + 3 * size <= self.size else 0.0
@@ -374,6 +385,7 @@ class LogSurvey:
             if only_here < only_previous:
                 return broken - size, broken + size
             return broken - 2 * size, broken
+        # Look first near the break, and only where bytes are missing or were added.
         resume = self._search(
             broken - size + 1, broken + 3 * size, previous, is_aligned=False
         )
@@ -424,6 +436,7 @@ class LogSurvey:
             if at + (number + 1) * self.entry_bytes <= self.size
         ]
         if len(available) == 1:
+            # A single entry is believed only if the file ends with it.
             return available[0] is not None and (self.size - at) % self.entry_bytes == 0
         for before, after in pairwise(available):
             if (
@@ -497,8 +510,10 @@ class LogSurvey:
         times = self._times(self._read(low, count + self.time_end - 1), 1, count)
         for index, time in enumerate(times):
             at = low + index
+            # `low` is one byte behind the start of an entry.
             if not is_aligned and (at - low + 1) % size == 0:
                 continue
+            # The entries that are skipped took time, too.
             if not 0 <= time - previous <= self.limit * (2 + (at - origin) / size):
                 continue
             following = [
@@ -571,6 +586,7 @@ def _first_irregular(previous: int, times: Sequence[int], limit: float) -> int |
 
     Too early is before its predecessor, too late is more than ``limit`` after it.
     """
+    # Few times are a list, and all are without numpy (`LogSurvey._times`).
     if isinstance(times, list):
         for index, time in enumerate(times):
             if time < 0 or not 0 <= time - previous <= limit:

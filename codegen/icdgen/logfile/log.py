@@ -78,6 +78,8 @@ def _only(source: Source, messages: Sequence[Message]) -> Source:
         for column in source.plan.columns
         if column.message is not None and key(column.message) in keys
     )
+    # The ICD has these messages, but the log has no column of them, for instance
+    # because its mask does not select them.
     if missing := keys - {
         key(column.message) for column in columns if column.message is not None
     }:
@@ -112,6 +114,8 @@ class _Entries:
         return bool(self._integrity(head).damages)
 
     def _integrity(self, head: int | None) -> Integrity:
+        # The survey of the complete file is cached. With `head`, only its beginning is
+        # read.
         return self.source.integrity if head is None else self.source.survey(head)
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:

@@ -49,6 +49,7 @@ def write(path: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
         path, schema, compression="lz4", write_page_index=True
     ) as writer:
         for table in tables:
+            # pyarrow would divide tables of more than 2**20 rows.
             writer.write_table(table, row_group_size=table.num_rows)
 
 
@@ -92,6 +93,7 @@ def _groups(
 
 def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
     """Return the items. A thread creates each item while the previous one is used."""
+    # One thread only: two threads must not run a generator at the same time.
     with ThreadPoolExecutor(1) as thread:
         coming = thread.submit(next, items, None)
         while (item := coming.result()) is not None:
@@ -175,6 +177,7 @@ class ColumnReader:
             # Up to 256 values share one dictionary of all names. Larger enumerations
             # get the names that occur in a batch, so their indices differ from batch to
             # batch.
+            # The raw value is the index of its name, so it must not be negative.
             if column.field.bits > 8 or column.field.is_signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
@@ -267,6 +270,7 @@ class ColumnReader:
         if len(column.pieces) == 1:
             (piece,) = column.pieces
             value = numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask
+            # A bit counts as true at any place, so that it need not be shifted.
             if column.kind == "bool":
                 return value
             value = value >> piece.shift

@@ -169,6 +169,7 @@ class Recording:
                     yield received
                     if count == head:
                         return
+            # The decoder counts over all pieces.
             tally.lost, tally.cut = decoder.discarded, decoder.pending
             done(len(piece))
 
@@ -192,6 +193,7 @@ class Recording:
         if event.event != "message" or event.id is None:
             tally.fault(event)
             return None
+        # The decoder reports other ids as `unknown_id`.
         messages = self._known[event.id]
         message = (
             messages[0]

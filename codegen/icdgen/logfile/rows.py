@@ -108,6 +108,7 @@ def _float(column: Column) -> Callable[[bytes], Value]:
     form, integer_form = ("<f", "<I") if bits == 32 else ("<d", "<Q")
 
     def read(entry: bytes) -> Value:
+        # `raw` gives a number, so any byte order will do if both calls use the same.
         value = struct.unpack(form, struct.pack(integer_form, raw(entry)))[0]
         if curve is not None:
             return curve.double(value)

@@ -50,6 +50,7 @@ class Sheet:
         }
         for place, column in enumerate(columns, 1 + len(self.roles)):
             assert column.message and column.field
+            # A text ends at its first NUL, so that the zeros behind it do no harm.
             is_cut = column.field.scalar.length is not None and column.kind == "bytes"
             self.entries[key(column.message)].append(Entry(place, column, is_cut))
 

@@ -63,6 +63,7 @@ class _TableBuilder:
             pair for pairs in self.readers.values() for pair in pairs
         ):
             field = reader.field.with_nullable(True)
+            # The type for a fixed number of bytes has the same number in all rows.
             fields.append(field.with_type(pa.binary()) if entry.is_cut else field)
         self.schema = schema_of(fields, sheet.recording.node)
 

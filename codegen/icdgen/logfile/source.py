@@ -219,6 +219,7 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
     source = Source(path, mask, header, size, plan(icd, node_facts, mask))
     # The header has no magic number: the times of the entries are the only evidence
     # that this is a log.
+    # A log without a complete entry has no such evidence, and is accepted.
     if size >= header + source.plan.entry_bytes and not source.survey(1).spans:
         why = "its entries have no times, their milliseconds are above 999"
         raise UserError(

@@ -30,6 +30,7 @@ def numbers_at(
         return np.ndarray(
             (count,), f"{'<' if little else '>'}{kind}{size}", data, at, (stride,)
         )
+    # Only times have other sizes. They have no sign, so that `kind` is not used here.
     value = np.zeros(count, np.uint64)
     for number in range(size):
         byte = np.ndarray((count,), np.uint8, data, at + number, (stride,))
