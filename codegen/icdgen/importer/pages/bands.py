@@ -18,6 +18,8 @@ from icdgen.importer.pages.lines import Line, lines, words_of
 from icdgen.importer.words import join, unbroken
 
 _UNIT = r"(?:(?:[Bb]its?|[Bb]ytes?|[Oo]ctets?)\s*)?"
+# A number has at least one decimal digit: words such as `Add` and `Face` consist of
+# hexadecimal digits, too. Marks of footnotes may follow.
 _KEY = re.compile(
     _UNIT
     + rf"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/~]|\.\.\.?|to)\s*{_UNIT}[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z"
@@ -151,6 +153,8 @@ def rows(
         for i, line in enumerate(lines_of_band)
         if is_key(_text_in(line, band.edges, key))
     ]
+    # A band with one key is one row, unless it may begin with the end of a row of the
+    # page before.
     if len(keyed) <= (0 if torn else 1):
         return [band.printed(document_words)] if band.words else []
     printed = []

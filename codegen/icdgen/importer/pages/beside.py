@@ -79,6 +79,7 @@ def _parts(table: Draft, profile: Profile) -> list[Draft]:
         titles[a:b] for a, b in zip(starts, [*starts[1:], len(titles)], strict=True)
     ]
     width = len(parts[-1])
+    # Columns without a title may be between the tables, and not within them.
     if any(part[:width] != parts[-1] or any(part[width:]) for part in parts):
         return []
     result = []

@@ -84,6 +84,7 @@ def _stand_above(
         None not in captions.values() and len(set(captions.values())) == len(captions)
         for captions in (after, before)
     )
+    # In a part of a document, the table of the first or last caption can be missing.
     if down_all != up_all and not is_part:
         return down_all
     nearer = 0

@@ -43,6 +43,7 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
                 best is None or header.known_words > best.header.known_words
             ):
                 best = Columns(header, [_extent(cell) for cell in cells], count)
+    # Headings without offsets need more evidence: a sentence can have the same words.
     if best is None and loose:
         for cells in filter(
             None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))

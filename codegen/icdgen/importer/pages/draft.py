@@ -169,6 +169,7 @@ def _columns(rows: list[PrintedRow]) -> list[float]:
 def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
     """Return the cells of a row with their first columns."""
     if not row.edges or len(edges) < 2:
+        # A line above the headings spans all columns.
         if len(row.texts) == 1 and len(edges) > 2:
             return [(Cell(row.texts[0], len(edges) - 1), 0)]
         return [(Cell(text), index) for index, text in enumerate(row.texts)]
@@ -177,10 +178,13 @@ def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
         min(range(len(edges)), key=lambda i: abs(edges[i] - x - shift))
         for x in row.edges
     ]
+    # The row can begin right of the first columns.
     placed: list[tuple[Cell, int]] = [(Cell(""), column) for column in range(places[0])]
     for text, start, end in zip(row.texts, places, places[1:], strict=False):
         if end > start:
             placed.append((Cell(text, end - start), start))
+        # Both sides of the cell are one edge of the table, so that it has no column of
+        # its own.
         elif text and placed:
             placed[-1][0].text = f"{placed[-1][0].text}\n{text}".strip("\n")
     return placed

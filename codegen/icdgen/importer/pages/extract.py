@@ -79,6 +79,7 @@ def extract(page: Any) -> Page:
     from pdfminer.layout import LTChar, LTCurve, LTImage, LTLine, LTRect
     from pdfplumber.utils.text import extract_words
 
+    # Viewers show the crop box (PDF 32000-1, 14.11.2).
     left, top, right, bottom = (float(edge) for edge in page.cropbox)
     content = Page(page.page_number, right - left, bottom - top)
     shift = _Shift(page.mediabox[0] - left, page.mediabox[1] + page.height - top)
@@ -118,6 +119,7 @@ def _drawn(page: Any) -> Iterator[Any]:
         thing = next(waiting[-1], None)
         if thing is None:
             waiting.pop()
+        # A form XObject (PDF 32000-1, 8.10) contains objects of the page, too.
         elif isinstance(thing, LTContainer):
             waiting.append(iter(thing))
         else:
@@ -194,6 +196,8 @@ def _style(char: Any) -> str:
         for v in _values(char.graphicstate.ncolor)
         if isinstance(v, (int, float))
     )
+    # A subset of a font has a tag in front of its name, as in `ABCDEF+Arial` (PDF
+    # 32000-1, 9.6.4).
     return f"{name.rsplit('+', 1)[-1]} {shade}{' slanted' if _slanted(char) else ''}"
 
 
@@ -203,6 +207,7 @@ def _slanted(char: Any) -> bool:
     Writers without an italic font do this.
     """
     a, b, c, _, _, _ = char.matrix
+    # A rotation has both b and c, a slant only c (PDF 32000-1, 8.3.3).
     return not b and abs(c) > 0.1 * abs(a)
 
 
@@ -218,6 +223,7 @@ def _text(word: Mapping[str, Any]) -> str:
     floor = max(char["bottom"] for char in chars if char["size"] > SMALL * size)
     text = ""
     for char in chars:
+        # A small character on the base line is no superscript.
         raised = char["size"] <= SMALL * size and char["bottom"] < floor - 0.12 * size
         text += char["text"].translate(SUPERSCRIPTS) if raised else char["text"]
     return plain(text)
@@ -253,6 +259,7 @@ def _curve(content: Page, curve: Any, shift: _Shift) -> None:
 
 
 def _white(colour: object) -> bool:
+    # The initial colour is black (PDF 32000-1, 8.4.1).
     if colour is None:
         return False
     values = _values(colour)

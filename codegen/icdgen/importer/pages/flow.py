@@ -122,6 +122,7 @@ class _Flow:
         sizes: Counter[float] = Counter()
         styles: Counter[str] = Counter()
         for line in text:
+            # By characters, so that short lines such as headings weigh little.
             sizes[round(line.size, 1)] += len(line.text)
             styles[line.style] += len(line.text)
         self.body_size = max(sizes, key=sizes.__getitem__, default=10.0)
@@ -141,6 +142,7 @@ class _Flow:
                 index >= len(loose) or waiting[0].top <= loose[index].middle
             ):
                 items_of_page.append(self.ruled(page, waiting.pop(0)))
+                # A ruled table is between: nothing below it continues the table above.
                 self.open = None
                 continue
             limit = waiting[0].top if waiting else float("inf")
@@ -220,6 +222,7 @@ class _Flow:
 
     def is_caption(self, line: Line) -> bool:
         match = self.profile.caption.match(line.text)
+        # A sentence of the text can begin with `Table 5`, too.
         return match is not None and bool(
             match["mark"] or self.stands_out(line) or not match["title"]
         )
@@ -528,6 +531,7 @@ def _lowest_rule(
         if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top
     ]
     wide = [r for r in wide if r.at <= bottom]
+    # Rules around the headings do not end the table.
     head = (
         [r for r in wide if start < len(following) and r.at < following[start].top + 2]
         if start < len(following)

@@ -70,7 +70,9 @@ def _keys(line: Line) -> list[tuple[str, int]]:
 
     Two roundings of the height allow a small difference.
     """
+    # A running head can contain the number of its page.
     text = _FIGURES.sub("#", line.text)
+    # Negative, so that the second rounding shares no key with the first.
     return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
 
 
@@ -80,6 +82,8 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
     match = _NUMBERING.match(line.text.strip())
     if match is None:
         return False
+    # A bare number can also be a value of a table, so it must fit the numbers of other
+    # pages.
     return not line.text.strip().isdigit() or (
         offset is not None and int(match[1]) == page.number + offset
     )
@@ -108,6 +112,7 @@ def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
     offset, count = offsets.most_common(1)[0]
     return (
         offset
+        # A single page has no others to compare with.
         if count >= max(2, len(pages) / 2) or (len(pages) == 1 and offset == 0)
         else None
     )

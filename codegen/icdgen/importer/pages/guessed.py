@@ -38,6 +38,7 @@ def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
     while start < len(marks):
         end = _end(marks, start)
         rows = [mark for mark in marks[start:end] if len(mark.cells) >= FEWEST_CELLS]
+        # The first line would be the heading row, which does not begin with a number.
         if len(rows) >= FEWEST_LINES and not marks[start].text[:1].isdigit():
             tables.append((start, end, _table(marks[start:end])))
             start = end

@@ -41,6 +41,7 @@ def _middle(
     ]
     low, high = 0.4 * page.width, 0.6 * page.width
     best, at = (0.0, 0.0), low
+    # Only a gap that ends within the middle of the page counts.
     for x0, x1 in sorted((x0, x1) for x0, x1 in spans if x1 > low and x0 < high):
         best = max(best, (min(x0, high) - at, (min(x0, high) + at) / 2))
         at = max(at, x1)

@@ -23,6 +23,7 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
     ``loose``: fields may have no column of offsets.
     """
     texts = [folded(cell) for cell in cells]
+    # A row with a number is a row of values.
     if sum(bool(text) for text in texts) < 2 or any(
         number(cell) is not None for cell in cells
     ):
@@ -84,6 +85,7 @@ def segmented(words: list[str], profile: Profile) -> list[Segment] | None:
         segments: list[Segment] = []
         index, hits = 0, 0
         while index < len(words):
+            # The longest heading first, as one heading can begin with another.
             for length in range(min(5, len(words) - index), 0, -1):
                 chunk = tuple(
                     part for text in flat[index : index + length] for part in text

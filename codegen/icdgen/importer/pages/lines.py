@@ -49,8 +49,11 @@ def lines(words: Iterable[Word]) -> list[Line]:
     groups: list[list[Any]] = []
     for word in sorted(words, key=lambda w: (w.top, w.x0)):
         best, most = None, 0.5
+        # Words come from top to bottom, so that a word belongs to one of the last
+        # lines.
         for group in groups[-8:]:
             overlap = min(group[1], word.bottom) - max(group[0], word.top)
+            # The lower bound avoids a division by zero for words without height.
             share = overlap / max(min(group[1] - group[0], word.bottom - word.top), 0.1)
             if share > most:
                 best, most = group, share
@@ -82,6 +85,7 @@ def text_of(words: list[Word]) -> str:
             if raised and near:
                 part = part.translate(SUPERSCRIPTS)
         text += part
+        # A superscript is not the measure of the words behind it.
         last = (
             word
             if last is None or word.size > SMALL * last.size

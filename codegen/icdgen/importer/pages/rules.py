@@ -64,6 +64,7 @@ class Region:
         """Return for each cell whether it has no rule above it, but other cells have
         one.
         """
+        # Nothing is above the region that its first row could continue.
         if top <= self.top + SNAP:
             return (False,) * (len(edges) - 1)
         here = [rule for rule in self.across if abs(rule.at - top) <= SNAP]
@@ -137,6 +138,7 @@ def regions(page: Page) -> list[Region]:
     _sides(down, len(across), parent, root)
     groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
     for i, rule in enumerate([*across, *down]):
+        # The index is a boolean: 0 for horizontal rules, 1 for vertical ones.
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
     tables: list[Region] = []
     frames: list[Region] = []  # regions with a left and a right side only
@@ -238,6 +240,7 @@ def _sides(
     between them.
     """
     sizes = Counter(root(i) for i in range(len(parent)))
+    # Vertical rules that no other rule meets.
     floating = {i for i in range(first, len(parent)) if sizes[root(i)] == 1}
     places = [rule.at for rule in down]
     # Rules by the height of their start, so that only neighbours are compared.
@@ -278,6 +281,7 @@ def _outermost(regions: list[Region]) -> list[Region]:
 
 def row_marks(page: Page, x0: float, x1: float) -> list[float]:
     """Return heights with a rule, or the edge of a shaded row, over most of the width."""
+    # A tall area is a background and not a row.
     shallow = [
         fill for fill in page.fills if fill.bottom - fill.top < 0.5 * page.height
     ]

@@ -25,6 +25,7 @@ class Builder:
     document_words: frozenset[str]
     is_part: bool = False  # whether only some pages of the document are read
     out: list[Draft | Mark] = field(default_factory=list)
+    # Drafts are compared by their content and therefore have no hash.
     # Id of a draft -> its pieces without vertical rules.
     loose_pieces: dict[int, list[Piece]] = field(default_factory=dict)
 
@@ -35,6 +36,7 @@ class Builder:
                 self.piece(item)
             else:
                 self.out.append(item)
+        # Columns are found from all pieces of a table, which are known only now.
         for draft in self.out:
             if isinstance(draft, Draft) and id(draft) in self.loose_pieces:
                 self.cut(draft, self.loose_pieces[id(draft)])
@@ -92,6 +94,7 @@ class Builder:
             return None
         if self.first_is_id(piece):
             return None
+        # A repeated caption is sufficient. Otherwise, the columns must match.
         if number is None and not self.fits(draft, piece, follows):
             return None
         if (
@@ -208,6 +211,7 @@ class Builder:
                 both_lines.printed = upper
                 draft.header = both_lines
             elif headings.repeats(texts, draft.header, self.profile):
+                # The columns can be elsewhere on this page, whose margins may differ.
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
             elif (
