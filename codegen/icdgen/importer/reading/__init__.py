@@ -43,6 +43,8 @@ def read(
             f"the file has more than the {MAX_BYTES:,} bytes allowed",
             "cut it into parts",
         )
+    # PDF 32000-1, 7.5.2 puts the header into the first line. Acrobat also accepts it
+    # elsewhere in the first 1,024 bytes.
     if b"%PDF-" in start[:1024]:
         from icdgen.importer.reading import pdf
 
@@ -69,6 +71,7 @@ def read(
             "markdown": markup.read_markdown,
         }
         return readers[kind](path, profile)
+    # Other ZIP archives, and documents of Office before 2007 (OLE).
     if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise _refused(
             name,
@@ -85,6 +88,7 @@ def _kind(path: Path, start: bytes) -> str:
     suffix.
     """
     suffix = path.suffix.casefold()
+    # Office documents are ZIP archives: only their suffix tells them apart here.
     if start[:4] == b"PK\x03\x04":
         return {".xlsx": "xlsx", ".xlsm": "xlsx", ".docx": "docx"}.get(suffix, "")
     if suffix in (".html", ".htm", ".xhtml") or start.lstrip()[:15].lower().startswith(

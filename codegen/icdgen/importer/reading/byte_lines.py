@@ -32,6 +32,7 @@ def _table(lines: list[Text]) -> SourceTable:
     for block in lines:
         match = _LINE.match(block.text)
         assert match is not None
+        # `Byte0~Byte1` becomes `0-1`.
         positions = re.sub(r"[^0-9]+", "-", match["where"]).strip("-")
         rows.append(
             SourceRow([Cell(positions), Cell(match["what"])], block.page, block.line)

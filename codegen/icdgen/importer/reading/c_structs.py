@@ -130,6 +130,8 @@ def in_document(document: Document) -> None:
                 for table in tables:
                     if isinstance(table, SourceTable):
                         for row in table.rows:
+                            # The parser counts lines within `text`, and not in the
+                            # document.
                             row.page, row.line = waiting[0].page, None
                         blocks.append(table)
                 document.import_findings += [
@@ -170,6 +172,8 @@ def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
         ) from None
     reader = _Reader(source, c_ast)
     for declaration in tree.ext:
+        # Types of the prelude, which the file may declare, too: `scalar` knows their
+        # sizes.
         if (
             declaration.coord is not None
             and declaration.coord.file == "text"
@@ -224,6 +228,8 @@ class _Reader:
             self.struct(inner, name)
 
     def enum(self, node: Any, name: str) -> None:
+        # C99 6.7.2.2: the first value is 0, and each further one is the value before it
+        # plus 1, unless the source states it.
         value, members = -1, []
         for enumerator in node.values.enumerators:
             value = (

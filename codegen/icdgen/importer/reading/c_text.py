@@ -15,6 +15,7 @@ _BEGINS = re.compile(
     rf"\b(?:typedef\s+)?(?:{_PACKED}\s*)?(?:struct|enum|union)\b[^;{{}}()=]*(?:{_PACKED})?[^;{{}}()=]*\{{"
 )
 _TYPEDEF = re.compile(r"\btypedef\s+[\w\s]+?\s\w+\s*;")
+# Strings and characters match, too, so that `//` in them begins no comment.
 _COMMENT = re.compile(
     r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S
 )
@@ -63,6 +64,8 @@ class CText:
             self.comments[line if is_alone else first] = words
             if is_alone:
                 self.alone.add(line)
+            # C99 5.1.1.2: a comment is one space. Its line ends stay, so that all lines
+            # keep their numbers.
             return " " + "\n" * match[0].count("\n")
 
         return take

@@ -88,6 +88,7 @@ def _of_html(data: bytes, name: str, profile: Profile) -> Document:
 
 
 def _html_blocks(element: Any, profile: Profile) -> Iterator[Block | Caption]:
+    # The tag of a comment or of a processing instruction is a function in lxml.
     for child in element:
         if not isinstance(child.tag, str) or child.tag in _SKIPPED:
             continue
@@ -120,6 +121,7 @@ def _is_layout(table: Any) -> bool:
 def _html_table(table: Any) -> SourceTable:
     caption = table.find("caption")
     rows = []
+    # All rows are its own: tables that contain others do not come here.
     for row in table.iter("tr"):
         cells = [c for c in row if c.tag in ("td", "th")]
         rows.append(
@@ -144,6 +146,7 @@ def _within(rows: list[SourceRow]) -> list[SourceRow]:
 
 def _span(cell: Any, name: str) -> int:
     text = cell.get(name, "1").strip()
+    # HTML limits `colspan` to 1,000.
     return min(max(int(text), 1), 1000) if text.isdigit() else 1
 
 
@@ -232,6 +235,7 @@ def read_docx(path: Path, profile: Profile) -> Document:
             style = (
                 part.style.name if part.style is not None and part.style.name else ""
             )
+            # Word stores the names of its own styles in English, whatever its language.
             level = style.removeprefix("Heading ")
             if style.startswith("Heading ") and level.isdigit():
                 blocks.append(_heading(plain(part.text), 20.0 - int(level)))

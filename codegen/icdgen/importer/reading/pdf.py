@@ -123,6 +123,7 @@ def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
         8,
     )
     if jobs <= 1 or count < FEW:
+        # In this process, an interrupt must still end the import.
         _start_worker(path, ignore=False)
         try:
             for number in wanted:
@@ -188,6 +189,7 @@ def _weigh(page: Any) -> None:
         # Unpacked as far as the limit and no further: some kilobytes can unpack to
         # gigabytes. Contents that are not compressed fail here, and have their raw
         # size.
+        # To zlib, a limit of 0 is no limit; `left` is at least 0 here.
         with contextlib.suppress(zlib.error):
             unpacked = max(
                 unpacked, len(zlib.decompressobj().decompress(raw, left + 1))

@@ -51,6 +51,7 @@ def read_csv(path: Path) -> Document:
             rows.append(
                 (start, [Cell(cell.strip().replace("\r\n", "\n")) for cell in row])
             )
+            # A row has several lines if a quoted cell contains line ends.
             start = reader.line_num + 1
     except csv.Error as error:
         message = f"this CSV cannot be parsed: {error}"
@@ -174,6 +175,7 @@ class _Sheet:
             self.report(row, f"{where}: the spreadsheet program made the date {value} of what was typed",
                         "was it a range such as 1-2? Format the column as text and type it again")  # fmt: skip
             return str(value)
+        # openpyxl computes no formulas: it returns the values that were stored last.
         if value is None:
             formula = self.formulas.cell(row, column).value
             if isinstance(formula, str) and formula.startswith("="):
@@ -243,6 +245,7 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
 
 def _without_empty_columns(rows: list[SourceRow]) -> list[SourceRow]:
     """Return the rows without empty columns at the right of the table."""
+    # With spans, the index of a cell is not its column.
     if any(cell.columns > 1 or cell.rows > 1 for row in rows for cell in row.cells):
         return rows
     width = max(

@@ -33,6 +33,7 @@ def read(path: Path, profile: Profile) -> Document:
     text = utf8_text(path, "save the text as UTF-8")
     document = Document(name)
     reader = _Reader(profile, name)
+    # Not `splitlines`, which would also split at form feeds.
     for number, words in enumerate(re.split("\r\n|[\n\r]", text), 1):
         reader.line(words.rstrip(" "), number)
     document.blocks = reader.done()
