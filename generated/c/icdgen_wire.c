@@ -245,22 +245,12 @@ ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, si
     return icd_crc_result(&crc);
 }
 
-ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc)
+ICDGEN_API uint32_t icd_checksum(const icd_checksum_algorithm_t *algorithm, const uint8_t *bytes, size_t length)
 {
-    if (link->checksum == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *crc = icd_crc(&link->checksum->crc, bytes, length);
-    return ICD_OK;
-}
-
-ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc)
-{
-    if (link->crc16 == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *crc = icd_crc(link->crc16, bytes, length);
-    return ICD_OK;
+    icdgen_check_t check;
+    icdgen_check_begin(&check, algorithm);
+    icdgen_check_feed(&check, bytes, length);
+    return icdgen_check_result(&check);
 }
 
 ICDGEN_API icd_status_t
@@ -489,16 +479,9 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
 
 #define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
 
-/*
- * Whether a value of an enumeration is this member. `kinds` are the members that the links have, as a mask: the
- * compiler knows the result for all others, and also if there is only one.
- */
-#define ICDGEN_IS(value, member, kinds)                                                                                \
-    (((kinds) & ICDGEN_BIT(member)) != 0u && ((kinds) == ICDGEN_BIT(member) || (value) == (member)))
 #define ICDGEN_IS_DELIMITED_BY(form, delimiter) ICDGEN_IS((form)->delimited_by, delimiter, ICDGEN_DELIMITERS)
 #define ICDGEN_HAS_ROLE(field, member) ICDGEN_IS((field)->role, member, ICDGEN_ROLES)
 #define ICDGEN_CONTAINS(packet, member) ICDGEN_IS((packet)->content, member, ICDGEN_CONTENTS)
-#define ICDGEN_IS_CHECK(form, member) ICDGEN_IS((form)->kind, member, ICDGEN_CHECKS)
 #define ICDGEN_IS_VERDICT(verdict, member) ICDGEN_IS(verdict, member, ICDGEN_VERDICTS)
 #define ICDGEN_HAS_FLAG(row, flag) (((row)->flags & (flag) & ICDGEN_STREAM_FLAGS) != 0u)
 
@@ -598,61 +581,6 @@ static inline uint32_t icdgen_stream_number(
     return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
 }
 
-/* State of a checksum that is computed piece by piece. */
-typedef struct {
-    const icd_check_form_t *form;
-    icd_crc_t crc;
-    uint32_t first;
-    uint32_t second;
-} icdgen_check_t;
-
-static inline bool icdgen_is_pair(const icd_check_form_t *form)
-{
-    return ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER) || ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255);
-}
-
-static inline void icdgen_check_begin(icdgen_check_t *check, const icd_check_form_t *form)
-{
-    check->form = form;
-    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
-        icd_crc_init(&check->crc, &form->crc);
-    } else {
-        check->first = icdgen_is_pair(form) ? form->crc.init & 0xFFu : form->crc.init;
-        check->second = form->crc.init >> 8;
-    }
-}
-
-static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
-{
-    const icd_check_form_t *const form = check->form;
-    const uint32_t modulus = ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255) ? 255u : 256u;
-    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
-        icd_crc_feed(&check->crc, bytes, length);
-        return;
-    }
-    for (size_t i = 0; i < length; ++i) {
-        if (ICDGEN_IS_CHECK(form, ICD_CHECK_SUM)) {
-            check->first += bytes[i];
-        } else if (ICDGEN_IS_CHECK(form, ICD_CHECK_XOR)) {
-            check->first ^= bytes[i];
-        } else {
-            check->first = (check->first + bytes[i]) % modulus;
-            check->second = (check->second + check->first) % modulus;
-        }
-    }
-}
-
-static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
-{
-    const icd_crc_form_t *const form = &check->form->crc;
-    if (ICDGEN_IS_CHECK(check->form, ICD_CHECK_CRC)) {
-        return icd_crc_result(&check->crc);
-    }
-    const uint32_t value = icdgen_is_pair(check->form) ? (check->second << 8) | check->first
-                                                       : check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width));
-    return value ^ form->xor_out;
-}
-
 /*
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.
@@ -668,7 +596,7 @@ static inline uint32_t icdgen_envelope_check(
     static const uint8_t zero = 0;
     const icd_check_form_t *const given = packet->check;
     icdgen_check_t check;
-    icdgen_check_begin(&check, given);
+    icdgen_check_begin(&check, given->algorithm);
     icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(packet->header_bytes) - given->covered_from);
     if (data != NULL) {
         icdgen_check_feed(&check, data, length);
@@ -1750,15 +1678,15 @@ ICDGEN_API void icd_stream_feed(
     icdgen_stream_feed(decoder, bytes, count, &listener);
 }
 
-ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
+ICDGEN_API uint32_t icd_message_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
 {
-    icd_crc_t crc;
-    icd_crc_init(&crc, &link->checksum->crc);
+    icdgen_check_t check;
+    icdgen_check_begin(&check, link->checksum->algorithm);
     if (link->checksum->covers_id) {
-        icd_crc_feed(&crc, &id, 1);
+        icdgen_check_feed(&check, &id, 1);
     }
-    icd_crc_feed(&crc, data, length);
-    return icd_crc_result(&crc);
+    icdgen_check_feed(&check, data, length);
+    return icdgen_check_result(&check);
 }
 
 ICDGEN_API icd_status_t icd_i2c_write(
@@ -1786,8 +1714,9 @@ ICDGEN_API icd_status_t icd_i2c_write(
         (void)memcpy(buffer + 1, data, length);
     }
     *written = 1u + length + extra;
-    return checked ? icdgen_put_number(link, buffer + 1u + length, extra, icd_checksum(link, id, buffer + 1, length))
-                   : ICD_OK;
+    return checked
+        ? icdgen_put_number(link, buffer + 1u + length, extra, icd_message_checksum(link, id, buffer + 1, length))
+        : ICD_OK;
 }
 
 ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length)
@@ -1806,7 +1735,7 @@ ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, 
 /* Return whether the checksum after the data of a message is right. */
 static inline bool icdgen_is_intact(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
 {
-    return icdgen_number(link, data + length, link->checksum->bytes) == icd_checksum(link, id, data, length);
+    return icdgen_number(link, data + length, link->checksum->bytes) == icd_message_checksum(link, id, data, length);
 }
 
 ICDGEN_API icd_status_t icd_i2c_reply(
@@ -4405,19 +4334,20 @@ static inline bool icdgen_is_checksum(const icd_procedure_t *procedure, const ic
     const uint32_t all = test->of_block && test->covers_fill ? procedure->count * blocks->packet_bytes : length;
     const bool is_received = test->of_block && !blocks->sends;
     const uint8_t *const sent = memory->bytes;
-    icd_crc_t crc;
-    icd_crc_init(&crc, test->crc != NULL ? test->crc : procedure->link->crc16);
+    icdgen_check_t check;
+    icdgen_check_begin(&check, test->algorithm);
     if (is_received) {
-        icd_crc_feed(&crc, memory->buffer, ICDGEN_SIZE(all));
+        icdgen_check_feed(&check, memory->buffer, ICDGEN_SIZE(all));
     } else if (length != 0u) {
-        icd_crc_feed(&crc, sent + (test->of_block ? procedure->registers[ICD_BLOCK_OFFSET] : 0u), ICDGEN_SIZE(length));
+        icdgen_check_feed(
+            &check, sent + (test->of_block ? procedure->registers[ICD_BLOCK_OFFSET] : 0u), ICDGEN_SIZE(length));
     } else {
         /* there are no bytes */
     }
     for (uint32_t i = length; !is_received && i < all; ++i) {
-        icd_crc_feed(&crc, &blocks->fill, 1);
+        icdgen_check_feed(&check, &blocks->fill, 1);
     }
-    return icd_crc_result(&crc) == icdgen_value(procedure, &test->value);
+    return icdgen_check_result(&check) == icdgen_value(procedure, &test->value);
 }
 
 /* The telemetry is the next entry. If it is equal to the last one, the node did not advance. */

@@ -156,6 +156,21 @@ typedef struct {
     const uint16_t *table16; /**< For a greater width. Both NULL: computed without a table. */
 } icd_crc_form_t;
 
+/** Kinds of checksums. */
+typedef enum {
+    ICD_CHECK_CRC = 0,
+    ICD_CHECK_FLETCHER = 1,
+    ICD_CHECK_FLETCHER_255 = 2,
+    ICD_CHECK_SUM = 3,
+    ICD_CHECK_XOR = 4
+} icd_check_kind_t;
+
+/** How a checksum is computed. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`. */
+typedef struct {
+    icd_check_kind_t kind;
+    icd_crc_form_t crc;
+} icd_checksum_algorithm_t;
+
 /** The optional checksum of telecommands and frames. */
 typedef struct {
     /** Whether the checksum covers the id byte. */
@@ -170,7 +185,7 @@ typedef struct {
     uint8_t telemetry_always;
     /** Length of the checksum. */
     uint8_t bytes;
-    icd_crc_form_t crc;
+    const icd_checksum_algorithm_t *algorithm;
 } icd_checksum_form_t;
 
 /** A part of the CAN identifier. */
@@ -386,18 +401,9 @@ typedef struct {
     uint32_t values[2];
 } icd_envelope_field_t;
 
-typedef enum {
-    ICD_CHECK_CRC = 0,
-    ICD_CHECK_FLETCHER = 1,
-    ICD_CHECK_FLETCHER_255 = 2,
-    ICD_CHECK_SUM = 3,
-    ICD_CHECK_XOR = 4
-} icd_check_kind_t;
-
-/** The checksum. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`. */
+/** The checksum of a packet format. */
 typedef struct {
-    icd_check_kind_t kind;
-    icd_crc_form_t crc;
+    const icd_checksum_algorithm_t *algorithm;
     uint8_t covered_from;    /**< First byte of the header that it covers. */
     uint8_t covered_trailer; /**< Number of bytes of the trailer that it covers. */
     bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */
@@ -554,7 +560,7 @@ typedef struct {
 #define ICDGEN_DELIMITERS 0u
 
 /* Of icd_check_kind_t. */
-#define ICDGEN_CHECKS 0u
+#define ICDGEN_CHECKS ICDGEN_BIT(ICD_CHECK_CRC)
 
 /* Of icd_packet_content_t. */
 #define ICDGEN_CONTENTS 0u
@@ -647,9 +653,9 @@ typedef struct {
 
 /** Compares a checksum with a value. */
 typedef struct {
-    const icd_crc_form_t *crc; /**< NULL: that of files. */
-    bool of_block;             /**< Of the block; otherwise of all bytes to send. */
-    bool covers_fill;          /**< Whether it covers the fill of the last packet. */
+    const icd_checksum_algorithm_t *algorithm;
+    bool of_block;    /**< Of the block; otherwise of all bytes to send. */
+    bool covers_fill; /**< Whether it covers the fill of the last packet. */
     icd_value_t value;
 } icd_checksum_test_t;
 
@@ -796,7 +802,6 @@ typedef struct {
     int32_t boot_ms;         /**< Waiting time of the boot program in ms, -1 if unknown. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
-    const icd_crc_form_t *crc16;
     const icd_log_mask_form_t *log_mask;
     const icd_log_file_form_t *log_file;
     const icd_log_message_form_t *log_message;
@@ -893,7 +898,7 @@ typedef struct {
 /** Callback for events. `context` is the pointer that was passed together with the callback. */
 typedef void icd_event_fn(void *context, const icd_event_t *event);
 
-/* ---- checksums --------------------------------------------------------------------------------------------------- */
+/* ---- CRCs -------------------------------------------------------------------------------------------------------- */
 
 /** State of a CRC that is computed piece by piece. */
 typedef struct {
@@ -911,11 +916,77 @@ ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc);
 
 ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length);
 
-/** Compute the CRC of telecommands and frames. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
-ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
+/* ---- checksums of all kinds -------------------------------------------------------------------------------------- */
 
-/** Compute the CRC of files and blocks. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
-ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
+/**
+ * Compute a checksum. The function NODE_NAME_checksum() of a node returns the algorithm of its checksum NAME. `bytes`
+ * end with the seed of the message if the checksum has `seeds`.
+ */
+ICDGEN_API uint32_t icd_checksum(const icd_checksum_algorithm_t *algorithm, const uint8_t *bytes, size_t length);
+
+/*
+ * Whether a value of an enumeration is this member. `kinds` are the members that the links have, as a mask: the
+ * compiler knows the result for all others, and also if there is only one.
+ */
+#define ICDGEN_IS(value, member, kinds)                                                                                \
+    (((kinds) & ICDGEN_BIT(member)) != 0u && ((kinds) == ICDGEN_BIT(member) || (value) == (member)))
+#define ICDGEN_IS_CHECK(algorithm, member) ICDGEN_IS((algorithm)->kind, member, ICDGEN_CHECKS)
+
+/* State of a checksum that is computed piece by piece. */
+typedef struct {
+    const icd_checksum_algorithm_t *algorithm;
+    icd_crc_t crc;
+    uint32_t first;
+    uint32_t second;
+} icdgen_check_t;
+
+static inline bool icdgen_is_pair(const icd_checksum_algorithm_t *algorithm)
+{
+    return ICDGEN_IS_CHECK(algorithm, ICD_CHECK_FLETCHER) || ICDGEN_IS_CHECK(algorithm, ICD_CHECK_FLETCHER_255);
+}
+
+static inline void icdgen_check_begin(icdgen_check_t *check, const icd_checksum_algorithm_t *algorithm)
+{
+    check->algorithm = algorithm;
+    if (ICDGEN_IS_CHECK(algorithm, ICD_CHECK_CRC)) {
+        icd_crc_init(&check->crc, &algorithm->crc);
+    } else {
+        check->first = icdgen_is_pair(algorithm) ? algorithm->crc.init & 0xFFu : algorithm->crc.init;
+        check->second = algorithm->crc.init >> 8;
+    }
+}
+
+static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
+{
+    const icd_checksum_algorithm_t *const algorithm = check->algorithm;
+    const uint32_t modulus = ICDGEN_IS_CHECK(algorithm, ICD_CHECK_FLETCHER_255) ? 255u : 256u;
+    if (ICDGEN_IS_CHECK(algorithm, ICD_CHECK_CRC)) {
+        icd_crc_feed(&check->crc, bytes, length);
+        return;
+    }
+    for (size_t i = 0; i < length; ++i) {
+        if (ICDGEN_IS_CHECK(algorithm, ICD_CHECK_SUM)) {
+            check->first += bytes[i];
+        } else if (ICDGEN_IS_CHECK(algorithm, ICD_CHECK_XOR)) {
+            check->first ^= bytes[i];
+        } else {
+            check->first = (check->first + bytes[i]) % modulus;
+            check->second = (check->second + check->first) % modulus;
+        }
+    }
+}
+
+static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
+{
+    const icd_crc_form_t *const form = &check->algorithm->crc;
+    if (ICDGEN_IS_CHECK(check->algorithm, ICD_CHECK_CRC)) {
+        return icd_crc_result(&check->crc);
+    }
+    const uint32_t value = icdgen_is_pair(check->algorithm)
+        ? (check->second << 8) | check->first
+        : check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width));
+    return value ^ form->xor_out;
+}
 
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
 
@@ -1130,7 +1201,7 @@ ICDGEN_API void icd_stream_feed(
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
 /** Compute the checksum of the data of a message. The link must describe checksums. */
-ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
+ICDGEN_API uint32_t icd_message_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
 
 /** Encode a telecommand: id, data and, if `checked`, the checksum. I2C writes these bytes; the UART frames them. */
 ICDGEN_API icd_status_t icd_i2c_write(

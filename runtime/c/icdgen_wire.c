@@ -18,6 +18,8 @@
 
 #include "wire/crc.c"
 
+#include "wire/checksum.c"
+
 #include "wire/uart.c"
 
 #include "wire/envelope.h"

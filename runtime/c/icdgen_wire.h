@@ -42,6 +42,8 @@
 
 #include "wire/crc.h"
 
+#include "wire/checksum.h"
+
 #include "wire/uart.h"
 
 #include "wire/stream.h"

@@ -35,7 +35,7 @@ static void answer_checksum(uint32_t id, const uint8_t *bytes, size_t length)
 {
     loader_block_checksum_t sum;
     uint8_t data[LOADER_BLOCK_CHECKSUM_LENGTH];
-    sum.checksum = icd_crc(loader_upload_form()->checksums[0].crc, bytes, length);
+    sum.checksum = icd_checksum(loader_crc32_checksum(), bytes, length);
     assert(loader_block_checksum_encode(&sum, data, sizeof data) == ICD_OK);
     answer(id, data, sizeof data);
 }

@@ -198,7 +198,7 @@ def test_a_program_has_nothing_of_the_buses_that_it_does_not_begin(folder):
         tables = tables_of(linked(folder, bus))
         others = {f"{other}_exchanges" for other in BUSES if other != bus}
         assert f"{bus}_exchanges" in tables and not tables & others
-        assert not tables & {"crc16", "log_bits", "packed_time", "index_entry"}
+        assert not tables & {"checksum_crc16", "log_bits", "packed_time", "index_entry"}
 
 
 BUSES = ("uart", "i2c", "can")
@@ -215,7 +215,9 @@ def test_a_program_without_tables_of_checksums_has_none(folder):
     with_tables = tables_of(linked(folder, "uart", "-DICDGEN_TABLES"))
     without = tables_of(linked(folder, "uart"))
     at_all = tables_of(linked(folder, "uart", "-O1", "-DICDGEN_NO_TABLES"))
-    assert with_tables - without == {"crc8_table"} and "crc8_table" not in at_all
+    assert (
+        with_tables - without == {"checksum_crc8_table"} and "crc8_table" not in at_all
+    )
 
 
 CHOSEN = ("-DCUBEACP_CHOSEN", "-DCUBEACP_WITH_IDENTIFICATION")

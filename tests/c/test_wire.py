@@ -230,10 +230,8 @@ int main(void)
 {
     static const uint8_t bytes[] = "123456789 and so on";
     for (size_t length = 0; length < sizeof bytes; ++length) {
-        uint32_t one = 0, two = 0;
-        if (icd_crc8(cubeacp_link(), bytes, length, &one) || icd_crc16(cubeacp_link(), bytes, length, &two)) {
-            return 1;
-        }
+        const uint32_t one = icd_checksum(cubeacp_crc8_checksum(), bytes, length);
+        const uint32_t two = icd_checksum(cubeacp_crc16_checksum(), bytes, length);
         printf("%u %u\\n", (unsigned)one, (unsigned)two);
     }
     return 0;

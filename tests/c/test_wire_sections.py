@@ -31,7 +31,7 @@ PARTS = {
     "link.buses.i2c": ["exchanges[ICD_BUS_I2C]"],
     "link.buses.can": ["can", "exchanges[ICD_BUS_CAN]"],
     "procedures": [],
-    "link.checksums": ["crc16"],
+    "link.checksums": [],
     "index_file": ["index"],
     "msdos_time": ["time"],
     "boot": [],

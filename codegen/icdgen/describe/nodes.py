@@ -29,7 +29,14 @@ from icdgen.describe.lengths import (
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Icd, Message, Node, Struct, framed_link
+from icdgen.icd.model import (
+    Enum,
+    Icd,
+    Message,
+    Node,
+    Struct,
+    framed_link,
+)
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
 
@@ -436,6 +443,12 @@ class NodeDescription:
     def procedures(self) -> dict[str, dict[str, Any]]:
         """Procedures of the node in the ICD, by name."""
         return self._description.icd.procedures_of(self.model)
+
+    @cached_property
+    def checksums(self) -> tuple[str, ...]:
+        """Names of the checksums of the node."""
+        protocol = self._description.icd.protocol_of(self.model)
+        return (*protocol.get("link", {}).get("checksums", {}),)
 
     @cached_property
     def has_client(self) -> bool:

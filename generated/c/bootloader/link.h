@@ -33,6 +33,9 @@ ICDGEN_API const icd_link_t *bootloader_i2c_link(void);
 /** Return the part of this description that a client on CAN needs. */
 ICDGEN_API const icd_link_t *bootloader_can_link(void);
 
+/** Return the algorithm of the checksum `crc16`. */
+ICDGEN_API const icd_checksum_algorithm_t *bootloader_crc16_checksum(void);
+
 /** Return the steps of the procedure `list`; NULL if procedures are left out. */
 ICDGEN_API const icd_procedure_form_t *bootloader_list_form(void);
 

@@ -35,6 +35,12 @@ ICDGEN_API const icd_link_t *cubeacp_i2c_link(void);
 /** Return the part of this description that a client on CAN needs. */
 ICDGEN_API const icd_link_t *cubeacp_can_link(void);
 
+/** Return the algorithm of the checksum `crc16`. */
+ICDGEN_API const icd_checksum_algorithm_t *cubeacp_crc16_checksum(void);
+
+/** Return the algorithm of the checksum `crc8`. */
+ICDGEN_API const icd_checksum_algorithm_t *cubeacp_crc8_checksum(void);
+
 /** Return the steps of the procedure `list`; NULL if procedures are left out. */
 ICDGEN_API const icd_procedure_form_t *cubeacp_list_form(void);
 

@@ -81,22 +81,4 @@ ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, si
     return icd_crc_result(&crc);
 }
 
-ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc)
-{
-    if (link->checksum == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *crc = icd_crc(&link->checksum->crc, bytes, length);
-    return ICD_OK;
-}
-
-ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc)
-{
-    if (link->crc16 == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *crc = icd_crc(link->crc16, bytes, length);
-    return ICD_OK;
-}
-
 #endif /* ICDGEN_WIRE_CRC_C */

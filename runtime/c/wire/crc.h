@@ -4,9 +4,8 @@
 #include "../icdgen.h"
 #include "linkage.h"
 #include "forms.h"
-#include "link.h"
 
-/* ---- checksums --------------------------------------------------------------------------------------------------- */
+/* ---- CRCs -------------------------------------------------------------------------------------------------------- */
 
 /** State of a CRC that is computed piece by piece. */
 typedef struct {
@@ -23,11 +22,5 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
 ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc);
 
 ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length);
-
-/** Compute the CRC of telecommands and frames. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
-ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
-
-/** Compute the CRC of files and blocks. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
-ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
 #endif /* ICDGEN_WIRE_CRC_H */

@@ -2,20 +2,14 @@
 #define ICDGEN_WIRE_ENVELOPE_H
 
 #include "stream.h"
+#include "checksum.h"
 #include "kinds.h"
 
 #define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
 
-/*
- * Whether a value of an enumeration is this member. `kinds` are the members that the links have, as a mask: the
- * compiler knows the result for all others, and also if there is only one.
- */
-#define ICDGEN_IS(value, member, kinds)                                                                                \
-    (((kinds) & ICDGEN_BIT(member)) != 0u && ((kinds) == ICDGEN_BIT(member) || (value) == (member)))
 #define ICDGEN_IS_DELIMITED_BY(form, delimiter) ICDGEN_IS((form)->delimited_by, delimiter, ICDGEN_DELIMITERS)
 #define ICDGEN_HAS_ROLE(field, member) ICDGEN_IS((field)->role, member, ICDGEN_ROLES)
 #define ICDGEN_CONTAINS(packet, member) ICDGEN_IS((packet)->content, member, ICDGEN_CONTENTS)
-#define ICDGEN_IS_CHECK(form, member) ICDGEN_IS((form)->kind, member, ICDGEN_CHECKS)
 #define ICDGEN_IS_VERDICT(verdict, member) ICDGEN_IS(verdict, member, ICDGEN_VERDICTS)
 #define ICDGEN_HAS_FLAG(row, flag) (((row)->flags & (flag) & ICDGEN_STREAM_FLAGS) != 0u)
 
@@ -115,61 +109,6 @@ static inline uint32_t icdgen_stream_number(
     return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
 }
 
-/* State of a checksum that is computed piece by piece. */
-typedef struct {
-    const icd_check_form_t *form;
-    icd_crc_t crc;
-    uint32_t first;
-    uint32_t second;
-} icdgen_check_t;
-
-static inline bool icdgen_is_pair(const icd_check_form_t *form)
-{
-    return ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER) || ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255);
-}
-
-static inline void icdgen_check_begin(icdgen_check_t *check, const icd_check_form_t *form)
-{
-    check->form = form;
-    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
-        icd_crc_init(&check->crc, &form->crc);
-    } else {
-        check->first = icdgen_is_pair(form) ? form->crc.init & 0xFFu : form->crc.init;
-        check->second = form->crc.init >> 8;
-    }
-}
-
-static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
-{
-    const icd_check_form_t *const form = check->form;
-    const uint32_t modulus = ICDGEN_IS_CHECK(form, ICD_CHECK_FLETCHER_255) ? 255u : 256u;
-    if (ICDGEN_IS_CHECK(form, ICD_CHECK_CRC)) {
-        icd_crc_feed(&check->crc, bytes, length);
-        return;
-    }
-    for (size_t i = 0; i < length; ++i) {
-        if (ICDGEN_IS_CHECK(form, ICD_CHECK_SUM)) {
-            check->first += bytes[i];
-        } else if (ICDGEN_IS_CHECK(form, ICD_CHECK_XOR)) {
-            check->first ^= bytes[i];
-        } else {
-            check->first = (check->first + bytes[i]) % modulus;
-            check->second = (check->second + check->first) % modulus;
-        }
-    }
-}
-
-static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
-{
-    const icd_crc_form_t *const form = &check->form->crc;
-    if (ICDGEN_IS_CHECK(check->form, ICD_CHECK_CRC)) {
-        return icd_crc_result(&check->crc);
-    }
-    const uint32_t value = icdgen_is_pair(check->form) ? (check->second << 8) | check->first
-                                                       : check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width));
-    return value ^ form->xor_out;
-}
-
 /*
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.
@@ -185,7 +124,7 @@ static inline uint32_t icdgen_envelope_check(
     static const uint8_t zero = 0;
     const icd_check_form_t *const given = packet->check;
     icdgen_check_t check;
-    icdgen_check_begin(&check, given);
+    icdgen_check_begin(&check, given->algorithm);
     icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(packet->header_bytes) - given->covered_from);
     if (data != NULL) {
         icdgen_check_feed(&check, data, length);

@@ -124,6 +124,21 @@ typedef struct {
     const uint16_t *table16; /**< For a greater width. Both NULL: computed without a table. */
 } icd_crc_form_t;
 
+/** Kinds of checksums. */
+typedef enum {
+    ICD_CHECK_CRC = 0,
+    ICD_CHECK_FLETCHER = 1,
+    ICD_CHECK_FLETCHER_255 = 2,
+    ICD_CHECK_SUM = 3,
+    ICD_CHECK_XOR = 4
+} icd_check_kind_t;
+
+/** How a checksum is computed. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`. */
+typedef struct {
+    icd_check_kind_t kind;
+    icd_crc_form_t crc;
+} icd_checksum_algorithm_t;
+
 /** The optional checksum of telecommands and frames. */
 typedef struct {
     /** Whether the checksum covers the id byte. */
@@ -138,7 +153,7 @@ typedef struct {
     uint8_t telemetry_always;
     /** Length of the checksum. */
     uint8_t bytes;
-    icd_crc_form_t crc;
+    const icd_checksum_algorithm_t *algorithm;
 } icd_checksum_form_t;
 
 /** A part of the CAN identifier. */

@@ -4,15 +4,15 @@
 #include "i2c.h"
 #include "link.c"
 
-ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
+ICDGEN_API uint32_t icd_message_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
 {
-    icd_crc_t crc;
-    icd_crc_init(&crc, &link->checksum->crc);
+    icdgen_check_t check;
+    icdgen_check_begin(&check, link->checksum->algorithm);
     if (link->checksum->covers_id) {
-        icd_crc_feed(&crc, &id, 1);
+        icdgen_check_feed(&check, &id, 1);
     }
-    icd_crc_feed(&crc, data, length);
-    return icd_crc_result(&crc);
+    icdgen_check_feed(&check, data, length);
+    return icdgen_check_result(&check);
 }
 
 ICDGEN_API icd_status_t icd_i2c_write(
@@ -40,8 +40,9 @@ ICDGEN_API icd_status_t icd_i2c_write(
         (void)memcpy(buffer + 1, data, length);
     }
     *written = 1u + length + extra;
-    return checked ? icdgen_put_number(link, buffer + 1u + length, extra, icd_checksum(link, id, buffer + 1, length))
-                   : ICD_OK;
+    return checked
+        ? icdgen_put_number(link, buffer + 1u + length, extra, icd_message_checksum(link, id, buffer + 1, length))
+        : ICD_OK;
 }
 
 ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length)
@@ -60,7 +61,7 @@ ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, 
 /* Return whether the checksum after the data of a message is right. */
 static inline bool icdgen_is_intact(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
 {
-    return icdgen_number(link, data + length, link->checksum->bytes) == icd_checksum(link, id, data, length);
+    return icdgen_number(link, data + length, link->checksum->bytes) == icd_message_checksum(link, id, data, length);
 }
 
 ICDGEN_API icd_status_t icd_i2c_reply(

@@ -5,12 +5,12 @@
 #include "linkage.h"
 #include "forms.h"
 #include "link.h"
-#include "crc.h"
+#include "checksum.h"
 
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
 /** Compute the checksum of the data of a message. The link must describe checksums. */
-ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
+ICDGEN_API uint32_t icd_message_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
 
 /** Encode a telecommand: id, data and, if `checked`, the checksum. I2C writes these bytes; the UART frames them. */
 ICDGEN_API icd_status_t icd_i2c_write(

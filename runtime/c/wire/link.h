@@ -63,7 +63,6 @@ typedef struct {
     int32_t boot_ms;         /**< Waiting time of the boot program in ms, -1 if unknown. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
-    const icd_crc_form_t *crc16;
     const icd_log_mask_form_t *log_mask;
     const icd_log_file_form_t *log_file;
     const icd_log_message_form_t *log_message;

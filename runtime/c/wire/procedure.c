@@ -417,19 +417,20 @@ static inline bool icdgen_is_checksum(const icd_procedure_t *procedure, const ic
     const uint32_t all = test->of_block && test->covers_fill ? procedure->count * blocks->packet_bytes : length;
     const bool is_received = test->of_block && !blocks->sends;
     const uint8_t *const sent = memory->bytes;
-    icd_crc_t crc;
-    icd_crc_init(&crc, test->crc != NULL ? test->crc : procedure->link->crc16);
+    icdgen_check_t check;
+    icdgen_check_begin(&check, test->algorithm);
     if (is_received) {
-        icd_crc_feed(&crc, memory->buffer, ICDGEN_SIZE(all));
+        icdgen_check_feed(&check, memory->buffer, ICDGEN_SIZE(all));
     } else if (length != 0u) {
-        icd_crc_feed(&crc, sent + (test->of_block ? procedure->registers[ICD_BLOCK_OFFSET] : 0u), ICDGEN_SIZE(length));
+        icdgen_check_feed(
+            &check, sent + (test->of_block ? procedure->registers[ICD_BLOCK_OFFSET] : 0u), ICDGEN_SIZE(length));
     } else {
         /* there are no bytes */
     }
     for (uint32_t i = length; !is_received && i < all; ++i) {
-        icd_crc_feed(&crc, &blocks->fill, 1);
+        icdgen_check_feed(&check, &blocks->fill, 1);
     }
-    return icd_crc_result(&crc) == icdgen_value(procedure, &test->value);
+    return icdgen_check_result(&check) == icdgen_value(procedure, &test->value);
 }
 
 /* The telemetry is the next entry. If it is equal to the last one, the node did not advance. */

@@ -79,9 +79,9 @@ typedef struct {
 
 /** Compares a checksum with a value. */
 typedef struct {
-    const icd_crc_form_t *crc; /**< NULL: that of files. */
-    bool of_block;             /**< Of the block; otherwise of all bytes to send. */
-    bool covers_fill;          /**< Whether it covers the fill of the last packet. */
+    const icd_checksum_algorithm_t *algorithm;
+    bool of_block;    /**< Of the block; otherwise of all bytes to send. */
+    bool covers_fill; /**< Whether it covers the fill of the last packet. */
     icd_value_t value;
 } icd_checksum_test_t;
 

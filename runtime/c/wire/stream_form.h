@@ -72,18 +72,9 @@ typedef struct {
     uint32_t values[2];
 } icd_envelope_field_t;
 
-typedef enum {
-    ICD_CHECK_CRC = 0,
-    ICD_CHECK_FLETCHER = 1,
-    ICD_CHECK_FLETCHER_255 = 2,
-    ICD_CHECK_SUM = 3,
-    ICD_CHECK_XOR = 4
-} icd_check_kind_t;
-
-/** The checksum. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`. */
+/** The checksum of a packet format. */
 typedef struct {
-    icd_check_kind_t kind;
-    icd_crc_form_t crc;
+    const icd_checksum_algorithm_t *algorithm;
     uint8_t covered_from;    /**< First byte of the header that it covers. */
     uint8_t covered_trailer; /**< Number of bytes of the trailer that it covers. */
     bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
+from icdgen.backends.c.names import checksum_function
 from icdgen.backends.c.procedures import ProcedureCode
 from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.symbols import C_NAMES
@@ -155,6 +156,13 @@ class CTesteeBackend:
                 nodes=nodes,
                 linked=linked,
                 procedures=procedures,
+                checksums={
+                    place: [
+                        (each, checksum_function(description.node(name), each))
+                        for each in description.node(name).checksums
+                    ]
+                    for place, name in linked.items()
+                },
             ),
         )
         yield (

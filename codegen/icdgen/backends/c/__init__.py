@@ -160,7 +160,9 @@ def _link(
 ) -> Iterator[tuple[PurePosixPath, str]]:
     """List the files of the link of a node: its facts, its client and its procedures."""
     from icdgen.backends.c import links
+    from icdgen.backends.c.names import checksum_function
     from icdgen.backends.c.procedures import ProcedureCode
+    from icdgen.backends.c.tables import algorithm_table
     from icdgen.describe.links import Assumptions
 
     folder, assumed = PurePosixPath(node.name), Assumptions(link.facts)
@@ -172,6 +174,10 @@ def _link(
         "link": link,
         "sizes": links.sizes(link),
         "procedures": procedures,
+        "checksums": [
+            (each.name, checksum_function(node, each.name), algorithm_table(each.name))
+            for each in link.facts.checksums.values()
+        ],
         **shared,
     }
     code = links.link_code(link, assumed)

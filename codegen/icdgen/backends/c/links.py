@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from icdgen.backends.c.facts import TYPES, Row, boolean, or_none
+from icdgen.backends.c.facts import Row, boolean, or_none
 from icdgen.backends.c.stream_rows import (
     content_name,
     field_row,
@@ -16,7 +16,7 @@ from icdgen.backends.c.stream_rows import (
     verdict_mask,
     verdict_name,
 )
-from icdgen.backends.c.tables import Table, TableSet
+from icdgen.backends.c.tables import NODE_PREFIX, Table, TableSet, algorithm_table
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP
 from icdgen.describe.links import (
@@ -35,7 +35,7 @@ from icdgen.protocol.envelope import (
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
-from icdgen.protocol.sections import BUSES, CAN, CAN_KINDS, UART, Crc
+from icdgen.protocol.sections import BUSES, CAN, CAN_KINDS, UART
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256
@@ -133,12 +133,13 @@ class _Tables(TableSet):
     """
 
     def __init__(self, link: LinkDescription, assumed: Assumptions) -> None:
-        super().__init__(link, assumed, f"icdgen_node_{link.facts.node.name}_")
+        super().__init__(link, assumed, f"{NODE_PREFIX}{link.facts.node.name}_")
 
     def links(self) -> list[LinkTable]:
         """Return the link of the node, and one for the clients on each bus: with these,
         the linker of a program can drop the tables of everything else.
         """
+        self.algorithms()
         parts, exchanges = self.parts(), self.buses()
         assumed = (
             (key, why)
@@ -253,7 +254,6 @@ class _Tables(TableSet):
             _Part(Row(or_none(facts.boot_ms), "boot time in ms")),
             _Part(Row(self.can(), "CAN"), {CAN}),
             _Part(Row(self.checksum(), "checksums of messages"), checked),
-            _Part(Row(self.crc16(), "CRC of files"), ()),
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
             _Part(
@@ -394,25 +394,18 @@ class _Tables(TableSet):
 
     def checksum(self) -> str:
         checksum = self.facts_of_link.checksum
-        return (
-            self.part(
-                "checksum",
-                checksum,
-                Row(f"{_CRC}{{{self.crc('crc8', checksum.algorithm.crc)}}}"),
-            )
-            if checksum
-            else "NULL"
-        )
+        if checksum is None:
+            return "NULL"
+        algorithm = Row(self.algorithm(checksum.algorithm), "algorithm")
+        return self.part("checksum", checksum, algorithm)
 
-    def crc16(self) -> str:
-        files = self.facts_of_link.checksums.get("crc16")
-        return (
-            self.add(
-                "crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', files.crc)}")]
-            )
-            if files
-            else "NULL"
-        )
+    def algorithms(self) -> None:
+        """Declare the algorithms of all checksums."""
+        for each in self.facts_of_link.checksums.values():
+            name = algorithm_table(each.name)
+            crc = self.crc(name, each.crc, each.kind == CRC)
+            rows = [Row(f"ICD_CHECK_{each.kind.upper()}"), Row(f"{_CRC}{{{crc}}}")]
+            self.add(name, "icd_checksum_algorithm_t", rows)
 
     def stream(self) -> str:
         form = self.facts_of_link.stream
@@ -488,8 +481,7 @@ class _Tables(TableSet):
         check = "NULL"
         if packet.check:
             name, algorithm = f"check{suffix}", packet.check.algorithm
-            crc = self.crc(name, algorithm.crc, algorithm.kind == CRC)
-            row = Row(f"ICD_CHECK_{algorithm.kind.upper()}, {{{crc}}}")
+            row = Row(self.algorithm(algorithm), "algorithm")
             covered = f"{packet.check.covered_from}u, {packet.check.covered_trailer}u, {boolean(packet.check.is_seeded)}"
             check = self.add(name, "icd_check_form_t", [row, Row(covered, "covered")])
         sizes = (

@@ -5,6 +5,7 @@ All names at file scope begin with the name of the declaring node, once.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription
@@ -167,6 +168,16 @@ def procedure(node: NodeDescription, name: str, end: str = "") -> str:
     with an ``end`` that of an output, ``demo_download_size``.
     """
     return "_".join(filter(None, (node.name, name, end)))
+
+
+def checksum_word(name: str) -> str:
+    """Return the name of a checksum as a part of an identifier."""
+    return re.sub(r"\W", "_", name).lower()
+
+
+def checksum_function(node: NodeDescription, name: str) -> str:
+    """``demo_crc16_checksum``: the function that returns the algorithm of a checksum."""
+    return f"{node.name}_{checksum_word(name)}_checksum"
 
 
 def procedure_size(node: NodeDescription, name: str, end: str) -> str:

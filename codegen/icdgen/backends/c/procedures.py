@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from icdgen.backends.c.facts import TYPES, Row, boolean
+from icdgen.backends.c.facts import Row, boolean
 from icdgen.backends.c.names import (
     PROCEDURE_PARAMETERS,
     input_parameters,
@@ -380,14 +380,8 @@ class _Tables(TableSet):
         )
 
     def checksum(self, step: VerifyChecksum) -> str:
-        crc, parameters = "NULL", step.algorithm.crc
-        # NULL stands for the CRC of the link.
-        if step.algorithm is not self.facts_of_link.checksums.get("crc16"):
-            number = len(self._rows["checksums"])
-            row = Row(self.crc(f"crc_{number}", parameters))
-            crc = self.add(f"crc_{number}", TYPES[type(parameters)], [row])
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
-        return f"{{{crc}, {flags}, {value(step.value)}}}"
+        return f"{{{self.algorithm(step.algorithm)}, {flags}, {value(step.value)}}}"
 
     def input(self, each: Input) -> Row:
         values = self.shared("values", "uint32_t", (f"{n}u" for n in each.values))

@@ -105,6 +105,10 @@ class CNames(NamingPolicy):
             yield Identifier(FILES, f"{node.name}/procedures.h", owner, source)
             guard = f"{node.name.upper()}_PROCEDURES_H"
             yield Identifier(FILE, guard, owner, source, "PROCEDURES_H")
+        for name in node.checksums:
+            function = names.checksum_function(node, name)
+            about = f"checksum `{name}` of node `{node.name}`"
+            yield Identifier(FILE, function, about, source)
         for name, section in node.procedures.items():
             yield from self._procedure(node, name, section)
 

@@ -7,12 +7,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from icdgen.backends.c import names
 from icdgen.backends.c.facts import TYPES, Row, spelled
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import Assumptions, LinkDescription, byte_table
 from icdgen.protocol.declared import Kind, facts_of
-from icdgen.protocol.sections import Crc
+from icdgen.protocol.sections import ChecksumAlgorithm, Crc
+
+NODE_PREFIX = "icdgen_node_"
+"""Prefix of the tables of all nodes."""
+
+
+def algorithm_table(checksum: str) -> str:
+    """Return the name of the table with the algorithm of a checksum."""
+    return f"checksum_{names.checksum_word(checksum)}"
 
 
 class Table(NamedTuple):
@@ -114,6 +123,13 @@ class TableSet:
         """Return the facts of a part as one row."""
         return ", ".join(row.value for row in self.facts(name, part))
 
+    def algorithm(self, algorithm: ChecksumAlgorithm) -> str:
+        """Return the expression that refers to the algorithm of a checksum, which is a
+        table of the node.
+        """
+        node = self.facts_of_link.node.name
+        return f"&{NODE_PREFIX}{node}_{algorithm_table(algorithm.name)}"
+
     def crc(self, name: str, parameters: Crc, is_crc: bool = True) -> str:
         """Return the initialiser of a CRC without braces; the table for whole bytes is
         separate.
@@ -130,4 +146,5 @@ class TableSet:
             )
             # The table that `numbers` declared last.
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
-        return ", ".join((self.values(name, parameters), *tables))
+        # Two lines, because the names of tables are long.
+        return f"{self.values(name, parameters)},\n{STEP * 2} {', '.join(tables)}"

@@ -85,7 +85,7 @@ static void i2c_reply(void)
         refuse_length("length", length, octets.length);
     } else if (status == ICD_ERROR_CHECKSUM) {
         refuse_length(
-            "checksum", icd_checksum(link, id, octets.data, length),
+            "checksum", icd_message_checksum(link, id, octets.data, length),
             icdgen_number(link, octets.data + length, octets.length - length));
     } else if (answers(status)) {
         put_octets("bytes", octets.data, length);

@@ -26,18 +26,11 @@ const char *event_name(icd_event_kind_t kind)
 
 static void checksum(void)
 {
-    const icd_link_t *link = next_link();
-    const char *name = next_word();
+    const size_t node = next_number();
+    const icd_checksum_algorithm_t *const algorithm = testee_checksum(node, next_word());
     const octets_t octets = next_octets();
-    icd_status_t status = ICD_ERROR_UNSUPPORTED;
-    uint32_t value = 0;
-    if (is_word(name, "crc8")) {
-        status = icd_crc8(link, octets.data, octets.length, &value);
-    } else if (is_word(name, "crc16")) {
-        status = icd_crc16(link, octets.data, octets.length, &value);
-    }
-    if (answers(status)) {
-        put_number("crc", value);
+    if (answers(algorithm != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED)) {
+        put_number("crc", icd_checksum(algorithm, octets.data, octets.length));
     }
 }
 
