@@ -89,6 +89,7 @@ def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]
         yield from envelopes.requests(link, node_facts.stream, source)
         yield from asking.scripts(link, node_facts)
         yield from procedures.scripts(link, node_facts)
+        yield from streams.checksums(node_facts, source)
         return
     yield from streams.checksums(node_facts, source)
     if node_facts.framing:

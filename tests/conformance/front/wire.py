@@ -56,7 +56,7 @@ def event(kind: str, facts: Facts) -> Answer:
 
 
 def checksum(to: Asking, request: Request) -> Answer:
-    name = text(request, "name")
+    name = text(request, "name").encode().hex()
     return typed(to.ask("checksum", name, octets(request).hex()).facts)
 
 

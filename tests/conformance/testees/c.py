@@ -158,7 +158,10 @@ class CTesteeBackend:
                 procedures=procedures,
                 checksums={
                     place: [
-                        (each, checksum_function(description.node(name), each))
+                        (
+                            each.encode().hex(),
+                            checksum_function(description.node(name), each),
+                        )
                         for each in description.node(name).checksums
                     ]
                     for place, name in linked.items()

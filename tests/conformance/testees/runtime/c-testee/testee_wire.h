@@ -11,7 +11,7 @@
 /* That of a node; NULL if the ICD says nothing of how its messages travel. */
 const icd_link_t *testee_link(size_t node);
 
-/* A checksum of a node by its name in the ICD; NULL if there is none. */
+/* A checksum of a node by its name in the ICD, in hexadecimal; NULL if there is none. */
 const icd_checksum_algorithm_t *testee_checksum(size_t node, const char *name);
 
 /* A procedure of a node. */

@@ -68,7 +68,7 @@ def answer(name: str, node: Any, words: Words) -> str:
 
 
 def _checksum(link: Link, words: Words) -> str:
-    return f" crc={checksum(link, next(words), octets(words))}"
+    return f" crc={checksum(link, octets(words).decode(), octets(words))}"
 
 
 def _uart_encode(link: Link, words: Words) -> str:

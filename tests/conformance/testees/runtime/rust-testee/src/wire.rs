@@ -72,7 +72,8 @@ pub fn bus(words: &mut Words) -> Bus {
 }
 
 fn checksum_of(link: &'static Link, words: &mut Words) -> Answer {
-    let value = checksum(link, words.word(), &words.octets())?;
+    let name = String::from_utf8(words.octets()).unwrap();
+    let value = checksum(link, &name, &words.octets())?;
     Ok(format!(" crc={value}"))
 }
 
