@@ -23,7 +23,7 @@ OTHERWISE = {
     "received: 1": "received: 0",
     "beyond_end: 1": "beyond_end: 0",
     "fill: 0x00": "fill: 0x5A",
-    "covers_id: false": "covers_id: true",
+    "covers: {from: data, to: data}": "covers: {from: id, to: data}",
     "covers_fill: false": "covers_fill: true",
     "reflect_in: true": "reflect_in: false",
     "check: 0x25": "check: 0x57",

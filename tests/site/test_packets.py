@@ -373,7 +373,7 @@ def test_the_protocol_page_shows_each_packet_format(site):
         "Requests of telemetry Requested by packet question with its id "
         "Telemetry Temperature , Counters",
         "Time-out 250 ms",
-        "Polynomial 0x1021",
+        "without the leading term 0x1021",
     ):
         assert words in page, words
     text = (site / "relay" / "protocol.html").read_text("utf-8")

@@ -8,7 +8,7 @@ variable parts and its ids.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from icdgen import frame_bits
@@ -37,6 +37,7 @@ from icdgen.icd.model import (
     Struct,
     framed_link,
 )
+from icdgen.icd.trees import at_path
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
 
@@ -448,7 +449,9 @@ class NodeDescription:
     def checksums(self) -> tuple[str, ...]:
         """Names of the checksums of the node."""
         protocol = self._description.icd.protocol_of(self.model)
-        return (*protocol.get("link", {}).get("checksums", {}),)
+        # Names are checked before the link is known to have the right form.
+        declared = at_path(protocol, ("link", "checksums"))
+        return tuple(declared) if isinstance(declared, Mapping) else ()
 
     @cached_property
     def has_client(self) -> bool:

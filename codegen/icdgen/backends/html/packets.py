@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from icdgen.backends.html import envelopes
 from icdgen.backends.html.links import free_name, slug
 from icdgen.backends.html.relations import Place, Relations
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
 from icdgen.icd.packets import BOTH, DEVICE, HOST, Packet, Packets, declared_packets
 from icdgen.icd.responses import declared_responses, responses_in
 from icdgen.protocol.envelope import (
@@ -71,9 +71,11 @@ def packet_views(relations: Relations, node: Node, stream: Stream) -> list[Packe
 
 
 def packet_urls(relations: Relations, node: Node) -> dict[str, str]:
-    """Return the links to the packet formats of a link, by name; the name is empty if
-    there is one.
+    """Return the links to the packet formats of a framed link, by name; the name is
+    empty if there is one.
     """
+    if not framed_link(relations.icd.protocol_of(node)):
+        return {}
     page, taken = relations.links.protocol(node.name), set[str]()
     return {
         packet.name: f"{page}#{_anchor(packet.name, node, taken)}"

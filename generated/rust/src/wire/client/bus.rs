@@ -122,11 +122,15 @@ impl Messages {
     }
 }
 
-/// Return the arrival of a packet without a message. `head` is its id.
-pub(super) fn packet<'a>(packet: usize, head: &'a [u8; 1], data: &'a [u8]) -> Arrival<'a> {
-    let [id] = *head;
+/// Return the arrival of a packet without a message. `head` is its id as a byte.
+pub(super) const fn packet<'a>(
+    packet: usize,
+    id: u32,
+    head: &'a [u8],
+    data: &'a [u8],
+) -> Arrival<'a> {
     Arrival {
-        id: id.into(),
+        id,
         packet: Some(packet),
         head,
         data,

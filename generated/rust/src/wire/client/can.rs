@@ -133,12 +133,12 @@ impl<const N: usize> Transport for Line<N> {
     }
 }
 
-/// Return what a message is, or the event of one that no request can have. `head` is its id.
+/// Return what a message is, or the event of one that no request can have. `head` is its id as a byte.
 fn arrival<'a>(
     messages: &Messages,
     node: u32,
     message: &can::Message<'a>,
-    head: &'a [u8; 1],
+    head: &'a [u8],
 ) -> Result<Arrival<'a>, Event<'a>> {
     let can::Message { id, data, .. } = *message;
     let packet = match message.kind {
@@ -149,7 +149,7 @@ fn arrival<'a>(
         Kind::RequestRefusal => bus::REQUEST_REFUSAL,
         Kind::Telecommand | Kind::Request => return Err(bus::stray(id, data)),
     };
-    Ok(bus::packet(packet, head, data))
+    Ok(bus::packet(packet, id, head, data))
 }
 
 /// Convert an error event of the joiner.

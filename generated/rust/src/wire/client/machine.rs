@@ -163,7 +163,7 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
         let slot = free.ok_or(Error::Busy)?;
         let (least, most) = plan.lengths;
         let length = if asks { least } else { request.data.len() };
-        let expected = length.clamp(least, most);
+        let expected = length.max(least).min(most); // `clamp` can panic
         let room = slot.data.as_mut().get_mut(..length);
         let data = room.filter(|_| length == expected).ok_or(Error::Length {
             expected,
@@ -172,7 +172,10 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
         if asks {
             data.fill(0);
         } else {
-            data.copy_from_slice(request.data);
+            // `copy_from_slice` leaves a panic where a compiler does not see the equal lengths.
+            for (to, from) in data.iter_mut().zip(request.data) {
+                *to = *from;
+            }
         }
         let mut awaited = plan.awaited;
         awaited.set_data(data);

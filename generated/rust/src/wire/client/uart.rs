@@ -111,7 +111,8 @@ fn arrival<'a>(messages: &Messages, message: &'a [u8]) -> Result<Arrival<'a>, Ev
         Kind::Reply => messages.telemetry(id, data),
         Kind::Acknowledge => Ok(bus::packet(
             bus::ACKNOWLEDGE,
-            core::array::from_ref(first),
+            id,
+            core::slice::from_ref(first),
             data,
         )),
         Kind::Other => Err(bus::stray(id, data)),

@@ -197,7 +197,11 @@ impl Exchange {
     /// Return the sources in id and data, and those in the header.
     fn parts(&self) -> (&'static [NumberPlace], &'static [NumberPlace]) {
         let in_message = self.sources.len().saturating_sub(self.in_header);
-        self.sources.split_at(in_message)
+        // `split_at` leaves a panic where a compiler does not see that this is inside.
+        (
+            self.sources.get(..in_message).unwrap_or(&[]),
+            self.sources.get(in_message..).unwrap_or(&[]),
+        )
     }
 }
 
