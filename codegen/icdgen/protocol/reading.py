@@ -183,7 +183,7 @@ class Reader:
     def checksums(self) -> dict[str, ChecksumAlgorithm]:
         """Checksums of the node by name, in the order of the ICD."""
         declared = self.section("link", "checksums")
-        return {name: algorithm_of(name, each) for name, each in declared.items()}
+        return {name: declared_algorithm(name, each) for name, each in declared.items()}
 
     def checksum(self) -> Checksum | None:
         """Return the checksum of messages on buses; None without one."""
@@ -318,7 +318,7 @@ class Reader:
                 )
 
 
-def algorithm_of(name: str, declaration: Mapping[str, Any]) -> ChecksumAlgorithm:
+def declared_algorithm(name: str, declaration: Mapping[str, Any]) -> ChecksumAlgorithm:
     """Return the algorithm of the checksum that a section declares."""
     # Kinds other than a CRC have only some of the parameters.
     given: dict[str, Any] = {"polynomial": 0, "init": 0, "xor_out": 0}

@@ -53,7 +53,7 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
         _kinds(
             "CHECKS",
             "ICD_CHECK",
-            (sum.kind for each in facts for sum in each.checksums.values()),
+            (checksum.kind for each in facts for checksum in each.checksums.values()),
             "icd_check_kind_t",
         ),
         _kinds(

@@ -33,10 +33,7 @@ def of_node(node_facts: Facts, section: Mapping[str, Any]) -> list[Sum]:
     """Return the checksums of a node in the order of the ICD."""
     sums = []
     for algorithm in node_facts.checksums.values():
-        declaration: Mapping[str, Any] = section
-        for key in algorithm.section.split("."):
-            declaration = declaration[key]
-        check = declaration.get("check")
+        check = section["link"]["checksums"][algorithm.name].get("check")
         shown = "" if check is None else f"0x{check:X}"
         sums.append(Sum(algorithm.name, [*_rows(algorithm)], shown))
     return sums

@@ -22,11 +22,12 @@ from icdgen.icd.model import (
 from icdgen.icd.packets import ID_ROLE, declared_packets
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import DATA, links, links_on_buses
+from icdgen.icd.rules.protocol_effects import NAMES_OF_BUSES
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import mappings
 from icdgen.wording import quote
 
-BUSES = ("uart", "i2c", CAN := "can")
+CAN = "can"
 
 
 @rule("ICD108", needs_complete=True)
@@ -171,7 +172,7 @@ def _unused_keys(section: Map) -> Iterator[Fault]:
 def _buses(section: Map) -> list[str]:
     """Return the buses on which a packet is sent."""
     buses = section.get("buses")
-    return [bus for bus in BUSES if not isinstance(buses, Seq) or bus in buses]
+    return [bus for bus in NAMES_OF_BUSES if not isinstance(buses, Seq) or bus in buses]
 
 
 def _uses_can(ctx: Context, node: Node) -> bool:
