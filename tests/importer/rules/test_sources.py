@@ -224,6 +224,76 @@ def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):
     assert second.rows[0].cells[0].rows == 1  # no more than there are
 
 
+def _read_html(path: Path, body: str):
+    """The document of a web page, and its tables."""
+    path.write_text(f"<html><body>{body}</body></html>", encoding="utf-8")
+    return sources.read(path, profile.load())
+
+
+TABLE = "<table><tr><td>a<td>b</table>"
+
+
+@pytest.mark.parametrize(
+    ("body", "lines"),
+    [
+        ("<div>Id <!-- of the bus --> 0x21 of it.</div>", ["Id 0x21 of it."]),
+        (
+            "<!-- x -->Id 0x21<script>no()</script>, <b>always</b>.",
+            ["Id 0x21, always."],
+        ),
+        ("<p>Id<br>0x21</p>Length 8", ["Id", "0x21", "Length 8"]),
+        ("<p>Id of\n  the bus</p>", ["Id of the bus"]),
+        ("<pre>struct <b>a\n{</b>\nint8_t x;</pre>", ["struct a", "{", "int8_t x;"]),
+        ("<dl><dt>Id<dd>0x21</dl>", ["Id", "0x21"]),
+        ("<ul><li>Id<li>0x21</ul>", ["Id", "0x21"]),
+    ],
+)
+def test_all_text_of_a_web_page_is_kept_in_the_lines_that_a_browser_shows(
+    tmp_path, body, lines
+):
+    _, (table,) = _read_html(tmp_path / "a.html", body + TABLE)
+    assert table.before == lines
+
+
+def test_a_caption_in_several_elements_and_source_lines_is_one_caption(tmp_path):
+    body = f"<div><b>Table 7:</b> Tank\n  <i>state</i></div>{TABLE}"
+    _, (table,) = _read_html(tmp_path / "a.html", body)
+    assert (table.label, table.caption) == (7, "Tank state")
+
+
+def test_a_heading_within_any_element_begins_a_section(tmp_path):
+    body = f"<aside><header><h2>4.1 Motor</h2></header>{TABLE}</aside>"
+    _, (table,) = _read_html(tmp_path / "a.html", body)
+    assert table.headings == ["4.1 Motor"]
+
+
+@pytest.mark.parametrize(
+    ("span", "rows"),
+    [
+        ("0", 3),
+        ("2", 2),
+        ("9", 3),
+        (" +2;", 2),
+        ("x", 1),
+        ("\u00b2", 1),
+        ("9" * 9999, 3),
+    ],
+)
+def test_row_spans_end_with_their_group_of_rows_as_in_browsers(tmp_path, span, rows):
+    body = f"""<table><thead><tr><th>A<th>B</thead>
+      <tbody><tr><td rowspan="{span}">a<td>1<tr><td>2<tr><td>3</tbody>
+      <tbody><tr><td>b<td>4</tbody></table>"""
+    _, (table,) = _read_html(tmp_path / "a.html", body)
+    assert table.rows[1].cells[0].rows == rows
+    assert [cell.text for cell in table.rows[-1].cells] == ["b", "4"]
+
+
+def test_the_lines_of_a_list_in_a_cell_are_lines(tmp_path):
+    body = "<table><tr><td><dl><dt>0<dd>Off<dt>1<dd>On</dl><td>Mode</table>"
+    _, (table,) = _read_html(tmp_path / "a.html", body)
+    assert table.rows[0].cells[0].text == "0\nOff\n1\nOn"
+
+
 @pytest.mark.parametrize(
     ("name", "data"),
     [

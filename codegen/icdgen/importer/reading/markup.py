@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import zipfile
 from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,14 @@ from icdgen.importer.words import CONTINUED, plain, table_number
 CODE = "IMP002"
 # As type sizes: larger ones contain smaller ones.
 _HEADINGS = {f"h{level}": float(20 - level) for level in range(1, 7)}
-_BREAKS = {"p", "div", "li", "br", "tr"}
+# Elements that browsers show on lines of their own, and cells of tables for layout.
+_BREAKS = {
+    "address", "article", "aside", "blockquote", "br", "caption", "dd", "details", "div", "dl", "dt", "fieldset",
+    "figcaption", "figure", "footer", "form", "h1", "h2", "h3", "h4", "h5", "h6", "header", "hr", "li", "main", "nav",
+    "ol", "p", "pre", "section", "summary", "table", "td", "th", "tr", "ul",
+}  # fmt: skip
+# Limits of HTML for `colspan` and `rowspan`.
+_MOST_COLUMNS, _MOST_ROWS = 1000, 65534
 _SKIPPED = {"script", "style", "head", "template", "noscript"}
 
 
@@ -49,7 +57,9 @@ def read_markdown(path: Path, profile: Profile) -> Document:
     from markdown_it import MarkdownIt
 
     text = utf8_text(path, "save it as UTF-8")
-    html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
+    # Each line of a paragraph stays a line, because patterns of profiles match lines.
+    options = {"html": True, "breaks": True}
+    html = MarkdownIt("commonmark", options).enable("table").render(text)
     return _of_html(
         # Without a declared encoding, the parser would guess one.
         f'<html><meta charset="utf-8"><body>{html}</body></html>'.encode(),
@@ -80,6 +90,7 @@ def _of_html(data: bytes, name: str, profile: Profile) -> Document:
         ) from None
     title = root.findtext(".//title") or ""
     document = Document(name, title=plain(title))
+    _join_source_lines(root)
     body = root.find("body")
     document.blocks = attach_captions(
         list(_html_blocks(body if body is not None else root, profile))
@@ -88,27 +99,34 @@ def _of_html(data: bytes, name: str, profile: Profile) -> Document:
 
 
 def _html_blocks(element: Any, profile: Profile) -> Iterator[Block | Caption]:
-    # The tag of a comment or of a processing instruction is a function in lxml.
+    line = [element.text or ""]  # texts since the last table, heading or container
     for child in element:
-        if not isinstance(child.tag, str) or child.tag in _SKIPPED:
-            continue
-        if child.tag == "table" and not _is_layout(child):
-            yield _html_table(child)
-        elif child.tag in _HEADINGS:
-            yield _heading(plain(_text(child)), _HEADINGS[child.tag])
+        if not _is_shown(child):
+            pass
         elif (
-            child.find(".//table") is not None
-            or child.find(".//h1") is not None
-            or child.tag in ("div", "section", "article", "main")
+            child.tag in _HEADINGS
+            or child.tag == "table"
+            or child.find(".//table") is not None
+            or any(child.find(f".//{tag}") is not None for tag in _HEADINGS)
         ):
-            if child.text and child.text.strip():
-                yield from _paragraph(child.text, profile)
-            yield from _html_blocks(child, profile)
+            yield from _paragraphs("".join(line), profile)
+            line = []
+            if child.tag in _HEADINGS:
+                yield _heading(plain(_text(child)), _HEADINGS[child.tag])
+            elif child.tag == "table" and not _is_layout(child):
+                yield _html_table(child)
+            else:
+                yield from _html_blocks(child, profile)
         else:
-            for line in _text(child).split("\n"):
-                yield from _paragraph(line, profile)
-        if child.tail and child.tail.strip():
-            yield from _paragraph(child.tail, profile)
+            line.append(_text_in_line(child))
+        line.append(child.tail or "")
+    yield from _paragraphs("".join(line), profile)
+
+
+def _is_shown(element: Any) -> bool:
+    """Return whether a browser shows the element."""
+    # The tag of a comment or of a processing instruction is a function in lxml.
+    return isinstance(element.tag, str) and element.tag not in _SKIPPED
 
 
 def _is_layout(table: Any) -> bool:
@@ -120,58 +138,75 @@ def _is_layout(table: Any) -> bool:
 
 def _html_table(table: Any) -> SourceTable:
     caption = table.find("caption")
-    rows = []
-    # All rows are its own: tables that contain others do not come here.
-    for row in table.iter("tr"):
-        cells = [c for c in row if c.tag in ("td", "th")]
-        rows.append(
-            SourceRow(
-                [
-                    Cell(_cell_text(c), _span(c, "colspan"), _span(c, "rowspan"))
-                    for c in cells
-                ]
-            )
-        )
     text = plain(_text(caption)) if caption is not None else ""
-    return SourceTable(caption=text, rows=_within(rows))
+    # All rows are its own: tables that contain others do not come here.
+    groups = groupby(table.iter("tr"), key=lambda row: row.getparent())
+    rows = [row for _, group in groups for row in _row_group(list(group))]
+    return SourceTable(caption=text, rows=rows)
 
 
-def _within(rows: list[SourceRow]) -> list[SourceRow]:
-    """Return the rows with row spans limited to the table, as in browsers."""
-    for index, row in enumerate(rows):
-        for cell in row.cells:
-            cell.rows = min(cell.rows, len(rows) - index)
+def _row_group(elements: list[Any]) -> list[SourceRow]:
+    """Return the rows of a `thead`, `tbody` or `tfoot`.
+
+    Row spans are limited to the group, as in browsers.
+    """
+    rows = []
+    for index, row in enumerate(elements):
+        left = len(elements) - index
+        cells = [
+            Cell(
+                _cell_text(cell),
+                max(_span(cell, "colspan", _MOST_COLUMNS), 1),
+                # A row span of 0 extends to the end of the group.
+                min(_span(cell, "rowspan", _MOST_ROWS) or left, left),
+            )
+            for cell in row
+            if cell.tag in ("td", "th")
+        ]
+        rows.append(SourceRow(cells))
     return rows
 
 
-def _span(cell: Any, name: str) -> int:
-    text = cell.get(name, "1").strip()
-    # HTML limits `colspan` to 1,000.
-    return min(max(int(text), 1), 1000) if text.isdigit() else 1
+def _span(cell: Any, name: str, most: int) -> int:
+    """Return a span; 1 if it is no number. HTML ignores text behind the number."""
+    match = re.match(r"\s*\+?0*([0-9]+)", cell.get(name, ""))
+    if match is None:
+        return 1
+    return min(int(match[1]), most) if len(match[1]) < 9 else most
 
 
 def _text(element: Any) -> str:
     """Return the text with a line break at each side of a block, and for `<br>`."""
     parts = [element.text or ""]
     for child in element:
-        if isinstance(child.tag, str) and child.tag not in _SKIPPED:
-            around = "\n" if child.tag in _BREAKS else ""
-            parts.append(f"{around if child.tag != 'br' else ''}{_text(child)}{around}")
+        if _is_shown(child):
+            parts.append(_text_in_line(child))
         parts.append(child.tail or "")
     return "".join(parts)
 
 
-def _cell_text(element: Any) -> str:
-    """Return the text of a cell with the line breaks of the document.
+def _text_in_line(element: Any) -> str:
+    """Return the text of an element as it stands within the text of another."""
+    if element.tag == "br":
+        return "\n"
+    around = "\n" if element.tag in _BREAKS else ""
+    return f"{around}{_text(element)}{around}"
 
-    Line ends of the markup are blanks.
-    """
-    for child in element.iter():
-        if isinstance(child.tag, str) and child.tag != "pre":
-            child.text = " ".join(child.text.split("\n")) if child.text else child.text
-        if child is not element:
-            child.tail = " ".join(child.tail.split("\n")) if child.tail else child.tail
+
+def _cell_text(element: Any) -> str:
+    """Return the text of a cell with the line breaks of the document."""
     return "\n".join(filter(None, (plain(line) for line in _text(element).split("\n"))))
+
+
+def _join_source_lines(element: Any) -> None:
+    """Make blanks of line ends in the markup, except in `<pre>`."""
+    if element.tag == "pre":
+        return
+    element.text = " ".join((element.text or "").split("\n"))
+    for child in element:
+        if isinstance(child.tag, str):
+            _join_source_lines(child)
+        child.tail = " ".join((child.tail or "").split("\n"))
 
 
 def _heading(text: str, size: float) -> Heading:
@@ -181,6 +216,11 @@ def _heading(text: str, size: float) -> Heading:
         if match
         else Heading("", text, size=size)
     )
+
+
+def _paragraphs(text: str, profile: Profile) -> Iterator[Block | Caption]:
+    for line in text.split("\n"):
+        yield from _paragraph(line, profile)
 
 
 def _paragraph(text: str, profile: Profile) -> Iterator[Block | Caption]:
@@ -240,8 +280,7 @@ def read_docx(path: Path, profile: Profile) -> Document:
             if style.startswith("Heading ") and level.isdigit():
                 blocks.append(_heading(plain(part.text), 20.0 - int(level)))
             else:
-                for line in part.text.split("\n"):
-                    blocks += _paragraph(line, profile)
+                blocks += _paragraphs(part.text, profile)
     document.blocks = attach_captions(blocks)
     return document
 
