@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import random
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+from icdgen.importer.reading import pdf
 from tests.importer.compare import differences
 from tests.importer.conftest import imported
 from tests.importer.manuals import content, random_icds
@@ -140,6 +142,18 @@ def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_p
     )
     assert one[1] == two[1]
     assert one[0].import_findings == two[0].import_findings
+
+
+def test_one_job_starts_no_process_on_systems_that_do_not_count_usable_processors(
+    tmp_path, monkeypatch
+):
+    manual = content.manual(content.shipped("common"), TITLES)
+    LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: 4)
+    monkeypatch.setattr(pdf, "FEW", 0)
+    monkeypatch.setattr(pdf, "get_context", lambda: pytest.fail("a process began"))
+    assert imported(tmp_path / "manual.pdf", jobs=1)[1]
 
 
 def test_pages_in_the_icd_are_those_on_which_the_tables_begin(tmp_path):

@@ -114,14 +114,13 @@ def _refused(name: str, message: str, help: str) -> Findings:
 
 def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
     count = len(wanted)
-    jobs = min(
-        (
-            jobs or len(os.sched_getaffinity(0))
-            if hasattr(os, "sched_getaffinity")
-            else os.cpu_count() or 1
-        ),
-        8,
+    # macOS and Windows lack `sched_getaffinity`.
+    available = (
+        len(os.sched_getaffinity(0))
+        if hasattr(os, "sched_getaffinity")
+        else os.cpu_count() or 1
     )
+    jobs = min(jobs or available, 8)
     if jobs <= 1 or count < FEW:
         # In this process, an interrupt must still end the import.
         _start_worker(path, ignore=False)
