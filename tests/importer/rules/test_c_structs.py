@@ -147,7 +147,32 @@ def test_numbers_of_c_have_its_notations():
         ),
         ("struct a { union { int i; float f; } u; };", "struct `a`: `u` is a union"),
         ("struct a { uint8_t n; uint8_t data[]; };", "`data` has no size"),
+        ("struct a { uint8_t n; uint8_t data[0]; };", "`data` has 0 elements"),
+        ("struct a { uint8_t n[2 - 3]; };", "`n` has -1 elements"),
         ("struct a { struct b { int8_t x; } b[100]; };", "`b` has 100 elements"),
+        ("struct a { uint8_t n : 9; };", "`n` has 9 bits"),
+        ("struct a { uint8_t n : -1; };", "`n` has -1 bits"),
+        ("struct a { uint8_t n : 0; };", "`n` has 0 bits"),
+        ("struct a { float n : 3; };", "`n` has 3 bits"),
+        ("struct a { char n : 3; };", "the sign of `n` depends on the compiler"),
+        ("struct a { enum b n; };", "enum `b` is not declared"),
+        ("enum a { A = sizeof(int), B };", "is not a constant that can be computed"),
+        ("struct a { struct a n; };", "struct `a` contains itself"),
+        ("struct a { uint8_t n; _Alignas(8) uint8_t m; };", "alignment of its own"),
+        (
+            "struct a { uint8_t n; uint32_t m __attribute__((packed)); };",
+            "one of its members has the attribute `packed`",
+        ),
+        (
+            "struct a {\n#ifdef BIG\nuint32_t n;\n#else\nuint8_t n;\n#endif\n};",
+            "struct `a`: the preprocessor decides about its members",
+        ),
+        (
+            "#if BIG\n#define N 3\n#else\n#define N 4\n#endif\nstruct a { uint8_t n[N]; };",
+            "is not a constant that can be computed",
+        ),
+        ("union a { int32_t n; uint8_t bytes[4]; };", "union `a`: it is a union"),
+        (f"struct a {{ uint8_t n[{'9' * 5000}]; }};", "is not a constant"),
         ("struct a { uint8_t n['x']; };", "is not a constant that can be computed"),
         ("struct a { uint8_t n[1 << -1]; };", "a shift by -1"),
         ("struct a { uint8_t n[1 << 4000000000]; };", "a shift by 4000000000"),
@@ -158,6 +183,120 @@ def test_what_is_no_frame_is_an_error(tmp_path, text, message):
     document, _ = sources.read(tmp_path / "a.h", profile.load())
     errors = [t for t in document.import_findings if t.severity == "error"]
     assert len(errors) == 1 and message in errors[0].message and errors[0].help
+
+
+def structs_of(text: str) -> dict[str, list[list[str]]]:
+    """The rows of each table without its heading, by its caption."""
+    return {
+        block.caption: [[cell.text for cell in row.cells] for row in block.rows[1:]]
+        for block in c_structs.read_structs(text)[0]
+        if isinstance(block, SourceTable)
+    }
+
+
+@pytest.mark.parametrize(
+    ("pragmas", "offset"),
+    [
+        ("#pragma pack(2)", 2),
+        ("#pragma pack(push, 2)", 2),
+        ("#define PACKING 2\n#pragma pack(PACKING)", 2),
+        ("#pragma pack(1)\n#pragma pack(push, 2)\n#pragma pack(pop)", 1),
+        ("#pragma pack(2)\n#pragma pack(push)\n#pragma pack(1)\n#pragma pack(pop)", 2),
+        ("#pragma pack(push, motor, 2)", 2),
+        (
+            "#pragma pack(push, motor, 1)\n#pragma pack(push, 2)\n#pragma pack(pop, motor)",
+            4,
+        ),
+        ("#pragma pack(1)\n#pragma pack()", 4),
+        ('_Pragma("pack(2)")', 2),
+        ("#pragma pack(pop)", 4),
+        ("// #pragma pack(1)", 4),
+        ("#if 0\n#pragma pack(1)\n#endif", 4),
+    ],
+)
+def test_pragmas_say_how_the_members_behind_them_are_aligned(pragmas, offset):
+    text = f"{pragmas}\nstruct a {{ uint8_t n; uint32_t m; }};"
+    ((_, (byte, *_)),) = structs_of(text).values()
+    assert byte == str(offset)
+
+
+def test_an_attribute_packs_the_struct_at_which_it_stands_and_no_other():
+    text = """
+        struct PACKED a { uint8_t n; struct { uint8_t n; uint32_t m; } in; };
+        struct b { uint8_t n; struct { uint8_t n; uint32_t m; } PACKED in; uint32_t m; };
+        struct PACKED c { uint8_t n; uint32_t m; }; struct d { uint8_t n; uint32_t m; };
+    """
+    places = {name: [row[0] for row in rows] for name, rows in structs_of(text).items()}
+    assert places == {
+        "a": ["0", "1", "5"],
+        "b": ["0", "1", "2", "8"],
+        "c": ["0", "1"],
+        "d": ["0", "4"],
+    }
+
+
+def test_a_field_of_an_enumeration_has_its_names_and_its_sign():
+    text = """
+        enum mode { IDLE, RUN = 4 };
+        typedef enum { LOW = -1, HIGH } level_t;
+        enum __attribute__((packed)) small { LAST = 255 };
+        struct __attribute__((packed)) a {
+            enum mode mode : 3; level_t level : 2; enum mode : 3; level_t whole; enum small small;
+            enum { NO, YES = 1 << 1 | 1 } flag; enum mode modes[YES];
+        };
+    """
+    rows = [row[2:7] for row in structs_of(text)["a"]]
+    assert rows == [
+        ["3", "uint", "mode", "", "0: IDLE; 4: RUN"],
+        ["2", "int", "level", "", "-1: LOW; 0: HIGH"],
+        ["32", "int32", "whole", "", "-1: LOW; 0: HIGH"],
+        ["8", "uint8", "small", "", "255: LAST"],
+        ["32", "uint32", "flag", "", "0: NO; 3: YES"],
+        ["32", "uint32", "modes", "3", "0: IDLE; 4: RUN"],
+    ]
+
+
+def test_code_that_is_not_compiled_is_not_read():
+    text = """
+        #if 0
+        struct old { uint8_t n;
+        #ifdef X
+        };
+        #endif
+        #else
+        struct a { uint8_t n; _Static_assert(1, "; }"); };
+        #endif
+    """
+    assert list(structs_of(text)) == ["a"]
+
+
+def test_a_comment_belongs_to_the_member_on_its_line():
+    text = """struct a {
+        /* V */ uint8_t n; // voltage
+        uint8_t m;
+        /* of it */ /* all */
+        uint8_t k;
+        uint8_t j; /* A */ /* current */
+    };"""
+    comments = [row[7] for row in structs_of(text)["a"]]
+    assert comments == ["V voltage", "", "of it all", "A current"]
+    ((row,),) = structs_of("/* of the struct */\nstruct a { uint8_t n; };").values()
+    assert row[7] == ""
+
+
+def test_a_struct_is_read_whatever_is_declared_with_it():
+    text = (
+        "struct a { uint8_t n; } table[3]; typedef struct b { uint8_t m; } *b_p, b_t;"
+    )
+    assert [row[0][4] for row in structs_of(text).values()] == ["n", "m", "m"]
+
+
+def test_structs_in_structs_do_not_exhaust_the_memory():
+    text = "struct a0 { uint8_t n; };" + "".join(
+        f"struct a{level} {{ struct a{level - 1} n[64]; }};" for level in range(1, 9)
+    )
+    _, findings = c_structs.read_structs(text)
+    assert len(findings) == 6 and "a struct may have 4096" in findings[0].help
 
 
 def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
@@ -174,6 +313,11 @@ def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
     with pytest.raises(Findings) as caught:
         sources.read(tmp_path / "a.h", profile.load())
     assert caught.value.findings[0].place.line == 2
+
+
+ENUMS = """enum few { A, B = 3 }; enum many { C = -2, D = 5 };
+enum __attribute__((packed)) small { E = 255 };
+"""
 
 
 def made_up(random: random.Random) -> str:
@@ -198,23 +342,34 @@ def made_up(random: random.Random) -> str:
                 members.append(f"{kind} : {random.choice([0, 1, 3])};")
         else:
             members.append(f"{kind} m{index}{random.choice(['', '', '[3]'])};")
+        if random.random() < 0.1:
+            kind = random.choice(["enum few", "enum many", "enum small"])
+            size = "" if kind == "enum small" else random.choice(["", ": 5", "[2]"])
+            members.append(f"{kind} e{index} {size};")
+        if random.random() < 0.1:
+            inner = random.choice(["", "__attribute__((packed)) "])
+            members.append(f"struct {inner}{{ uint8_t a; {kind} b; }} s{index};")
+    pack = random.choice(["", f"\n#pragma pack({random.choice([1, 2, 4, 8])})\n"])
     packed = random.choice(["", "__attribute__((packed)) "])
-    return f"struct {packed}made {{ {' '.join(members)} }};"
+    return (
+        f"{ENUMS}{pack}struct {packed}made {{ {' '.join(members)} }};\n#pragma pack()\n"
+    )
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
 def test_the_layout_is_that_of_gcc(tmp_path):
-    structs = [made_up(random.Random(seed)) for seed in range(60)]
-    code = ["#include <stdint.h>", "#include <stdio.h>", "#include <string.h>"]
+    structs = [made_up(random.Random(seed)) for seed in range(120)]
+    code = ["#include <stdint.h>", "#include <stdio.h>", "#include <string.h>", ENUMS]
     for index, struct in enumerate(structs):
-        code.append(struct.replace("made {", f"made{index} {{"))
+        declaration = struct.removeprefix(ENUMS)
+        code.append(declaration.replace("made {", f"made{index} {{"))
     code.append("int main(void) {")
     expected = []
     for index, struct in enumerate(structs):
         (table,) = [
             block
             for block in c_structs.read_structs(struct)[0]
-            if hasattr(block, "rows")
+            if hasattr(block, "rows") and block.caption == "made"
         ]
         rows = [[cell.text for cell in row.cells] for row in table.rows[1:]]
         (size,) = [

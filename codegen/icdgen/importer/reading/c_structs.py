@@ -10,8 +10,9 @@ unless the struct is packed.
 
 from __future__ import annotations
 
+import operator
 import re
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -28,12 +29,13 @@ from icdgen.importer.document import (
     SourceTable,
     Text,
 )
-from icdgen.importer.reading.c_text import CText
+from icdgen.importer.reading.c_text import CText, Definition
 from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"
 COLUMNS = ("Byte", "Bit", "Bits", "Type", "Name", "Count", "Members", "Comment")
 MOST_ELEMENTS = 64  # of an array of structs, each of which is a group of fields
+MOST_MEMBERS = 4096  # of a struct, with those of inner structs
 # `long` is missing: it has 8 bytes on 64-bit Linux and 4 on Windows.
 _SIZES = {
     "_Bool": ("bool", 8), "char": ("char", 8), "signed char": ("int", 8), "unsigned char": ("uint", 8), "short": ("int", 16),
@@ -49,7 +51,14 @@ _STANDARD = {
 _INTEGER = re.compile(
     r"(?:0(?P<octal>[0-7]+)|(?P<other>0[xX][0-9A-Fa-f]+|0[bB][01]+|0|[1-9][0-9]*))[uUlL]*"
 )
+_OPERATIONS: dict[str, Callable[[int, int], int]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "<<": operator.lshift, ">>": operator.rshift,
+    "|": operator.or_, "&": operator.and_, "^": operator.xor,
+}  # fmt: skip
 _PRELUDE = " ".join(f"typedef {base} {name};" for name, base in _STANDARD.items())
+
+
+_UNION_HELP = "take one of its members in a copy of the header"
 
 
 class Unreadable(Exception):
@@ -171,6 +180,7 @@ def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
             message, "declare its types in the same file, and take out macros"
         ) from None
     reader = _Reader(source, c_ast)
+    reader.take_definitions(tree)
     for declaration in tree.ext:
         # Types of the prelude, which the file may declare, too: `scalar` knows their
         # sizes.
@@ -207,62 +217,138 @@ class _Reader:
         self.import_findings: list[ImportFinding] = []
         self.typedefs: dict[str, Any] = {}
         self.structs: dict[str, Any] = {}
-        self.enums: dict[str, list[tuple[int, str]]] = {}
+        self.enums: dict[str, Any] = {}
+        self.enumerators: dict[int, list[tuple[int, str]] | Unreadable] = {}
+        self.taken: set[int] = set()  # the `id` of nodes that are tables
         self.values: dict[str, int] = {}  # of enumerators, which may size arrays
+        self.definitions: dict[int, Definition] = {}  # by the `id` of their nodes
+        self.opened: list[Any] = []  # the structs whose layout is being computed
+
+    def take_definitions(self, tree: Any) -> None:
+        """Note the packing of each struct and enumeration, and the enumerators.
+
+        Raise `Unreadable`.
+        """
+        nodes: list[Any] = []
+        waiting, seen = [tree], set()
+        while waiting:
+            node = waiting.pop()
+            waiting += [child for _, child in reversed(node.children())]
+            has_body = (
+                node.values is not None
+                if isinstance(node, self.ast.Enum)
+                else isinstance(node, (self.ast.Struct, self.ast.Union))
+                and node.decls is not None
+            )
+            # Several declarators share the node of their struct.
+            if has_body and id(node) not in seen:
+                nodes.append(node)
+                seen.add(id(node))
+        if len(nodes) != len(self.source.definitions):
+            raise Unreadable(
+                "structs and enumerations within expressions cannot be read",
+                "keep only the declarations in a copy of the header",
+            )
+        for node, definition in zip(nodes, self.source.definitions, strict=True):
+            self.definitions[id(node)] = definition
+            if isinstance(node, self.ast.Enum):
+                self.enumerators[id(node)] = self.computed_enumerators(node)
+                self.enums[node.name] = node
+            elif isinstance(node, self.ast.Struct):
+                self.structs[node.name] = node
 
     def declaration(self, node: Any) -> None:
         """Take a declaration into account; a struct with members becomes a table."""
         if isinstance(node, self.ast.Typedef):
             self.typedefs[node.name] = node.type
-        inner = (
-            node.type.type
-            if isinstance(getattr(node, "type", None), self.ast.TypeDecl)
-            else getattr(node, "type", None)
-        )
-        name = getattr(node, "name", None) or getattr(inner, "name", None) or ""
-        if isinstance(inner, self.ast.Enum) and inner.values is not None:
-            self.enum(inner, name)
-        elif isinstance(inner, self.ast.Struct) and inner.decls is not None:
-            if inner.name:
-                self.structs[inner.name] = inner
-            self.struct(inner, name)
+        inner: Any = getattr(node, "type", None)
+        if isinstance(inner, self.ast.TypeDecl):
+            inner = inner.type
+        while isinstance(inner, (self.ast.ArrayDecl, self.ast.PtrDecl)):
+            # In `struct a {...} b, *c`, the struct is that of `b`.
+            inner = inner.type
+            if isinstance(inner, self.ast.TypeDecl):
+                inner = None if id(inner.type) in self.taken else inner.type
+        if id(inner) not in self.definitions:
+            return
+        self.taken.add(id(inner))
+        name = getattr(node, "name", None) or inner.name or ""
+        kind = type(inner).__name__.lower()
+        try:
+            if isinstance(inner, self.ast.Enum):
+                self.enum(inner, name)
+            elif isinstance(inner, self.ast.Struct):
+                self.struct(inner, name)
+            else:
+                raise Unreadable("it is a union", _UNION_HELP)
+        except Unreadable as error:
+            self.import_findings.append(
+                ImportFinding(
+                    "IMP037",
+                    f"{kind} `{name}`: {error.message}",
+                    SourcePlace(line=inner.coord.line),
+                    error.help,
+                    "error",
+                )
+            )
 
-    def enum(self, node: Any, name: str) -> None:
+    def computed_enumerators(self, node: Any) -> list[tuple[int, str]] | Unreadable:
+        """Return the values and names of an enumeration, or why they are unknown."""
         # C99 6.7.2.2: the first value is 0, and each further one is the value before it
         # plus 1, unless the source states it.
         value, members = -1, []
-        for enumerator in node.values.enumerators:
-            value = (
-                self.number(enumerator.value)
-                if enumerator.value is not None
-                else value + 1
+        try:
+            self.check_conditions(node)
+            for enumerator in node.values.enumerators:
+                value = (
+                    self.number(enumerator.value)
+                    if enumerator.value is not None
+                    else value + 1
+                )
+                members.append((value, enumerator.name))
+                self.values[enumerator.name] = value
+        except Unreadable as error:
+            return error
+        return members
+
+    def check_conditions(self, node: Any) -> None:
+        """Raise `Unreadable` if the preprocessor decides about parts of a definition."""
+        if self.definitions[id(node)].is_conditional:
+            raise Unreadable(
+                "the preprocessor decides about its members",
+                "keep those of one variant in a copy of the header",
             )
-            members.append((value, enumerator.name))
-            self.values[enumerator.name] = value
-        for key in filter(None, (name, node.name)):
-            self.enums[key] = members
+
+    def enum_node(self, node: Any) -> Any:
+        """Return the definition of an enumeration. Raise `Unreadable`."""
+        if node.values is not None:
+            return node
+        if node.name not in self.enums:
+            raise Unreadable(
+                f"enum `{node.name}` is not declared",
+                "add its declaration in front of this one",
+            )
+        return self.enums[node.name]
+
+    def enumerators_of(self, node: Any) -> list[tuple[int, str]]:
+        """Return the values and names of an enumeration. Raise `Unreadable`."""
+        members = self.enumerators[id(self.enum_node(node))]
+        if isinstance(members, Unreadable):
+            raise members
+        return members
+
+    def enum(self, node: Any, name: str) -> None:
+        members = self.enumerators_of(node)
         rows = [["Value", "Name", "Comment"]]
         rows += [
-            [str(v), n, self.source.beside(enumerator.coord.line)]
+            [str(v), n, self.source.beside(enumerator.coord.line, node.coord.line)]
             for (v, n), enumerator in zip(members, node.values.enumerators, strict=True)
         ]
         self.add(f"enum {name}", node.coord.line, rows, [])
 
     def struct(self, node: Any, name: str) -> None:
         line = node.coord.line
-        try:
-            layout = self.layout(node)
-        except Unreadable as error:
-            self.import_findings.append(
-                ImportFinding(
-                    "IMP037",
-                    f"struct `{name}`: {error.message}",
-                    SourcePlace(line=line),
-                    error.help,
-                    "error",
-                )
-            )
-            return
+        layout = self.layout(node)
         if layout.padding:
             self.import_findings.append(
                 ImportFinding(
@@ -278,7 +364,7 @@ class _Reader:
                 str(member.count) if member.count else "",
                 ("" if member.bit is None else str(member.bit)),
             )
-            comment = self.source.beside(member.line)
+            comment = self.source.beside(member.line, line)
             rows.append(
                 [
                     str(member.byte),
@@ -318,41 +404,57 @@ class _Reader:
                     "add its declaration in front of this one",
                 )
             node = inner
+        if any(node is other for other in self.opened):
+            raise Unreadable(
+                f"struct `{node.name}` contains itself", "a frame cannot do this"
+            )
+        self.check_conditions(node)
+        definition = self.definitions[id(node)]
+        if definition.has_packed_member:
+            raise Unreadable(
+                "one of its members has the attribute `packed`",
+                "pack the struct and write its padding as members",
+            )
+        self.opened.append(node)
+        try:
+            return self.computed_layout(node, definition)
+        finally:
+            self.opened.pop()
+
+    def computed_layout(self, node: Any, definition: Definition) -> Layout:
         layout = Layout()
-        is_packed = node.coord.line in self.source.packed
+        # Bytes to which members are aligned at most.
+        most = 1 if definition.is_packed else definition.most
         at = 0  # bits used so far
-        for declaration in node.decls:
+        for declaration in node.decls or ():
+            # `_Static_assert` and `_Pragma` are no members.
+            if not isinstance(declaration, self.ast.Decl):
+                continue
+            if declaration.align:
+                raise Unreadable(
+                    f"`{declaration.name}` has an alignment of its own",
+                    "write the padding as a member, and pack the struct",
+                )
             if declaration.bitsize is not None:
-                kind, size = self.scalar(declaration.type)
-                width = self.number(declaration.bitsize)
-                # A bit field of a struct that is not packed crosses no boundary of its
+                member, size = self.bit_field(declaration)
+                # A bit field of a struct without packing crosses no boundary of its
                 # type (System V ABI, "Bit-Fields").
                 # C99 6.7.2.1: a width of 0 ends the unit.
-                crosses = at // size != (at + width - 1) // size if width else True
-                if width == 0 or (crosses and not is_packed):
-                    at = self.aligned(at, size, layout, declaration.name or "")
-                # C99 6.7.2 leaves the sign of a bit field of type `int` to the
-                # compiler; gcc and clang take a signed one.
+                if member.bits == 0 or (
+                    most is None and at // size != (at + member.bits - 1) // size
+                ):
+                    at = self.aligned(at, size, layout, member.name)
                 # Bit fields without a name do not align the struct (System V ABI).
-                if declaration.name and width:
-                    kind = "int" if kind == "int" else "uint"
-                    layout.members.append(
-                        Member(
-                            at // 8,
-                            width,
-                            kind,
-                            declaration.name,
-                            at % 8,
-                            line=declaration.coord.line,
-                        )
-                    )
-                    layout.alignment = max(
-                        layout.alignment, 1 if is_packed else size // 8
-                    )
-                at += width
+                if member.name:
+                    member.byte, member.bit = at // 8, at % 8
+                    layout.members.append(member)
+                    # gcc and clang heed the pragma for it even in a packed struct.
+                    limit = definition.most or most or size // 8
+                    layout.alignment = max(layout.alignment, min(size // 8, limit))
+                at += member.bits
                 continue
             members, size, alignment = self.member(declaration)
-            alignment = 1 if is_packed else alignment
+            alignment = min(alignment, most or alignment)
             at = self.aligned(
                 at, 8 * alignment, layout, declaration.name or "an inner struct"
             )
@@ -363,6 +465,30 @@ class _Reader:
             at += 8 * size
         layout.size = self.aligned(at, 8 * layout.alignment, layout, "") // 8
         return layout
+
+    def bit_field(self, declaration: Any) -> tuple[Member, int]:
+        """Return a bit field at bit 0, and the size of its type in bits."""
+        name = declaration.name or ""
+        kind, size = self.scalar(declaration.type)
+        width = self.number(declaration.bitsize)
+        # C99 6.7.2.1: only an unnamed bit field may have 0 bits.
+        least, most = 1 if name else 0, 1 if kind == "bool" else size
+        if kind == "float" or not least <= width <= most:
+            raise Unreadable(
+                f"the bit field `{name}` has {width} bits, which its type does not allow",
+                "correct the width, or the type",
+            )
+        # C99 6.7.2 leaves the sign of a bit field of type `int` to the compiler; gcc
+        # and clang take a signed one. That of `char` depends on the processor.
+        if kind == "char":
+            raise Unreadable(
+                f"the sign of `{name}` depends on the compiler",
+                "write `int8_t` or `uint8_t`",
+            )
+        kind = "int" if kind == "int" else "uint"
+        members = self.members_of(declaration.type)
+        line = declaration.coord.line if declaration.coord is not None else None
+        return Member(0, width, kind, name, 0, 0, members, line), size
 
     def aligned(self, at: int, boundary: int, layout: Layout, name: str) -> int:
         """Return the next multiple of a number of bits.
@@ -390,6 +516,12 @@ class _Reader:
                     "write its size, or describe it in the ICD by hand",
                 )
             counts.append(self.number(kind.dim))
+            # 0 elements are a flexible array of GNU C.
+            if counts[-1] < 1:
+                raise Unreadable(
+                    f"`{declaration.name}` has {counts[-1]} elements",
+                    "write its size, or describe it in the ICD by hand",
+                )
             kind = kind.type
         if isinstance(kind, self.ast.PtrDecl):
             raise Unreadable(
@@ -401,7 +533,7 @@ class _Reader:
             if isinstance(inner, self.ast.Union):
                 raise Unreadable(
                     f"`{declaration.name or 'a member'}` is a union",
-                    "take one of its members in a copy of the header",
+                    _UNION_HELP,
                 )
             layout = self.layout(inner)
             total = 1
@@ -411,6 +543,11 @@ class _Reader:
                 raise Unreadable(
                     f"`{declaration.name}` has {total} elements",
                     f"arrays of structs may have {MOST_ELEMENTS}",
+                )
+            if total * len(layout.members) > MOST_MEMBERS:
+                raise Unreadable(
+                    f"`{declaration.name}` has {total * len(layout.members)} members",
+                    f"a struct may have {MOST_MEMBERS}",
                 )
             result = []
             for index in range(total):
@@ -430,11 +567,7 @@ class _Reader:
         count = 1
         for n in counts:
             count *= n
-        members = "; ".join(
-            f"{value}: {label}" for value, label in self.members_of(kind)
-        )
-        shown = name if name in ("char", "bool", "enum") else f"{name}{size}"
-        shown = f"uint{size}" if name in ("bool", "enum") else shown
+        shown = {"char": "char", "bool": f"uint{size}"}.get(name, f"{name}{size}")
         place = Member(
             0,
             size,
@@ -442,7 +575,7 @@ class _Reader:
             declaration.name,
             None,
             count if counts else 0,
-            members,
+            self.members_of(kind),
             declaration.coord.line,
         )
         return [place], size // 8 * count, size // 8
@@ -469,10 +602,8 @@ class _Reader:
         Raises `Unreadable` for types whose size no standard states.
         """
         inner = self.resolved(kind)
-        # As gcc and clang do without `-fshort-enums`; C99 6.7.2.2 leaves the type to
-        # the compiler.
         if isinstance(inner, self.ast.Enum):
-            return "enum", 32
+            return self.enum_type(inner)
         if not isinstance(inner, self.ast.IdentifierType):
             raise Unreadable(
                 "a member is neither a number nor a struct",
@@ -500,18 +631,40 @@ class _Reader:
             )
         return _SIZES[key]
 
-    def members_of(self, kind: Any) -> Iterator[tuple[int, str]]:
-        """Return the enumerators of an enumeration, by its tag or typedef."""
-        inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
-        names = list(inner.names) if isinstance(inner, self.ast.IdentifierType) else []
-        resolved = self.resolved(kind)
-        if isinstance(resolved, self.ast.Enum):
-            names.append(resolved.name)
-        yield from next((self.enums[name] for name in names if name in self.enums), [])
+    def enum_type(self, node: Any) -> tuple[str, int]:
+        """Return kind and size in bits of an enumeration."""
+        values = [value for value, _ in self.enumerators_of(node)]
+        low, high = min(values), max(values)
+        # As gcc and clang do without `-fshort-enums`; C99 6.7.2.2 leaves the type to
+        # the compiler.
+        sizes = (
+            (8, 16, 32, 64)
+            if self.definitions[id(self.enum_node(node))].is_packed
+            else (32, 64)
+        )
+        for size in sizes:
+            half = 1 << (size - 1)
+            if low < 0 and -half <= low and high < half:
+                return "int", size
+            if low >= 0 and high < 2 * half:
+                return "uint", size
+        raise Unreadable(
+            f"enum `{node.name or ''}` has values of more than 64 bits",
+            "correct its values",
+        )
+
+    def members_of(self, kind: Any) -> str:
+        """Return the enumerators of the type; empty if it is no enumeration."""
+        node = self.resolved(kind)
+        if not isinstance(node, self.ast.Enum):
+            return ""
+        members = self.enumerators_of(node)
+        return "; ".join(f"{value}: {label}" for value, label in members)
 
     def number(self, node: Any) -> int:
         """Return the value of a constant expression. Raise `Unreadable`."""
-        if isinstance(node, self.ast.Constant):
+        # More digits are no number of C, and would take long.
+        if isinstance(node, self.ast.Constant) and len(node.value) < 70:
             if match := _INTEGER.fullmatch(node.value):
                 return (
                     int(match["octal"], 8) if match["octal"] else int(match["other"], 0)
@@ -520,21 +673,18 @@ class _Reader:
             return self.values[node.name]
         if isinstance(node, self.ast.UnaryOp) and node.op == "-":
             return -self.number(node.expr)
-        if isinstance(node, self.ast.BinaryOp) and node.op in ("+", "-", "*", "<<"):
+        if isinstance(node, self.ast.BinaryOp) and node.op in _OPERATIONS:
             left, right = self.number(node.left), self.number(node.right)
             # C99 6.5.7: a shift by less than 0, or by all bits or more, is undefined.
-            if node.op == "<<" and not 0 <= right < 64:
+            if node.op in ("<<", ">>") and not 0 <= right < 64:
                 raise Unreadable(
                     f"a shift by {right}, which C leaves undefined",
                     "write it as a number",
                 )
-            return {
-                "+": left + right,
-                "-": left - right,
-                "*": left * right,
-                # A hostile shift must not exhaust the memory.
-                "<<": left << min(right, 64),
-            }[node.op]
+            result = _OPERATIONS[node.op](left, right)
+            # A hostile product must not exhaust the memory.
+            if abs(result) < 1 << 64:
+                return result
         raise Unreadable(
             "a size or value is not a constant that can be computed",
             "write it as a number",
