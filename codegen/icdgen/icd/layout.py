@@ -257,12 +257,12 @@ class Layout:
         """All nodes, in the order of their declarations in generated code."""
         return (*self.fixed, *self.sequence, *self.derived)
 
-    @property
+    @cached_property
     def constant_bytes(self) -> int:
         """Bytes that every frame has outside its variable parts."""
         return self.length + sum(part.behind for part in self.parts)
 
-    @property
+    @cached_property
     def longest(self) -> int:
         """Length of the longest frame in bytes."""
         return self.constant_bytes + sum(part.most * part.step for part in self.parts)
