@@ -5,9 +5,11 @@ are.
 from __future__ import annotations
 
 import dataclasses
+import typing
 
 import pytest
 
+from icdgen.frozen import NamedTuple
 from icdgen.frozen import dataclass as frozen
 from icdgen.icd.layout import Scalar
 from icdgen.icd.model import Limits, Member
@@ -87,3 +89,34 @@ def test_a_field_of_another_class_is_never_equal():
     assert dataclasses.replace(
         Scalar(name="a", at=0, bits=8, type="uint"), at=8
     ) == Scalar(name="a", at=8, bits=8, type="uint")
+
+
+@pytest.mark.parametrize("base", [typing.NamedTuple, NamedTuple])
+def test_named_tuples_are_those_of_typing(base):
+    class One(base):
+        """A range."""
+
+        first: int
+        last: int = 7
+
+        @property
+        def length(self) -> int:
+            return self.last - self.first
+
+        def __str__(self) -> str:
+            return f"{self.first} to {self.last}"
+
+    one = One(2)
+    assert one == (2, 7) == One(first=2, last=7) and one.length == 5
+    assert (str(one), repr(one)) == ("2 to 7", "One(first=2, last=7)")
+    assert one._replace(first=3).length == 4 and One._field_defaults == {"last": 7}
+    assert (One.__name__, One.__module__, One.__doc__) == (
+        "One",
+        __name__,
+        "A range.",
+    )
+    for wrong in (lambda: One(), lambda: One(1, 2, 3), lambda: One(1, no=2)):
+        with pytest.raises(TypeError):
+            wrong()
+    with pytest.raises(AttributeError):
+        one.first = 3

@@ -15,7 +15,8 @@ from tests.conftest import ROOT
 
 PACKAGE = ROOT / "codegen" / "icdgen"
 LAYERS = [  # what stands in one row does not know each other
-    "diagnostics errors fingerprints frozen naming once shipped suggest tables wording",
+    "frozen",
+    "diagnostics errors fingerprints naming once shipped suggest tables wording",
     "cache config icd render",
     "codec frame_bits reports",
     "protocol",

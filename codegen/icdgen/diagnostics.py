@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 # Line breaks of YAML 1.1, section 4.2, which PyYAML implements.
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Message, Node, Struct
 from icdgen.icd.pieces import Piece, pieces_at

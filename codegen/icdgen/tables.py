@@ -9,7 +9,9 @@ import io
 import os
 import unicodedata
 from collections.abc import Iterable, Sequence
-from typing import Literal, NamedTuple, TextIO
+from typing import Literal, TextIO
+
+from icdgen.frozen import NamedTuple
 
 GAP = 2  # spaces between columns
 NARROWEST = 8  # minimum width of a wrapped column

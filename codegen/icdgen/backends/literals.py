@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 from icdgen.backends.lines import STEP
+from icdgen.frozen import NamedTuple
 
 
 @dataclass(frozen=True, slots=True)

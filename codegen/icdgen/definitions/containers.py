@@ -11,10 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
 
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Definitions, Item, NotSupported, replace_keys
+from icdgen.frozen import NamedTuple
 from icdgen.icd.variable_length import MOST_BYTES, REST
 
 AS_BYTES = "IMP081"

@@ -9,11 +9,12 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Container, Iterator
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.definitions.accounting import Account
 from icdgen.definitions.model import Definitions
 from icdgen.definitions.wording import line as one_line
+from icdgen.frozen import NamedTuple
 
 NOT_UNDERSTOOD = "IMP075"
 REPAIRED = "IMP076"

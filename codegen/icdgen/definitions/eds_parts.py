@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import containers, eds_ranges
@@ -15,6 +14,7 @@ from icdgen.definitions.eds_types import Piece, Types
 from icdgen.definitions.eds_values import coded, evaluate
 from icdgen.definitions.model import NotSupported, replace_keys
 from icdgen.definitions.wording import line
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fmt.emit import Spelled
 
 _INTEGERS = ("uint", "int")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import evaluate
 from icdgen.definitions.model import Item
 from icdgen.definitions.wording import limits
+from icdgen.frozen import NamedTuple
 from icdgen.icd.layout import integer_range
 
 # RangeType: for low and high end whether it is included; None without an end.

@@ -5,9 +5,9 @@ overlapping bits.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from icdgen.definitions.model import Definitions, Item
+from icdgen.frozen import NamedTuple
 
 OVERLAPPING = "IMP071"
 LITTLE, BIG = "little", "big"

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import NamedTuple
 
 from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import NotSupported
 from icdgen.definitions.wording import line
+from icdgen.frozen import NamedTuple
 from icdgen.icd.formula import FormulaError, coefficients
 
 _PATH = r"[a-z_][a-z0-9_]*(?:\.[a-z_][a-z0-9_]*)*"

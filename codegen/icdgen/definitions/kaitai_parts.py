@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from icdgen.definitions import containers
 from icdgen.definitions.containers import Counter
@@ -12,6 +11,7 @@ from icdgen.definitions.kaitai_types import Piece, Type
 from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
+from icdgen.frozen import NamedTuple
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 # Path of a field, mask of its bits, and the values that have branches.

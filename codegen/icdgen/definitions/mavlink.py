@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
@@ -23,6 +23,7 @@ from icdgen.definitions.model import (
     unreadable,
 )
 from icdgen.definitions.wording import line, node_name, summary, unit
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.layout import integer_range
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.frozen import NamedTuple
 from icdgen.icd import units, wire_ids
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.model import KEYS_OF_IDS

@@ -5,9 +5,10 @@ the common header.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from icdgen.definitions.model import Definitions, Item, Network, NotSupported
+from icdgen.frozen import NamedTuple
 
 UNTOLD = "IMP079"
 TELECOMMAND, TELEMETRY = "telecommand", "telemetry"

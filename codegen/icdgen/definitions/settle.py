@@ -12,7 +12,6 @@ import json
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 from icdgen import naming
 from icdgen.definitions.model import (
@@ -24,6 +23,7 @@ from icdgen.definitions.model import (
     unreadable,
 )
 from icdgen.diagnostics import Finding
+from icdgen.frozen import NamedTuple
 from icdgen.loading import load
 
 ROUNDS = 60  # some rules apply only after others are satisfied

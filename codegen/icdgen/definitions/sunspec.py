@@ -7,7 +7,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from decimal import Decimal
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.definitions.accounting import Account, AccountedMap, accounted
 from icdgen.definitions.enumerations import Enumerations
@@ -20,6 +20,7 @@ from icdgen.definitions.model import (
     unreadable,
 )
 from icdgen.definitions.wording import formula, line, node_name, printed, summary, unit
+from icdgen.frozen import NamedTuple
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
 RAW_ONLY = "IMP078"

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import takewhile
-from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions.containers import (
@@ -35,6 +34,7 @@ from icdgen.definitions.xtce_types import (
     repeated,
     special_values,
 )
+from icdgen.frozen import NamedTuple
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 MOST_PLACED = 500  # fields of a message with explicit positions

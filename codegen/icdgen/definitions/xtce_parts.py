@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import containers
@@ -21,6 +20,7 @@ from icdgen.definitions.model import Definitions, Item, NotSupported, replace_ke
 from icdgen.definitions.xtce_calibration import number
 from icdgen.definitions.xtce_names import ancillary_data
 from icdgen.definitions.xtce_types import Piece
+from icdgen.frozen import NamedTuple
 from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.variable_length import MOST_BYTES
 

@@ -7,7 +7,7 @@ A language generates the kinds that it has types for.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from icdgen.describe.arithmetic import IntegerAccess
 from icdgen.describe.comments import (
@@ -18,6 +18,7 @@ from icdgen.describe.comments import (
 )
 from icdgen.describe.description import FieldDescription
 from icdgen.describe.integer_scale import IntegerScale, part_of_unit
+from icdgen.frozen import NamedTuple
 
 Kind = Literal["text", "double", "single", "integer", "long integer"]
 """Characters, floats of 64 and 32 bits, and whole thousandths or millionths of the

@@ -8,7 +8,6 @@ so that is decided here.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 from icdgen.describe.integer_scale import (
     IntegerScale,
@@ -19,7 +18,7 @@ from icdgen.describe.integer_scale import (
 )
 from icdgen.describe.steps import EXACT_DOUBLE, EXACT_SINGLE, Steps
 from icdgen.describe.storage import Storage
-from icdgen.frozen import dataclass
+from icdgen.frozen import NamedTuple, dataclass
 from icdgen.once import cached_property
 
 _INT64_MAX = (1 << 63) - 1

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import gcd
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.describe.description import (
     Composite,
@@ -18,6 +18,7 @@ from icdgen.describe.description import (
     Into,
     StructDescription,
 )
+from icdgen.frozen import NamedTuple
 
 MANY_ENOUGH = 4
 """Smallest number of elements for which a loop is shorter than a statement for each."""

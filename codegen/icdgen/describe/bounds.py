@@ -5,10 +5,11 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Final, NamedTuple
+from typing import Final
 
 from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
+from icdgen.frozen import NamedTuple
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Limits
 from icdgen.icd.places import AnyScalar

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds, span
 from icdgen.describe.numbers import (
@@ -26,6 +25,7 @@ from icdgen.describe.numbers import (
     value_text,
 )
 from icdgen.describe.steps import Steps, steps
+from icdgen.frozen import NamedTuple
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.layout import Array, Counted, LayoutNode, Scalar, VariablePart
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct

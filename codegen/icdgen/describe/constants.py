@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import NamedTuple
 
 from icdgen import naming
 from icdgen.describe.bounds import bounds
 from icdgen.describe.comments import sentence, words
+from icdgen.frozen import NamedTuple
 from icdgen.icd.places import NodePlace
 
 MOST_WORDS = 5

@@ -5,10 +5,10 @@ are in it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription, Into
 from icdgen.describe.nodes import MessageDescription
+from icdgen.frozen import NamedTuple
 
 
 class CopiedMember(NamedTuple):

@@ -6,9 +6,9 @@ Each statement computes a local variable by one operation on two operands.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
+from icdgen.frozen import NamedTuple
 
 Operand = str | float  # a local variable, or a number
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import enum
 from collections.abc import Iterator
 from copy import copy
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from icdgen.describe.comments import Comment, field_comment, struct_comment
 from icdgen.describe.constants import Constant, constants
@@ -18,6 +18,7 @@ from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
 from icdgen.describe.lengths import ElementBytes, LengthTest, length_tests
 from icdgen.describe.named import Named
 from icdgen.describe.scalar import ScalarDescription
+from icdgen.frozen import NamedTuple
 from icdgen.icd.layout import UNDECLARED, Layout, Orders, VariablePart
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.places import NodePlace, places_of

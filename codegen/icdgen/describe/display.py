@@ -12,9 +12,9 @@ import math
 from decimal import ROUND_HALF_UP, Decimal, localcontext
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
 from icdgen.describe.numbers import exact_text
+from icdgen.frozen import NamedTuple
 from icdgen.icd.curve import Curve
 from icdgen.icd.display import BINARY, DECIMALS, HEX, OF_BITS
 from icdgen.icd.formula import Scale

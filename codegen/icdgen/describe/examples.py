@@ -5,11 +5,11 @@ it, and the frame with it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.describe.description import FieldDescription
 from icdgen.describe.nodes import MessageDescription
+from icdgen.frozen import NamedTuple
 from icdgen.icd.layout import UNDECLARED, scalar_of
 from icdgen.icd.layout_nodes import walk
 from icdgen.icd.places import NodePlace, places_in

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.describe.arrays import (
     ArrayLoop,
@@ -19,6 +19,7 @@ from icdgen.describe.arrays import (
     struct_arrays_in,
 )
 from icdgen.describe.description import Composite, FieldDescription, Into
+from icdgen.frozen import NamedTuple
 
 Fields = tuple[FieldDescription, ...]
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
 from icdgen.describe.steps import Steps
 from icdgen.describe.storage import Storage
+from icdgen.frozen import NamedTuple
 from icdgen.icd.places import NodePlace
 from icdgen.icd.units import STANDARD
 

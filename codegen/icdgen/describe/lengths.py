@@ -4,7 +4,9 @@ the lengths of a message.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
+
+from icdgen.frozen import NamedTuple
 
 
 class LengthTest(NamedTuple):

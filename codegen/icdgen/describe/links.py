@@ -7,12 +7,11 @@ A backend spells the facts in the types of its runtime.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.nodes import Description
-from icdgen.frozen import dataclass
+from icdgen.frozen import NamedTuple, dataclass
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts

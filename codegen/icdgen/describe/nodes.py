@@ -9,7 +9,7 @@ variable parts and its ids.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen import frame_bits
 from icdgen.describe.comments import Comment, message_comment
@@ -28,6 +28,7 @@ from icdgen.describe.lengths import (
 )
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
+from icdgen.frozen import NamedTuple
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import (
     Enum,

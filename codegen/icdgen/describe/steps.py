@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd import exact
 from icdgen.icd.formula import Scale
 from icdgen.icd.places import AnyScalar

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 
 class Storage(NamedTuple):

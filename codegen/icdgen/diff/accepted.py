@@ -8,12 +8,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.change import Change
 from icdgen.diff.compare import RULES
 from icdgen.diff.where import Where
+from icdgen.frozen import NamedTuple
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map
 from icdgen.suggest import close_to

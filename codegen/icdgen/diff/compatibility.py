@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
 
 from icdgen.describe.numbers import length_text
 from icdgen.diff.changes.numbers import is_derived_otherwise, is_wider
@@ -13,6 +12,7 @@ from icdgen.diff.facts import AROUND
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
+from icdgen.frozen import NamedTuple
 from icdgen.icd.formula import RAW
 from icdgen.icd.lines import lines
 from icdgen.icd.model import Message

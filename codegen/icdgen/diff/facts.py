@@ -8,10 +8,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import astuple, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places
+from icdgen.frozen import NamedTuple
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node, framed_link
 from icdgen.protocol import facts as protocol

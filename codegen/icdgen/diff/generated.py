@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from copy import copy
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 from icdgen.backends.c import types as c_types
 from icdgen.backends.c.symbols import C_NAMES
@@ -29,6 +28,7 @@ from icdgen.diff.pairs import (
     MessagePair,
     Pair,
 )
+from icdgen.frozen import NamedTuple
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Icd, Member, Message, Struct

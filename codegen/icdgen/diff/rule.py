@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.pairs import Pair
 from icdgen.diff.where import Places, Where
+from icdgen.frozen import NamedTuple
 from icdgen.icd.rules import pages
 
 

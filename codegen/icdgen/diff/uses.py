@@ -8,13 +8,13 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
 
 from icdgen.diff.change import Change
 from icdgen.diff.compare import Comparison
 from icdgen.diff.generated import Generated, Name
 from icdgen.diff.pairs import EnumPair, MessagePair, Pair
 from icdgen.errors import UserError
+from icdgen.frozen import NamedTuple
 
 SUFFIXES = {
     **dict.fromkeys(

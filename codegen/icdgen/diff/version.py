@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import NamedTuple
 
 from icdgen.diff.change import Change
 from icdgen.diff.layers import LAYERS
+from icdgen.frozen import NamedTuple
 from icdgen.wording import count, listing
 
 MAJOR, MINOR, PATCH, NONE = "major", "minor", "patch", "none"

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.diagnostics import Place
+from icdgen.frozen import NamedTuple
 
 Places = tuple[Place | None, Place | None]  # in the old and in the new ICD
 

@@ -17,8 +17,9 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd import formula
 
 # Up to this width all raw values are tried, to see whether a curve is invertible. Wider

@@ -12,8 +12,9 @@ import math
 import re
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.expression import Arithmetic, FormulaError, Token, evaluate
 from icdgen.icd.formula import MAX_DEGREE, MAX_EXPONENT, power_of_number
 from icdgen.suggest import close_to

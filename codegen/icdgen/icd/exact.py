@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 from math import lcm
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.formula import Scale
 
 # Limits for arithmetic of 256 bits: with them no product with a 64-bit raw value or a

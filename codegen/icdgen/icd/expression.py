@@ -13,7 +13,9 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
+
+from icdgen.frozen import NamedTuple
 
 # Limits on input that an ICD never needs, so that a hostile text cannot exhaust the
 # stack or the memory.

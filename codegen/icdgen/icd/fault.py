@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.diagnostics import Finding, Fix, Place, Related
+from icdgen.frozen import NamedTuple
 from icdgen.icd.located import Map
 
 

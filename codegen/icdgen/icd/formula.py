@@ -10,8 +10,9 @@ import re
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product, zip_longest
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.expression import Arithmetic, Token, evaluate
 from icdgen.icd.expression import FormulaError as FormulaError
 

@@ -14,9 +14,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from math import gcd
-from typing import NamedTuple, TypeAlias, TypeGuard
+from typing import TypeAlias, TypeGuard
 
-from icdgen.frozen import dataclass
+from icdgen.frozen import NamedTuple, dataclass
 from icdgen.icd.curve import Curve, has_inverse
 from icdgen.icd.derived import Derivation
 from icdgen.icd.display import Display

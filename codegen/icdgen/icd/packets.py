@@ -8,8 +8,9 @@ them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
 from icdgen.icd.responses import Section, declared_responses, responses_in
 

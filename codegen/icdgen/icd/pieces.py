@@ -5,7 +5,8 @@ the numbering.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 
 class Piece(NamedTuple):

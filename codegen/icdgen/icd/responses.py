@@ -10,8 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from math import ceil
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.enumeration import Enum
 from icdgen.icd.layout import Orders
 from icdgen.icd.model import Message, Node

@@ -8,8 +8,9 @@ that a field does not meet.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.layout import Array, LayoutNode, Overlay, scalar_of
 
 # Features of a field that a role can exclude, with the end of a sentence for messages.

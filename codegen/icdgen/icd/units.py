@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.suggest import close_to
 
 

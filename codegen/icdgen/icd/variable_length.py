@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import takewhile
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.roles import COUNTER, reasons_against

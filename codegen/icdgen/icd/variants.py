@@ -10,8 +10,8 @@ to it, and other frames belong to the more general message.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.frames import FrameField, fixed_fields
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.icd.pieces import bits_of

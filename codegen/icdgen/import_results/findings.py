@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.diagnostics import Place
+from icdgen.frozen import NamedTuple
 
 CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
 

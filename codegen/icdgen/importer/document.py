@@ -8,8 +8,8 @@ above the table, and all text since the table before it.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.words import plain, squeezed
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 _PAGE = Path(__file__).with_name("findings.md")
 _SECTION = re.compile(

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd import formula as formulas
 from icdgen.importer.words import plain, tidy_unit
 

@@ -5,8 +5,8 @@ any cells.
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, growing_squeezed, grows, plain
 

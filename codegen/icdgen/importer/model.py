@@ -5,8 +5,9 @@ ICDs.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
+from icdgen.frozen import NamedTuple
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.descriptions import Described
 from icdgen.importer.document import SourceTable

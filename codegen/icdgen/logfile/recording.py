@@ -8,13 +8,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from icdgen_runtime.wire.envelope import Direction, Stream
 from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
 from icdgen import codec
 from icdgen.errors import UserError, unreadable
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
 from icdgen.link.line_statistics import FAULTS

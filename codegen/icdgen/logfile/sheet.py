@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.logfile.columns import Column, columns_of, unique
 from icdgen.logfile.recording import Key, ReceivedMessage, Recording, Tally, key
 from icdgen.logfile.rows import Done, Value, reader

@@ -5,8 +5,8 @@ them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Message
 from icdgen.procedures.flow import leads_to_packets, sends_packets
 from icdgen.procedures.numbers import (

@@ -8,8 +8,9 @@ reads lists by role, messages by name, and values that depend on other sections.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import (
     TELECOMMAND,
     TELEMETRY,

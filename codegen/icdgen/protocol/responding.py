@@ -7,8 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.enumeration import Enum
 from icdgen.icd.model import TELECOMMAND, Message, Node
 from icdgen.icd.packets import ID_ROLE, Packets

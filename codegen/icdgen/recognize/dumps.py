@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 _LINE = re.compile(
     r"(?:0x)?(?P<at>[0-9A-Fa-f]{4,8})(?P<mark>:?)(?P<space>\s*)"

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from icdgen_runtime.wire.envelope import Direction, Exchange, Response, Stream
 from icdgen_runtime.wire.stream import ReceivedPacket, StreamDecoder, StreamEvent
 
 from icdgen.describe.ids import id_text
+from icdgen.frozen import NamedTuple
 from icdgen.recognize import faults, match
 from icdgen.recognize.faults import Fault
 from icdgen.recognize.reading import (

@@ -4,7 +4,7 @@ ICD.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from icdgen_runtime.wire.envelope import (
     Direction,
@@ -28,6 +28,7 @@ from icdgen_runtime.wire.stuffing import unstuffer
 
 from icdgen.describe.ids import id_text
 from icdgen.describe.numbers import byte_count
+from icdgen.frozen import NamedTuple
 from icdgen.protocol.envelope import COBS, DATAGRAM, ESCAPE, HDLC, LENGTH, SLIP
 from icdgen.recognize.reading import Endpoint
 from icdgen.values.errors import BadLength, NotFound

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 # Time, interface, direction.
 _BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"

@@ -7,9 +7,10 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen import __version__
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts

@@ -5,9 +5,9 @@ to.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen import codec
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.icd.variants import constants
 from icdgen.vectors import patterns

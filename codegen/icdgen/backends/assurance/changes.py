@@ -11,8 +11,9 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from itertools import product
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd import floats
 from icdgen.icd.build import calibration
 from icdgen.icd.curve import OUTSIDE, Curve, doubles, table

@@ -14,9 +14,10 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate
 from operator import or_
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen import codec
+from icdgen.frozen import NamedTuple
 from icdgen.icd.frames import frame_fields
 from icdgen.icd.layout import FixedNode, Layout
 from icdgen.icd.layout_copies import with_enum

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from icdgen import backends
 from icdgen.backends.assurance.paper import Cell, Files, Group, Page
 from icdgen.backends.assurance.trace import Element, Noticed
+from icdgen.frozen import NamedTuple
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Icd, Message, Node
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.c import physical
 from icdgen.backends.c.names import RESERVED, getter
@@ -13,6 +13,7 @@ from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor, Kind, accessors_of
 from icdgen.describe.derived import derived
 from icdgen.describe.description import Composite
+from icdgen.frozen import NamedTuple
 
 
 class AccessorCode(NamedTuple):

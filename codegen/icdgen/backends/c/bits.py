@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.backends.c.names import has
 from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.types import cast, mask
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.frozen import NamedTuple
 from icdgen.icd.pieces import Piece
 
 BITS = "{bits}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.c import names
 from icdgen.backends.c.symbols import C_NAMES
@@ -14,6 +14,7 @@ from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite
 from icdgen.describe.numbers import exact_text
+from icdgen.frozen import NamedTuple
 from icdgen.icd import floats
 from icdgen.icd.model import Member
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.lines import STEP
+from icdgen.frozen import NamedTuple
 from icdgen.protocol import sections
 from icdgen.protocol.declared import Fact, Kind
 from icdgen.protocol.sections import BUSES

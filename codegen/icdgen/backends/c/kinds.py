@@ -7,10 +7,10 @@ no node has.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from icdgen.backends.c.stream_rows import content_name, stream_flags
 from icdgen.describe.links import LinkDescription
+from icdgen.frozen import NamedTuple
 from icdgen.icd.responses import REPLY
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from icdgen.backends.c.facts import Row, boolean, or_none
 from icdgen.backends.c.stream_rows import (
@@ -27,6 +26,7 @@ from icdgen.describe.links import (
     ReportDescription,
     SentMessage,
 )
+from icdgen.frozen import NamedTuple
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.envelope import (
     CRC,

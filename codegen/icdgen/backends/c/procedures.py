@@ -5,7 +5,6 @@ initialize them.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from icdgen.backends.c.facts import Row, boolean
 from icdgen.backends.c.names import (
@@ -22,6 +21,7 @@ from icdgen.describe.links import Assumptions, LinkDescription
 from icdgen.describe.nodes import Description, NodeDescription
 from icdgen.describe.procedures import input_text, procedure_text
 from icdgen.describe.storage import holding
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Enum
 from icdgen.icd.procedures import FIXED_NAMES
 from icdgen.icd.responses import ID_BYTES

@@ -5,13 +5,13 @@ them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
 from icdgen.backends.c import names
 from icdgen.backends.c.facts import TYPES, Row, spelled
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import Assumptions, LinkDescription, byte_table
+from icdgen.frozen import NamedTuple
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.sections import ChecksumAlgorithm, Crc
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePosixPath
-from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.backends.c import names, physical
@@ -22,6 +21,7 @@ from icdgen.describe import (
 from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.nodes import Direction
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
 from icdgen.render import Renderer

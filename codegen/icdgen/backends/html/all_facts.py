@@ -6,10 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.texts import capitalized
+from icdgen.frozen import NamedTuple
 from icdgen.icd import schema
 from icdgen.icd.model import replaced_part
 from icdgen.protocol.declared import Fact, Kind, facts_of

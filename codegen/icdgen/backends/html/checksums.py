@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.html.all_facts import Row, value_text
 from icdgen.backends.html.texts import capitalized
+from icdgen.frozen import NamedTuple
 from icdgen.icd.checksum import CRC, FLETCHER, FLETCHER_255, SUM, XOR
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.facts import Facts

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.link import Link
@@ -14,6 +14,7 @@ from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 
 from icdgen.describe.ids import pair_bytes
 from icdgen.describe.numbers import bit_range
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Message
 from icdgen.icd.packets import Packet, id_shifts
 from icdgen.protocol.envelope import (

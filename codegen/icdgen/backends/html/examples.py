@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.describe.display import base_of, digits_of, integer_text, number_text
+from icdgen.frozen import NamedTuple
 from icdgen.icd import floats
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, scalar_count

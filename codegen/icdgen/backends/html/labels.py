@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from icdgen.frozen import NamedTuple
 
 _SIZES = (13, 11)  # font sizes in order of preference, in units of the view box
 _ADVANCE = 0.54  # average width of a letter, relative to the font size

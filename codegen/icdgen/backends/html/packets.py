@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.html import envelopes
 from icdgen.backends.html.links import free_name, slug
 from icdgen.backends.html.relations import Place, Relations
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
 from icdgen.icd.packets import BOTH, DEVICE, HOST, Packet, Packets, declared_packets
 from icdgen.icd.responses import declared_responses, responses_in

@@ -5,7 +5,7 @@ and assumptions.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.html import (
     all_facts,
@@ -18,6 +18,7 @@ from icdgen.backends.html import (
 )
 from icdgen.backends.html.all_facts import Row, as_text
 from icdgen.backends.html.relations import Place, Relations
+from icdgen.frozen import NamedTuple
 from icdgen.icd.error_codes import error_enum
 from icdgen.icd.model import Node, buses_of
 from icdgen.protocol import facts

@@ -5,13 +5,13 @@ places of errata.
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import NamedTuple
 
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.wire import Speaker, Wire
 from icdgen.backends.packages import Packages
 from icdgen.describe import MessageDescription, describe
+from icdgen.frozen import NamedTuple
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Icd, Message, Node

@@ -5,12 +5,13 @@ messages.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.html.all_facts import Row
 from icdgen.backends.html.packets import packet_urls
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.backends.html.texts import capitalized
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Message, Node, framed_link
 from icdgen.icd.responses import (
     ACK,

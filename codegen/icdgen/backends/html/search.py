@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen.backends.html import guide, protocol, texts
 from icdgen.backends.html.relations import Relations
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node, buses_of
 from icdgen.icd.places import NodePlace
 from icdgen.naming import words

@@ -7,10 +7,11 @@ import json
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from icdgen.backends.html import protocol
 from icdgen.backends.html.relations import Place, Relations
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Node
 
 if TYPE_CHECKING:

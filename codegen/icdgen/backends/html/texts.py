@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
-from typing import NamedTuple
 
 from icdgen.describe.bounds import allowed_ends
 from icdgen.describe.ids import id_text, pair_bytes
 from icdgen.describe.numbers import exact_text, factor_text
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.places import NodePlace
 from icdgen.protocol.envelope import Stream

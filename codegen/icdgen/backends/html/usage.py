@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from icdgen.backends.c.names import enumerator, stem
 from icdgen.backends.c.symbols import C_NAMES
@@ -10,6 +10,7 @@ from icdgen.backends.packages import Packages
 from icdgen.backends.rust.names import field_name
 from icdgen.describe import MessageDescription
 from icdgen.describe.examples import worth_showing
+from icdgen.frozen import NamedTuple
 
 if TYPE_CHECKING:
     from icdgen.render import Renderer

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen_runtime.wire.can import CanMessage, can_split
 from icdgen_runtime.wire.envelope import Direction
@@ -18,6 +18,7 @@ from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html import envelopes
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Message, buses_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Framing

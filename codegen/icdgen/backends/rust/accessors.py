@@ -4,7 +4,7 @@ unit, and fields as data.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.rust.names import field_name, scale_name
@@ -22,6 +22,7 @@ from icdgen.backends.rust.types import struct_path
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor
 from icdgen.describe.description import Composite
+from icdgen.frozen import NamedTuple
 
 
 class AccessorCode(NamedTuple):

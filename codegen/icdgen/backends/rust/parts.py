@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen.backends.lines import STEP, bracketed
 from icdgen.backends.rust.names import field_name, own_name
@@ -16,6 +15,7 @@ from icdgen.describe.contained import (
     CopiedMember,
     contained_messages,
 )
+from icdgen.frozen import NamedTuple
 
 
 class Part(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
@@ -18,6 +18,7 @@ from icdgen.backends.xtce.types import (
 )
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Into, VariablePartDescription
+from icdgen.frozen import NamedTuple
 from icdgen.icd.layout import is_variable
 from icdgen.icd.model import TELECOMMAND, Special
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Node
 from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import NodePlace

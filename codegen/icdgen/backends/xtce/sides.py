@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.xtce.frames import Base, Entry, Frame, Frames, Row
 from icdgen.backends.xtce.places import Run
 from icdgen.backends.xtce.types import Type, Types, most_first
 from icdgen.describe import NodeDescription
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, Icd
 
 _UNPRINTABLE = re.compile("[^ -~\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]+")

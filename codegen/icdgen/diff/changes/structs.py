@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain
-from typing import NamedTuple
 
 from icdgen.backends.c.types import declaration
 from icdgen.diff.changes.names import lines
@@ -16,6 +15,7 @@ from icdgen.diff.generated import Name, NamesOfIcd, symbols_in
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.wording import bits
+from icdgen.frozen import NamedTuple
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import places_in

@@ -7,9 +7,9 @@ import subprocess
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path, PurePosixPath
-from typing import NamedTuple
 
 from icdgen.errors import UserError
+from icdgen.frozen import NamedTuple
 
 USUAL = "icd"  # default folder of the ICDs of a project
 _SUFFIX = ".yaml"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import NamedTuple
 
 from icdgen.diff.change import Change
 from icdgen.diff.layers import MEANING, SOURCE
 from icdgen.diff.pairs import FieldPair, MessagePair, kind
 from icdgen.diff.wording import formula, span, type_of
+from icdgen.frozen import NamedTuple
 from icdgen.icd.lines import Line
 
 BITS = 64  # bits of a row

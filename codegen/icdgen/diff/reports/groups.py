@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from icdgen.diff.change import Change
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair, MessagePair, Pair
 from icdgen.diff.wording import ids
+from icdgen.frozen import NamedTuple
 
 
 class Group(NamedTuple):

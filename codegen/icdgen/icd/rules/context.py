@@ -5,9 +5,10 @@ the rules that ran before.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from icdgen.diagnostics import Lines
+from icdgen.frozen import NamedTuple
 from icdgen.icd import variable_length
 from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault

@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Set
 from operator import attrgetter
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED

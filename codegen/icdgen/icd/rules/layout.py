@@ -8,9 +8,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from operator import attrgetter
-from typing import NamedTuple
 
 from icdgen.diagnostics import Related
+from icdgen.frozen import NamedTuple
 from icdgen.icd import division, variable_length
 from icdgen.icd.conditions import are_exclusive, are_valid
 from icdgen.icd.fault import Fault

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from math import ceil, floor
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Scalar
 from icdgen.icd.meanings import Limits

@@ -7,7 +7,8 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+
+from icdgen.frozen import NamedTuple
 
 FOLDER = Path(__file__).parent
 

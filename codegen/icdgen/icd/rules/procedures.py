@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import Message, Node

@@ -5,8 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.enumeration import Enum
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, integer_range

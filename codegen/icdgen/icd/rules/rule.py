@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fault import Fault
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 from bisect import bisect_left, bisect_right
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.importer.pages import headings
 from icdgen.importer.pages.draft import Header
 from icdgen.importer.pages.extract import Word

@@ -9,8 +9,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.frozen import NamedTuple
 from icdgen.importer.words import SUPERSCRIPTS, plain
 
 THIN = 2.5  # points; a filled rectangle thinner than this is a ruling line

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.importer.pages.draft import Header
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, number

@@ -5,8 +5,8 @@ above or below as the document does.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.importer.document import Block, SourceTable, Text
 
 

@@ -8,7 +8,7 @@ one.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from icdgen.frozen import NamedTuple
 
 Bit = tuple[int, int]
 

@@ -7,9 +7,9 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
 
 from icdgen.diagnostics import Place
+from icdgen.frozen import NamedTuple
 from icdgen.importer.rules import positions
 from icdgen.importer.words import HYPHENS, join, plain
 

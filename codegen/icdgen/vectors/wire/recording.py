@@ -5,11 +5,12 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterable
 from random import Random
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.procedures import Procedure
 
+from icdgen.frozen import NamedTuple
 from icdgen.procedures.counterpart import Counterpart, Device, Packet, Refused
 from icdgen.procedures.effects import Objects, default_effect
 from icdgen.protocol.facts import Facts
