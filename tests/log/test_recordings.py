@@ -366,6 +366,81 @@ def _read(value: object) -> object:
     return value.hex() if isinstance(value, bytes) else value
 
 
+PACKETS = """\
+icdgen: 1
+node: {name: odd, title: Odd, byte_order: big, bit_order: msb0, id_bits: 8}
+protocol:
+  link:
+    framing: {by: cobs}
+    packets:
+      command:
+        from: host
+        header: [{bits: 8, role: constant, value: 1}, {bits: 8, role: id}, {bits: 8, role: sequence}]
+      query:
+        from: host
+        messages: [Ask]
+        header: [{bits: 8, role: constant, value: 2}, {bits: 8, role: id}]
+      data:
+        from: device
+        header: [{bits: 8, role: id}, {bits: 8, role: time}]
+messages:
+  - {name: Set, id: 1, kind: telecommand, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint}]}
+  - {name: Ask, id: 2, kind: telecommand, length: 1, fields: [{at: 0, bits: 8, name: B, type: uint}]}
+  - {name: State, id: 3, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: C, type: uint}]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("direction", "sent", "rows"),
+    [
+        (
+            "telecommand",
+            "0501010709000402020800",
+            [
+                {"message": "Set", "sequence": 7, "set__a": 9, "ask__b": None},
+                {"message": "Ask", "sequence": None, "set__a": None, "ask__b": 8},
+            ],
+        ),
+        ("telemetry", "0403070900", [{"message": "State", "time": 7, "state__c": 9}]),
+    ],
+)
+def test_columns_of_the_header_are_those_of_the_packets_of_the_direction(
+    tmp_path, direction, sent, rows
+):
+    import pyarrow.parquet as pq
+
+    icd = tmp_path / "odd.yaml"
+    icd.write_text(PACKETS)
+    (tmp_path / "sent").write_bytes(bytes.fromhex(sent))
+    options = (tmp_path / "sent", "--icd", icd, "--direction", direction)
+    said = icdgen(*options, "--format", "csv")
+    assert said.returncode == 0, said.stderr
+    assert list(csv.DictReader(io.StringIO(said.stdout))) == [
+        {name: "" if value is None else str(value) for name, value in row.items()}
+        for row in rows
+    ]
+    assert icdgen(*options, "--out", tmp_path / "sent.parquet").returncode == 0
+    assert pq.read_table(tmp_path / "sent.parquet").to_pylist() == rows
+
+
+@pytest.mark.parametrize("direction", ["telecommand", "telemetry"])
+def test_a_packet_that_carries_no_message_gives_no_column(tmp_path, direction):
+    import pyarrow.parquet as pq
+
+    file = LINKS / "jbd.yaml"
+    icd = load([file]).icd
+    node = icd.nodes[0]
+    frames = {
+        one.message.name: [row.frame for row in one.rows[:2]]
+        for one in make(icd, node).messages
+    }
+    (tmp_path / "sent").write_bytes(recorded(icd, node, frames)[direction])
+    options = (tmp_path / "sent", "--icd", file, "--direction", direction)
+    assert icdgen(*options, "--out", tmp_path / "sent.parquet").returncode == 0
+    names = pq.read_table(tmp_path / "sent.parquet").column_names
+    assert "reason" not in names and len(names) > 1
+
+
 @pytest.mark.parametrize(
     "name", ["slip", "cobs", "hdlc", "tsip", "mavlink2", "sbp", "ccsds", "kiss"]
 )

@@ -38,8 +38,15 @@ class Sheet:
             for name, message in recording.messages.items()
             if name in set(received)
         ]
-        roles = recording.form.chosen("telemetry")
-        self.roles = [role for role in GIVEN if role in roles]
+        # Other packets, such as refusals, are no rows.
+        packets = [
+            packet
+            for packet in recording.form.packets_of(recording.direction)
+            if packet.content == "message"
+        ]
+        self.roles = [
+            role for role in GIVEN if any(packet.of(role) for packet in packets)
+        ]
         columns = unique(
             column
             for message in messages

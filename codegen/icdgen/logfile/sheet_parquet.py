@@ -58,7 +58,8 @@ class _TableBuilder:
         fields = [
             pa.field(MESSAGE, pa.dictionary(pa.int32(), pa.string()), nullable=False)
         ]
-        fields += [pa.field(role, pa.uint32(), nullable=False) for role in sheet.roles]
+        # A message can be in a packet that lacks a role which others have.
+        fields += [pa.field(role, pa.uint32()) for role in sheet.roles]
         for entry, reader in (
             pair for pairs in self.readers.values() for pair in pairs
         ):
@@ -78,7 +79,7 @@ class _TableBuilder:
             pa.array([received.message.name for received in batch]).dictionary_encode()
         ]
         arrays += [
-            pa.array([received.values[role] for received in batch], pa.uint32())
+            pa.array([received.values.get(role) for received in batch], pa.uint32())
             for role in self.sheet.roles
         ]
         for name, readers in self.readers.items():
