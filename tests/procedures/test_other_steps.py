@@ -18,6 +18,7 @@ from icdgen.procedures.effects import default_effect
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from icdgen.sim import run
+from icdgen.vectors import protocol
 from icdgen.vectors.wire.recording import RecordedDevice, record
 from tests.conformance.icds import icd_of
 
@@ -50,6 +51,20 @@ def test_an_object_is_written(size, loss):
     _, procedure = record(LINK, request, device.respond)
     assert procedure.result == "done"
     assert device.device.objects.read("write", (5,)) == content
+
+
+def test_a_procedure_of_unknown_size_has_vectors_also_if_its_blocks_are_small(tmp_path):
+    text = Path(__file__).with_name("other_steps.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "other_steps.yaml"
+    path.write_text(text.replace("size: 160", "size: 32"), encoding="utf-8")
+    icd = icd_of([path])
+    cases = protocol.cases(icd, icd.node("store"))
+    results = {
+        case.why: case.answer["steps"][-1]["result"]
+        for case in cases
+        if case.why.startswith("read: ") and "of unknown number" in case.why
+    }
+    assert results["read: 32 bytes of unknown number"] == "done", results
 
 
 class Device:

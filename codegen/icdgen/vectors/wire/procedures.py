@@ -329,7 +329,8 @@ class _Scripts:
         if total is None or self._input_of_total.is_optional:
             unknown = {total: None} if total else {}
             call = self.call(**unknown)
-            for content in (b"", self.content, self.content[: self.call()["block"]]):
+            block = self.block.get("block", self.blocks.size)
+            for content in (b"", self.content, self.content[:block]):
                 device = self.device(call, content=content)
                 yield self.case(f"{len(content)} bytes of unknown number", call, device)
             for bus in self.buses:
