@@ -12,6 +12,7 @@ from icdgen_runtime.wire.uart import uart_kind
 from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Poll, Send, Value
+from icdgen.protocol.reading import assumptions_of
 from tests import links
 
 
@@ -166,3 +167,19 @@ def test_only_i2c_polls_for_the_response(known):
     polls = {bus: each.command.poll for bus, each in known.bus_exchanges.items()}
     assert (polls["uart"], polls["can"]) == (None, None)
     assert polls["i2c"].telemetry == known.polled.message.telemetry_id
+
+
+@pytest.mark.parametrize(
+    ("step", "name"),
+    [
+        ({"as": "state", "poll": "File Information"}, "File Information"),
+        ({"ignore": ["timeout"], "send": "Reset"}, "Reset"),
+        ({"unless": "flag", "receive": "Buffer", "silence_ms": 5}, "Buffer"),
+        ({"map": "send", "messages": ["Map 1"], "field": "Map"}, "map"),
+        ({"bits": 8, "role": "source", "name": "Sender"}, "Sender"),
+    ],
+)
+def test_an_assumption_is_named_after_the_message_of_its_step(step, name):
+    section = {"steps": [{**step, "assumptions": {"bits": "Nothing is said."}}]}
+    (assumption,) = assumptions_of(section, ("procedures", "list"))
+    assert assumption.section == f"procedures.list.{name}"

@@ -338,8 +338,8 @@ def declared_value(message: Message, key: str) -> object:
 def assumptions_of(
     section: dict[str, Any], path: tuple[str, ...]
 ) -> Iterator[Assumption]:
-    """Return the assumptions of a section, of its subsections, and of the steps in
-    lists, which have their message as name.
+    """Return the assumptions of a section, of its subsections, and of the rows of
+    lists, which have names of their own.
     """
     for key, why in section.get("assumptions", {}).items():
         yield Assumption(".".join(path), key, section.get(key), why)
@@ -348,9 +348,15 @@ def assumptions_of(
             yield from assumptions_of(value, (*path, key))
         for row in value if isinstance(value, list) else ():
             if isinstance(row, dict):
-                _, message = next(iter(row.items()))
-                named = (*path, message) if isinstance(message, str) else path
-                yield from assumptions_of(row, named)
+                yield from assumptions_of(row, (*path, *_name_of_row(row)))
+
+
+def _name_of_row(row: dict[str, Any]) -> tuple[str, ...]:
+    """Return the message of a step, or the name of another row, if it has one."""
+    names = (row.get(key) for key in ("send", "get", "poll", "receive", "name"))
+    name = next((name for name in names if isinstance(name, str)), None)
+    # A `map` has several messages.
+    return (name,) if name else ("map",) if "map" in row else ()
 
 
 def by_role(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, Any]]:

@@ -1530,7 +1530,7 @@ ICDGEN_API const icd_procedure_form_t *cubeacp_download_form(void)
      * number is given. A file of unknown size has to end at some point. Assumed blocks rounds: Nothing is said about
      * giving up. Assumed blocks.Download Block Ready every_ms: No time is given. Assumed blocks.Download Block Ready
      * for_ms: No time is given. Assumed blocks.missing first: Where the count begins is not said. Bit 0 of the hole map
-     * is the first packet. Assumed blocks.missing.send beyond_end: What the bits beyond the end of a short block are is
+     * is the first packet. Assumed blocks.missing.map beyond_end: What the bits beyond the end of a short block are is
      * not said. Marked as received, nothing is sent for them. Assumed blocks.missing.Initiate Download Burst with:
      * Message Length is not explained. Drivers in use send 20, the bytes of the file in a packet. Assumed
      * blocks.missing.File Download Buffer with File Contents silence_ms: How a burst ends is not said. Packets follow

@@ -526,7 +526,7 @@ LINK: link.Link[_Node] = link.Link(
         # Assumed, blocks.Download Block Ready for_ms: No time is given.
         # Assumed, blocks.missing first: Where the count begins is not said. Bit 0 of
         #   the hole map is the first packet.
-        # Assumed, blocks.missing.send beyond_end: What the bits beyond the end of a
+        # Assumed, blocks.missing.map beyond_end: What the bits beyond the end of a
         #   short block are is not said. Marked as received, nothing is sent for them.
         # Assumed, blocks.missing.Initiate Download Burst with: Message Length is not
         #   explained. Drivers in use send 20, the bytes of the file in a packet.
@@ -980,7 +980,7 @@ LINK: link.Link[_Node] = link.Link(
             why="Where the count begins is not said. Bit 0 of the hole map is the first packet.",
         ),
         link.Assumption(
-            section="procedures.download.blocks.missing.send",
+            section="procedures.download.blocks.missing.map",
             key="beyond_end",
             value=1,
             why="What the bits beyond the end of a short block are is not said. Marked as received, nothing is sent for them.",

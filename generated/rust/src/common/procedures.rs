@@ -119,7 +119,7 @@ pub static LIST: procedure::Form = procedure::Form {
 /// Assumed (`download.blocks.missing`, `first`): Where the count begins is not said. Bit 0 of the
 /// hole map is the first packet.
 ///
-/// Assumed (`download.blocks.missing.send`, `beyond_end`): What the bits beyond the end of a short
+/// Assumed (`download.blocks.missing.map`, `beyond_end`): What the bits beyond the end of a short
 /// block are is not said. Marked as received, nothing is sent for them.
 ///
 /// Assumed (`download.blocks.missing.Initiate Download Burst`, `with`): Message Length is not
