@@ -133,6 +133,15 @@ class ProcedureCode:
         ]
 
     @property
+    def wide_numbers(self) -> list[str]:
+        """Names of the inputs whose type has more than the 32 bits of an input."""
+        return [
+            each.name
+            for each in self.procedure.numbers
+            if each.enum and self._description.enum(each.enum).storage.bits > 32
+        ]
+
+    @property
     def parameters(self) -> list[str]:
         """Parameters of the function, with their types."""
         parameters = [_fixed("procedure")]

@@ -283,16 +283,14 @@ class _Writer:
 
     def _number(self, each: model.Input) -> str:
         """Return the expression of an input as an optional number."""
-        name, is_wide = _parameter(each), False
-        if each.enum is not None:
-            storage = self._description.enum(each.enum).storage
-            is_wide = storage.bits == 32
-            convert = "u32::from" if storage.bits < 32 else ""
+        name = _parameter(each)
+        if each.enum is not None:  # which is never optional (ICD192)
+            bits = self._description.enum(each.enum).storage.bits
+            if bits == 64:
+                # None is refused like any other value that is not possible.
+                return f"u32::try_from({name}.raw()).ok()"
             raw = f"{name}.raw()"
-            number = f"{convert}({raw})" if convert else raw
-            if each.is_optional:
-                return f"{name}.map(|value| {number.replace(name, 'value', 1)})"
-            return f"Some({number})"
+            return f"Some({raw})" if bits == 32 else f"Some(u32::from({raw}))"
         is_wide = not each.is_flag and each.most.bit_length() > 16
         if each.is_optional:
             return name if is_wide else f"{name}.map(u32::from)"

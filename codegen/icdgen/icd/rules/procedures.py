@@ -85,7 +85,9 @@ class Names(NamedTuple):
     def type_of(self, name: object) -> object:
         """Return the type of an input; None if there is no such input."""
         row = self.inputs.get(name) if isinstance(name, str) else None
-        return row.get("type", "uint") if isinstance(row, Map) else None
+        if not isinstance(row, Map):
+            return None
+        return "enum" if "enum" in row else row.get("type", "uint")
 
     def field(self, frame: str, name: str) -> NodePlace | None:
         message = self.frames.get(frame)
@@ -302,7 +304,7 @@ def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
             yield Fault.of_place(owner, place, text, *remedy)
             continue
         is_bytes = key in ("data", "field") or owner.get(key) == PACKET_DATA
-        reason = _reason_against(names.nodes[message.node], field, is_bytes)
+        reason = _reason_against(names, message, field, is_bytes)
         if reason:
             place = owner.at(key) if owner is step else owner.key_at(key)
             text = f"{quote(name)} {reason}"
@@ -313,12 +315,18 @@ def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
                 yield Fault.at(owner, key, text, "correct the value")
 
 
-def _reason_against(node: Node, field: NodePlace, is_bytes: bool) -> str:
+def _reason_against(
+    names: Names, message: Message, field: NodePlace, is_bytes: bool
+) -> str:
     """Return why a step cannot use a field; "" if it can."""
     if field.is_read_only:
         return "has no bits of its own"
-    if field.conditions or field.at < 0:
+    if field.conditions:
         return "is not in each frame"
+    # Bytes of variable length begin at a fixed place if they are the first such part.
+    parts, end = message.layout.parts, field.at if is_bytes else field.at + field.bits
+    if parts and end > 8 * parts[0].begin:
+        return "is not at the same place in each frame"
     if is_bytes:
         is_whole = field.at % 8 == 0 and field.bits % 8 == 0
         return (
@@ -326,7 +334,8 @@ def _reason_against(node: Node, field: NodePlace, is_bytes: bool) -> str:
         )
     if field.scalar.type not in INTEGERS:
         return "is not a whole number"
-    return "" if number_run(field, node) else "is not one run of bits in 4 bytes"
+    is_run = number_run(field, names.nodes[message.node])
+    return "" if is_run else "is not one run of bits in 4 bytes"
 
 
 def _values(names: Names, placed: Placed) -> Iterator[Fault]:
@@ -417,7 +426,7 @@ def _reference(
             for each in message.fields
         ]
         yield _unknown(owner, key, "field", existing)
-    elif reason := _reason_against(names.nodes[names.frames[frame].node], field, False):
+    elif reason := _reason_against(names, names.frames[frame], field, False):
         yield Fault.at(owner, key, f"{quote(value)} {reason}", "name another field")
 
 
@@ -454,6 +463,7 @@ def _inputs(names: Names, steps: list[Placed]) -> Iterator[Fault]:
         for value in place.values()
         if isinstance(value, str)
     }
+    enums = {enum.name: enum for node in names.nodes.values() for enum in node.enums}
     for name, row in names.inputs.items():
         if not isinstance(row, Map):
             continue
@@ -466,6 +476,10 @@ def _inputs(names: Names, steps: list[Placed]) -> Iterator[Fault]:
         if "enum" not in row and "type" not in row:
             text = f"the input {quote(name)} has no type"
             yield Fault.at_key(names.inputs, name, text, "add `type` or `enum`")
+        enum = named(enums, row.get("enum"))
+        if enum is not None and enum.signed:
+            text = f"{quote(enum.name)} has negative values, and inputs have none"
+            yield Fault.at(row, "enum", text, "name an enumeration without them")
 
 
 @rule("ICD192")
