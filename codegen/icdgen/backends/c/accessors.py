@@ -78,7 +78,7 @@ def _integer(accessor: Accessor) -> AccessorCode:
         f"int{integers.bits}_t",
         accessor.comment,
         accessor.title,
-        physical.integer_value(integers, field.storage, _raw(field)),
+        physical.integer_value(integers, _raw(field)),
         (
             f"{_member(field)} = {physical.integer_raw(integers, field.storage)};"
             if accessor.is_settable

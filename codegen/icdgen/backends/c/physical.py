@@ -107,7 +107,7 @@ def double_value(field: FieldDescription, raw: str) -> str:
         return f"icdgen_wide_physical_{kind}({raw}, &scale)"
     if field.arithmetic.is_exact_in_int64:
         p, c, q = steps.terms
-        return f"icdgen_quotient({_scaled(raw, p, c, 64, storage)}, {int64(q)})"
+        return f"icdgen_quotient({_scaled(raw, p, c, 64)}, {int64(q)})"
     *terms, is_negated = field.arithmetic.int64_terms
     value = f"icdgen_physical_{kind}({', '.join((raw, *map(int64, terms)))})"
     # `-value` would turn 0 into -0.0; 0.0 - 0.0 is +0.0 (IEEE 754, 6.3).
@@ -146,14 +146,15 @@ def double_setter(field: FieldDescription) -> tuple[str, ...]:
     )
 
 
-def integer_value(access: IntegerAccess, storage: Storage, raw: str) -> str:
+def integer_value(access: IntegerAccess, raw: str) -> str:
     """Return the physical value of a raw value in whole parts of the unit."""
-    return _scaled(raw, access.scale.factor, access.scale.offset, access.bits, storage)
+    return _scaled(raw, access.scale.factor, access.scale.offset, access.bits)
 
 
-def _scaled(raw: str, factor: int, offset: int, bits: int, storage: Storage) -> str:
-    # An unsigned operand of 64 bits would make the product unsigned.
-    raw = cast(raw, 64, True) if storage.bits == 64 and not storage.signed else raw
+def _scaled(raw: str, factor: int, offset: int, bits: int) -> str:
+    # The type of `raw` is never `uint64_t`, which would make the product unsigned: the
+    # product must not overflow for any of its values
+    # (`icdgen.describe.integer_scale.computable`).
     return _plus(raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits)
 
 
