@@ -6,9 +6,8 @@ const icdgenPasted = ((frames) => {
   const PACKETS = [
     new RegExp(`${BEFORE}${ID}\\s*\\[(?<size>\\d{1,2})\\]\\s*(?<data>(?:[0-9A-Fa-f]{2}(?:\\s+|$))*|remote request)(?:'.*)?$`),
     new RegExp(`${BEFORE}${ID}#(?:#[0-9A-Fa-f])?(?<data>(?:[0-9A-Fa-f]{2}\\.?)*|R[0-8]?)(?:\\s+[TR])?$`),
-    /^T(?<id>[0-9A-Fa-f]{8})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
-    /^t(?<id>[0-9A-Fa-f]{3})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
-    /^R(?<id>[0-9A-Fa-f]{8})[0-8](?<data>)$/,
+    /^(?<slcan>[TR])(?<id>[0-9A-Fa-f]{8})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
+    /^(?<slcan>[tr])(?<id>[0-9A-Fa-f]{3})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
   ];
   const STAMP = 2; // bytes of the time that an slcan adapter may append: milliseconds of the minute
   const DUMPED =
@@ -57,10 +56,10 @@ const icdgenPasted = ((frames) => {
     const groups = PACKETS.map((form) => form.exec(line)).find(Boolean)?.groups;
     if (!groups) return null;
     const data = /^r/i.test(groups.data) ? new Uint8Array() : digits(groups.data.replaceAll(".", ""));
-    const size = Number(groups.size ?? data.length);
-    const fits = data.length === size || (/^t/i.test(line) && data.length === size + STAMP);
-    if (groups.data !== "remote request" && !fits) return null;
-    const time = fits && data.length > size ? ((data[size] * 256 + data[size + 1]) / 1000).toFixed(3) : (groups.time ?? "").trim();
+    const isRemote = groups.data === "remote request" || /^r/i.test(groups.slcan ?? "");
+    const size = isRemote ? 0 : Number(groups.size ?? data.length);
+    if (data.length !== size && !(groups.slcan && data.length === size + STAMP)) return null;
+    const time = data.length > size ? ((data[size] * 256 + data[size + 1]) / 1000).toFixed(3) : (groups.time ?? "").trim();
     return { id: parseInt(groups.id, 16), data: data.slice(0, size), extended: groups.id.length === 8, time };
   }
 

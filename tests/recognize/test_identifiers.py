@@ -8,6 +8,7 @@ import pytest
 
 from icdgen.icd.model import Icd
 from icdgen.recognize import recognize
+from icdgen.recognize.packets import packets
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from tests.features.outputs import icd_of
 
@@ -128,9 +129,24 @@ def test_a_message_that_is_named_is_read_from_an_identifier_that_none_has(icd):
     )
 
 
-def test_a_remote_request_asks_for_the_telemetry_of_its_identifier(icd):
-    (found,) = recognize(icd, "100#R")
-    assert (found.what, found.message.name) == ("request", "Drive")
+@pytest.mark.parametrize(
+    ("text", "time"),
+    [
+        ("100#R", ""),
+        ("can0 100 [8] remote request", ""),
+        ("r1008", ""),
+        ("r10081234", "4.660"),
+    ],
+)
+def test_a_remote_request_asks_for_the_telemetry_of_its_identifier(icd, text, time):
+    (found,) = recognize(icd, text)
+    assert (found.what, found.message.name, found.time) == ("request", "Drive", time)
+
+
+def test_only_adapters_append_a_time_to_the_data():
+    assert packets("tcan0 100 [1] 2A 12 34") is None
+    ((id, data, extended, time),) = packets("R0592020161234")
+    assert (id, data, extended, time) == (0x05920201, b"", True, "4.660")
 
 
 CANDUMP = f"(1600000000.250000) can0 100#{DRIVE}\n(1600000001.500000) can0 7FF#00\n(1600000002.000000) can0 101#{BRAKE}"

@@ -21,6 +21,8 @@ from tests.recognize.test_identifiers import BRAKE, DRIVE, train
 from tests.recognize.ways import BARE, DATA, WHOLE
 from tests.site.conftest import program
 
+# Remote requests of 11 and 29 bits, also with a time.
+REMOTE = ["100#R", "can0 100 [8] remote request", "r1008", "r10081234", "R059202016"]
 GIVEN = ROOT / "templates" / "html" / "given.js"
 
 
@@ -44,7 +46,7 @@ def node(script: str, argument: object) -> object:
 
 
 def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
-    texts = [*BARE.values(), *WHOLE.values()]
+    texts = [*BARE.values(), *WHOLE.values(), *REMOTE]
     source = random.Random(1)
     for text in list(texts):  # and what a slip of the hand makes of them
         for _ in range(30):

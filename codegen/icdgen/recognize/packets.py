@@ -10,8 +10,9 @@ from icdgen.frozen import NamedTuple
 # Time, interface, direction.
 _BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"
 _ID = r"(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})"
+_SLCAN = r"(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"
 # candump; its log files (`##` and a digit are CAN FD, `R` is a remote request); slcan
-# adapters with identifiers of 29 and 11 bits, and remote requests with 29 bits.
+# adapters with identifiers of 29 and 11 bits (`r` and `R` are remote requests).
 _FORMS = (
     re.compile(
         _BEFORE
@@ -23,9 +24,8 @@ _FORMS = (
         + _ID
         + r"#(?:#[0-9A-Fa-f])?(?P<data>(?:[0-9A-Fa-f]{2}\.?)*|R[0-8]?)(?:\s+[TR])?"
     ),
-    re.compile(r"T(?P<id>[0-9A-Fa-f]{8})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
-    re.compile(r"t(?P<id>[0-9A-Fa-f]{3})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
-    re.compile(r"R(?P<id>[0-9A-Fa-f]{8})[0-8](?P<data>)"),
+    re.compile(r"(?P<slcan>[TR])(?P<id>[0-9A-Fa-f]{8})" + _SLCAN),
+    re.compile(r"(?P<slcan>[tr])(?P<id>[0-9A-Fa-f]{3})" + _SLCAN),
 )
 # Bytes of the time that an slcan adapter may append: milliseconds of the minute
 # (Lawicel manual, command Z).
@@ -64,16 +64,15 @@ def _packet(line: str) -> Iterator[Printed]:
     match = next(filter(None, (form.fullmatch(line) for form in _FORMS)), None)
     if match is None:
         return
-    text = match["data"]
-    # A remote request has no data (ISO 11898-1).
+    groups = match.groupdict()
+    text, slcan = groups["data"], groups.get("slcan")
     data = b"" if text[:1] in ("R", "r") else bytes.fromhex(text.replace(".", ""))
-    size = int(match.groupdict().get("size") or len(data))
-    if text != "remote request" and len(data) not in (
-        size,
-        size + _STAMP if line[0] in "tT" else size,
-    ):
+    # A remote request has no data; its size is that of the response (ISO 11898-1).
+    is_remote = text == "remote request" or slcan in ("r", "R")
+    size = 0 if is_remote else int(groups.get("size") or len(data))
+    if len(data) != size and not (slcan and len(data) == size + _STAMP):
         return
-    time = (match.groupdict().get("time") or "").strip()
+    time = (groups.get("time") or "").strip()
     # The bytes beyond the size are the time of the adapter.
     if len(data) > size:
         time = f"{int.from_bytes(data[size:], 'big') / 1000:.3f}"
