@@ -15,7 +15,6 @@ class Computer:
         self, icd: Icd, node: Node, settings: Settings, storage: Storage
     ) -> None:
         self.icd, self.settings, self.storage = icd, settings, storage
-        self.boot_at: int | None = None
         self.start(0, node)
 
     def start(self, now: int, node: Node) -> None:
@@ -24,14 +23,13 @@ class Computer:
         A boot program starts its application after the boot time.
         """
         self.program = Program(self.icd, node, self.storage, self.settings, now)
-        self.boot_at = None
-        if self._application(node):
-            wait = (
-                self.settings.boot_ms
-                if self.settings.boot_ms is not None
-                else self.program.facts.boot_ms
-            )
-            self.boot_at = None if wait is None else now + wait
+        wait = self.settings.boot_ms
+        if wait is None:
+            wait = self.program.facts.boot_ms
+        # Time at which a boot program starts its application.
+        self.boot_at: int | None = None
+        if wait is not None and self._application(node):
+            self.boot_at = now + wait
 
     def tick(self, now: int) -> None:
         """Process timeouts."""
