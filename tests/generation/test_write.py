@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from pathlib import PurePosixPath
+from contextlib import suppress
+from pathlib import Path, PurePosixPath
 
 import pytest
 
@@ -142,6 +143,33 @@ def test_a_first_run_that_is_interrupted_may_be_repeated_with_other_content(
     monkeypatch.undo()
     generate(tmp_path, a_h="2\n", b_h="2\n")
     assert (tmp_path / "a.h").read_text() == "2\n"
+
+
+@pytest.mark.parametrize("step", range(8))
+def test_a_run_that_was_killed_anywhere_leaves_nothing_that_the_next_one_does_not_mend(
+    tmp_path, monkeypatch, step
+):
+    generate(tmp_path, a_h="old\n", b_h="old\n", c_h="old\n")
+    count = [0]
+
+    def counted(function):
+        def call(*arguments, **options):
+            count[0] += 1
+            if count[0] == step + 1:
+                raise KeyboardInterrupt
+            return function(*arguments, **options)
+
+        return call
+
+    monkeypatch.setattr(os, "replace", counted(os.replace))
+    monkeypatch.setattr(Path, "unlink", counted(Path.unlink))
+    with suppress(KeyboardInterrupt):
+        generate(tmp_path, a_h="new\n", d_h="new\n")
+    monkeypatch.undo()
+    generate(tmp_path, a_h="new\n", d_h="new\n")
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"a.h", "d.h", manifest.path(tmp_path, "c").name}
+    assert set(manifest.read(tmp_path, "c")) == {"a.h", "d.h"}
 
 
 def test_a_folder_that_cannot_be_written_is_a_clear_error(tmp_path):

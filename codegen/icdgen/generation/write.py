@@ -104,11 +104,12 @@ def apply(changes: Plan) -> None:
             replace(target, manifest.text(extended).encode())
         for name in changes.write:
             replace(os.path.join(out, name), changes.files[name])
-        if read(target) != changes.manifest.encode():
-            replace(target, changes.manifest.encode())
         for name in changes.remove:
             (out / name).unlink(missing_ok=True)
             _remove_empty(out, (out / name).parent)
+        # Last: a file that the manifest no longer names is never removed.
+        if read(target) != changes.manifest.encode():
+            replace(target, changes.manifest.encode())
     except OSError as error:
         message = f"cannot write {error.filename}: {error.strerror}"
         raise UserError(message, "choose another folder with --out") from None
