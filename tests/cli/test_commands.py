@@ -25,7 +25,10 @@ class TestCheck:
         result = icdgen("check")
         assert (result.status, result.out) == (0, "no findings\n")
 
-        assert "checked the ICDs that come with icdgen" in result.err
+        assert "no ICD is in the current folder, so icdgen checked those that come" in (
+            result.err
+        )
+        assert "help: `icdgen check FILE` takes another one" in result.err
 
     @pytest.mark.parametrize("command", ["check", "fmt"])
     def test_the_icds_of_the_current_folder_are_the_default(
@@ -40,13 +43,15 @@ class TestCheck:
         assert result.status == 1
         findings = result.out + result.err
         assert "pump.yaml:" in findings and "valve.yaml:" not in findings
-        assert "ed pump.yaml; name others as arguments or in icdgen.toml" in result.err
+        assert (
+            "ed pump.yaml\n" in result.err and f"`icdgen {command} FILE`" in result.err
+        )
 
     def test_the_folder_icd_is_part_of_the_default(self, icdgen, demo, tmp_path):
         (tmp_path / "pump.yaml").write_text(DEMO.replace("name: demo", "name: pump"))
         result = icdgen("check")
         assert (result.status, result.out) == (0, "no findings\n")
-        assert "checked pump.yaml and icd;" in result.err
+        assert "checked pump.yaml and icd\n" in result.err
 
     def test_the_configuration_precedes_the_icds_of_the_folder(
         self, icdgen, demo, tmp_path

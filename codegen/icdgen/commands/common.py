@@ -164,11 +164,14 @@ def say_default(paths: list[Path], verb: str) -> None:
     configuration = context.meta.get(_CONFIG_KEY)
     if configuration is None or configuration.icds:
         return
+    names = listing(str(path) for path in paths)
     if paths == [_short(shipped.icds())]:
-        names = f"the ICDs that come with icdgen, as the current folder has none ({paths[0]})"
+        text = f"no ICD is in the current folder, so icdgen {verb} those that come with it: {names}"
     else:
-        names = listing(str(path) for path in paths)
-    say(f"icdgen: {verb} {names}; name others as arguments or in icdgen.toml", err=True)
+        text = f"{verb} {names}"
+    command = context.command_path
+    help = f"`{command} FILE` takes another one, as does `icds = [...]` in icdgen.toml"
+    say(f"icdgen: {text}\n  help: {help}", err=True)
 
 
 def beside_shipped(error: UserError, context: click.Context) -> UserError:
