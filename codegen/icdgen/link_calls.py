@@ -116,7 +116,6 @@ class _LinkBuilder:
             "longest_data": facts.longest_data,
             "telemetry_ids": (facts.telemetry_ids.first, facts.telemetry_ids.last),
             "settings": self.part(facts.client),
-            "errors": self.commented_rest(facts.errors, "link.reasons"),
             "commands": {
                 each.id: self.sent(each) for each in self.description.telecommands
             },

@@ -37,13 +37,6 @@ LINK: link.Link[_Node] = link.Link(
         in_flight=1,
         progress_for=60000,
     ),
-    errors={
-        "none": 0,
-        "unknown_id": 1,
-        "length": 2,
-        "parameter": 3,
-        "checksum": 4,
-    },
     commands={
         # Assumed, acknowledge: Whether the acknowledge comes before the restart is
         #   not said. None is waited for, and one that comes is accepted.

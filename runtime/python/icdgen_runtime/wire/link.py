@@ -299,8 +299,6 @@ class Facts(NamedTuple):
     """First and last id."""
     settings: Settings
     """Default timeouts and retries of a client."""
-    errors: dict[str, int]
-    """Error codes by role."""
     commands: dict[int, Sent]
     frames: dict[int, int]
     """Lengths of telemetry frames by id."""
