@@ -50,13 +50,22 @@ def macro_of(group: Flags | Row) -> str:
     return f"{len(group.fields)}_FLAGS{'_FALLING' if group.is_falling else ''}"
 
 
-def decode_statements(message: MessageDescription) -> list[str]:
+def groups_of(composite: Composite[Any], prefix: str = "") -> list[Group]:
+    """Return the fields of a message or struct in the groups for which the support
+    header has macros.
+
+    Names of arrays of structs start with ``prefix``.
+    """
+    return groups(composite, THRESHOLDS, prefix)
+
+
+def decode_statements(message: MessageDescription, groups: list[Group]) -> list[str]:
     """Return the statements of a decode function: one per field or group, then the
     elements of the last variable part.
     """
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    lines = _statements(message, message, groups(message, THRESHOLDS))
+    lines = _statements(message, message, groups)
     last = message.last_part
     if last is not None and last.is_rest:
         count = cast(_count(last), last.counter.storage.bits)
@@ -70,10 +79,11 @@ def decode_statements(message: MessageDescription) -> list[str]:
     return lines
 
 
-def read_statements(message: MessageDescription, array: StructArray) -> list[str]:
+def read_statements(
+    message: MessageDescription, array: StructArray, groups: list[Group]
+) -> list[str]:
     """Return the statements that read an element of an array of structs."""
-    struct = array.element_struct
-    return _statements(struct, message, groups(struct, THRESHOLDS, f"{array.name}_"))
+    return _statements(array.element_struct, message, groups)
 
 
 def _statements(

@@ -7,7 +7,6 @@ from typing import Any
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.decoding import (
-    THRESHOLDS,
     elements,
     elements_of_iteration,
     for_each,
@@ -28,7 +27,6 @@ from icdgen.describe.groups import (
     Group,
     LoopElements,
     Row,
-    groups,
 )
 
 
@@ -83,10 +81,10 @@ def counted_text(last: VariablePartDescription) -> str:
     return f"strlen(text) + {more}u" if more else "strlen(text)"
 
 
-def encode_statements(message: MessageDescription) -> list[str]:
+def encode_statements(message: MessageDescription, groups: list[Group]) -> list[str]:
     """Return the statements that write every byte of the frame once."""
-    fields, last = groups(message, THRESHOLDS), message.last_part
-    frame = _Frame(message, message, fields, message.model.length)
+    last = message.last_part
+    frame = _Frame(message, message, groups, message.model.length)
     if last is not None and last.element_struct is not None:
         function, (begin, step) = element_writer(message, last.field.name), last.place
         each = for_each(last.field.member, elements(last), function, last.place)
@@ -98,11 +96,12 @@ def encode_statements(message: MessageDescription) -> list[str]:
     return unused + frame.in_order()
 
 
-def write_statements(message: MessageDescription, array: StructArray) -> list[str]:
+def write_statements(
+    message: MessageDescription, array: StructArray, groups: list[Group]
+) -> list[str]:
     """Return the statements that write an element of an array of structs."""
     struct = array.element_struct
-    fields = groups(struct, THRESHOLDS, f"{array.name}_")
-    return _Frame(struct, message, fields, struct.model.length).in_order()
+    return _Frame(struct, message, groups, struct.model.length).in_order()
 
 
 class _Frame:
