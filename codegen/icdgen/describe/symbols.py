@@ -40,6 +40,9 @@ class NamingPolicy:
         # Weak references: a policy lives as long as the program, a description as long
         # as its run.
         self._texts: WeakKeyDictionary[object, dict[str, str]] = WeakKeyDictionary()
+        self._of_parts: WeakKeyDictionary[Part, tuple[Identifier, ...]] = (
+            WeakKeyDictionary()
+        )
         self.tables: WeakKeyDictionary[Description, tuple[Identifier, ...]] = (
             WeakKeyDictionary()
         )
@@ -101,6 +104,19 @@ class NamingPolicy:
         """
         return ()
 
+    def of_part(self, part: Part) -> tuple[Identifier, ...]:
+        """Return the names of a message, struct or enumeration, without those of its
+        fields or members; computed once, for the table and for templates.
+        """
+        names = self._of_parts.get(part)
+        if names is None:
+            names = self._of_parts[part] = tuple(
+                self.enumeration(part)
+                if isinstance(part, EnumDescription)
+                else self.composite(part)
+            )
+        return names
+
     def symbol(
         self, part: NodeDescription | Part | MemberDescription, role: str
     ) -> str:
@@ -122,11 +138,7 @@ class NamingPolicy:
             return (*self.node(part), *(self.link(part) if part.is_linked else ()))
         if isinstance(part, MemberDescription):
             return self.member(part.enum, part)
-        return (
-            self.enumeration(part)
-            if isinstance(part, EnumDescription)
-            else self.composite(part)
-        )
+        return self.of_part(part)
 
 
 def symbols(description: Description, policy: NamingPolicy) -> tuple[Identifier, ...]:
@@ -144,13 +156,13 @@ def _symbols(description: Description, policy: NamingPolicy) -> Iterator[Identif
         for part in node.usable:
             yield from policy.in_node(node, part)
         for enum in node.enums:
-            yield from policy.enumeration(enum)
+            yield from policy.of_part(enum)
             for member in enum.members:
                 yield from policy.member(enum, member)
         if node.is_linked:
             yield from policy.link(node)
         for composite in node.composites:
-            yield from policy.composite(composite)
+            yield from policy.of_part(composite)
             yield from policy.fields(composite, composite.declared_members)
         for direction in node.directions:
             for message, _ in direction.messages:
@@ -166,10 +178,7 @@ def symbols_of_part(
     users = description.users_of(part.node)
     for node in users:
         yield from policy.in_node(node, part)
-    if isinstance(part, EnumDescription):
-        yield from policy.enumeration(part)
-        return
-    yield from policy.composite(part)
+    yield from policy.of_part(part)
     if isinstance(part, MessageDescription):
         for node in users:
             for direction in part.directions:
