@@ -45,13 +45,17 @@ def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     and digits.
     """
     text = latin(name)
-    longest_first = sorted(
-        [word for word in map(latin, vocabulary) if word in text], key=len, reverse=True
-    )
+    known = [word for word in _longest_first(vocabulary) if word in text]
     parts: list[str] = []
     for chunk in _SEPARATORS.split(text):
-        parts += _split(chunk, longest_first) if longest_first else _humps(chunk)
+        parts += _split(chunk, known) if known else _humps(chunk)
     return tuple(parts)
+
+
+@lru_cache(maxsize=1 << 8)
+def _longest_first(vocabulary: tuple[str, ...]) -> list[str]:
+    """Return the words of a vocabulary in ASCII, the longest first."""
+    return sorted(map(latin, vocabulary), key=len, reverse=True)
 
 
 def latin(text: str) -> str:
