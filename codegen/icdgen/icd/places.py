@@ -68,7 +68,7 @@ class NodePlace(OfScalar):
         """``Satellites[2].GNSS``"""
         return name_of_steps(self.steps)
 
-    @property
+    @cached_property
     def node(self) -> LayoutNode:
         """The node; of an element, its array."""
         return self.steps[-1].node
