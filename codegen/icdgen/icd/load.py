@@ -215,12 +215,14 @@ class _Loader:
         The type that the schema requires decides the fix of an ``ambiguous`` scalar,
         such as `yes`: quotes, or `true`.
         """
-        from icdgen.icd import remedies, schema
+        from icdgen.icd import schema
 
         lines = Lines(self.texts.get(tree.place.file, ""))
         findings, broken = schema.check(tree, document, lines)
         violations = {finding.place: finding for finding in findings}
         for finding in ambiguous:
+            from icdgen.icd import remedies
+
             violation = violations.get(finding.place)
             text = (
                 remedies.of_type("string", lines.marked(finding.place))
