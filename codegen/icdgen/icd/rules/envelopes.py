@@ -18,6 +18,7 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, of_wide_value
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings
+from icdgen.once import cached_by_owner
 from icdgen.wording import count, listing, quote
 
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
@@ -120,8 +121,13 @@ def links_on_buses(ctx: Context) -> Iterator[Link]:
             yield link
 
 
-def all_links(ctx: Context) -> Iterator[Link]:
-    """Yield the links of the nodes that declare a valid `link` themselves."""
+@cached_by_owner
+def all_links(ctx: Context) -> tuple[Link, ...]:
+    """Return the links of the nodes that declare a valid `link` themselves."""
+    return tuple(_links(ctx))
+
+
+def _links(ctx: Context) -> Iterator[Link]:
     for node in ctx.icd.nodes:
         section = section_of(node, "link")
         if section is None:
