@@ -91,8 +91,9 @@ def loggable_entries_match_the_messages(ctx: Context) -> Iterator[Fault]:
             frame = frames.get(row.id)
             if frame is None:
                 continue
-            source, here = row.source, f"telemetry {ctx.written(row.source, 'id')}"
+            source = row.source
             if row.name and row.name != frame.name:
+                here = f"telemetry {ctx.written(source, 'id')}"
                 other = f"{quote(frame.name)} ({line_of(frame.source.at('name'), source.at('name'))})"
                 text = f"{here} is called {other}, not {quote(row.name)}"
                 yield Fault.at(source, "name", text, "correct `name` or `id`")
