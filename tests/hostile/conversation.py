@@ -20,6 +20,7 @@ from tests.hostile.devices import Device, Kind
 
 Row = dict[str, Any]
 IDLE = 60  # ms between events of a device while the line is idle
+NO_ERROR, PARAMETER = 0, 3  # codes of the acknowledge (`TcErrorReason`)
 
 FILE = {"type": 2, "counter": 1}
 PROCEDURES: tuple[Row, ...] = (
@@ -159,12 +160,10 @@ class Line:
                     and not link.commands[event.id].acknowledged
                 ):
                     continue
-                code = link.errors["none"] if isinstance(event, Done) else event.code
+                code = NO_ERROR if isinstance(event, Done) else event.code
                 acknowledge = bytearray(form.length)
                 acknowledge[form.id_at] = event.id
-                acknowledge[form.error_at] = (
-                    link.errors["parameter"] if code is None else code
-                )
+                acknowledge[form.error_at] = PARAMETER if code is None else code
                 yield uart_encode(link, bytes(acknowledge))
 
 

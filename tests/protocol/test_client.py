@@ -43,7 +43,7 @@ def test_the_next_telecommand_waits_for_the_acknowledge(link):
     assert client.output() == line(link, 31, 1)
     with pytest.raises(BusyError):
         client.start(1, Request("telecommand", 31, b"\1"))
-    assert client.received(2, line(link, 31, 0)) == [Done(31, 1)]
+    assert client.received(2, line(link, 31, 0)) == [Done(31, 1, b"\0")]
     client.start(3, Request("telecommand", 31, b"\1"))
 
 
@@ -80,13 +80,15 @@ def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(link):
     client.output()
     client.tick(100)
     client.output()
-    assert client.received(110, line(link, 31, 0)) == [Done(31, 2)]
+    assert client.received(110, line(link, 31, 0)) == [Done(31, 2, b"\0")]
     client.start(111, Request("telecommand", 31, b"\2"))
     assert client.output() == b""
     assert client.received(150, line(link, 31, 0)) == [Late(31, b"\0")]
     client.tick(210)
     assert client.output() == line(link, 31, 2)
-    assert client.received(220, line(link, 31, 3)) == [Refused(31, 1, 3, "parameter")]
+    assert client.received(220, line(link, 31, 3)) == [
+        Refused(31, 1, 3, "parameter", None, b"\3")
+    ]
 
 
 def test_on_can_a_frame_is_split_and_joined(link):

@@ -191,7 +191,8 @@ def test_i2c_polls_until_the_telecommand_is_processed(shipped, wire):
         client.tick(now)
         assert client.transfers() == [wire.I2cTransfer(b"\xf0", 4)]
         events = client.transferred(now, bytes((10, processed, 0, 0)))
-    assert events == [wire.Done(10, 1)]
+    (done,) = events
+    assert (done.id, done.attempts, done.data) == (10, 1, b"\x0a\1\0\0")
 
 
 def test_a_wrong_checksum_is_sent_again(shipped, wire):
@@ -204,7 +205,9 @@ def test_a_wrong_checksum_is_sent_again(shipped, wire):
     )
     assert client.received(5, acknowledge(acp.LINK, wire, 10, 4)) == []
     assert client.output() == sent
-    assert client.received(9, acknowledge(acp.LINK, wire, 10)) == [wire.Done(10, 2)]
+    assert client.received(9, acknowledge(acp.LINK, wire, 10)) == [
+        wire.Done(10, 2, b"\0")
+    ]
 
 
 def test_two_requests_at_a_time_if_the_device_handles_them(shipped, wire):

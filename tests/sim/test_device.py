@@ -92,7 +92,7 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
         done = client.telecommand(client.known.telecommands[17], bytes(6))
         assert isinstance(done, Done)
         wrong = bytes([17]) + bytes(6) + b"\x01"
-        assert raw_exchange(client, wrong) == client.link.errors["checksum"]
+        assert raw_exchange(client, wrong) == client.known.errors["checksum"]
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
 )
 def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
     with session() as client:
-        assert raw_exchange(client, message) == client.link.errors[reason]
+        assert raw_exchange(client, message) == client.known.errors[reason]
         frame = codec.decode(
             client.node,
             client.known.polled.message,

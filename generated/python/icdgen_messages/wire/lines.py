@@ -17,8 +17,6 @@ class Line(Protocol):
     """Whether each transmission has a result: a failed one is sent again after a pause,
     and a request without responses is sent when its transmission has succeeded.
     """
-    reports_acknowledges: bool
-    """Whether an outcome has the data of an acknowledge or refusal."""
     checks_telecommands: bool
     """Whether telecommands have a checksum that a device can find wrong."""
 

@@ -24,7 +24,6 @@ class StreamLine:
     """
 
     has_results = False
-    reports_acknowledges = True
     checks_telecommands = False
 
     def __init__(self, link: Link, values: Optional[Mapping[str, int]]) -> None:

@@ -34,7 +34,6 @@ class BusLine:
 
     bus: Bus
     has_results = False
-    reports_acknowledges = False
     header = b""
 
     def __init__(self, link: Link, checks: bool) -> None:

@@ -271,8 +271,6 @@ class Client(Generic[N]):
         """Process a response to a request."""
         verdict, content = response.verdict_of(arrival.content), arrival.content
         data, type, telemetry = arrival.data, arrival.type, response.telemetry
-        if verdict != "reply" and not self._line.reports_acknowledges:
-            data, type, telemetry = b"", None, None
         id, handle = slot.plan.request.id, slot.handle
         slot.owed.remove(verdict)
         if verdict == "progress":

@@ -20,8 +20,9 @@ R_co = TypeVar("R_co", bound=Optional[Message], covariant=True)
 
 @dataclass(frozen=True)
 class Done(Generic[R_co]):
-    """A request was executed. ``data`` is the frame of requested telemetry.
+    """A request was executed.
 
+    ``data`` is the frame of requested telemetry, or the data of the acknowledge.
     ``Done[EstimatedAttitudeAngles]`` has a message of this class, ``Done[None]`` has
     none. ``reply``: id of the telemetry that responded. ``handle`` identifies the
     request: `Client.begun` after it began.
@@ -52,8 +53,8 @@ class Refused:
 
     ``reason`` is the role of the code in the ICD: ``unknown_id``, ``length``,
     ``parameter`` or ``checksum``; on a framed link, the member of the enumeration of the
-    code. CAN has no code. Only I2C reports the parameter. ``data`` is the response on a
-    framed link, of the class ``type``.
+    code. CAN has no code. Only I2C reports the parameter. ``data`` is that of the
+    response, of the class ``type`` if it is a message.
     """
 
     id: int

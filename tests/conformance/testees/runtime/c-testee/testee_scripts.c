@@ -17,9 +17,7 @@ static void on_event(void *context, const icd_event_t *event)
     if (outcome) {
         put_number("attempts", event->attempts);
     }
-    if (kind == ICD_EVENT_DONE) { /* the acknowledge itself is not compared */
-        put_octets("bytes", event->data, event->direction == ICD_TELEMETRY ? event->length : 0u);
-    } else if (kind >= ICD_EVENT_ARRIVED && kind <= ICD_EVENT_STRAY) {
+    if (kind == ICD_EVENT_DONE || (kind >= ICD_EVENT_ARRIVED && kind <= ICD_EVENT_STRAY)) {
         const size_t id_bytes = event->is_packet ? 1u : 0u;
         put_octets("bytes", event->data + id_bytes, event->length - id_bytes);
     }

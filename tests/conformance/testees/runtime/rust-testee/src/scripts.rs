@@ -263,7 +263,6 @@ fn shown(event: &Event<'_>, bus: Option<Bus>) -> String {
     let of = |name: &str, id: u32| format!(" {name} id={id}");
     match *event {
         Event::Done {
-            direction,
             id,
             attempts,
             reply,
@@ -271,15 +270,12 @@ fn shown(event: &Event<'_>, bus: Option<Bus>) -> String {
             data,
             ..
         } => {
-            let is_acknowledge = bus.is_some() && direction == Direction::Telecommand;
-            let bytes = if is_acknowledge {
-                String::new()
-            } else {
-                hex(data)
-            };
             let is_named = bus.is_none() && packet.is_none();
             let reply = known("reply", Some(reply).filter(|_| is_named));
-            format!(" done id={id} attempts={attempts}{reply} bytes={bytes}")
+            format!(
+                " done id={id} attempts={attempts}{reply} bytes={}",
+                hex(data)
+            )
         }
         Event::Refused {
             id,
