@@ -83,8 +83,11 @@ int main(void)
     icd_client_cancel(&acp.client);
     assert(cubeacp_request_estimated_attitude_angles(&acp, 20000) == ICD_OK);
     assert(icd_client_output(&acp.client, line, 2, &count));
+    icd_client_tick(&acp.client, 90000, on_event, NULL);
+    assert(!icd_client_deadline(&acp.client, &deadline));
     icd_client_cancel(&acp.client); /* also the rest of the output */
     assert(!icd_client_output(&acp.client, line, 2, &count));
+    assert(cubeacp_request_estimated_angular_rates(&acp, 90000) == ICD_OK && sends(64) == 147u);
     return 0;
 }
 """

@@ -240,6 +240,9 @@ icd_client_ask(icd_client_t *client, uint32_t now, uint32_t id, const uint8_t *d
  * UART and framed links: write the next bytes to send into the buffer. Its time-outs count from the `now` of the
  * previous call of another function. Return false if there are none; on framed links also if the buffer is too small,
  * where NODE_LINE_BYTES are always enough. Call it until it returns false, after each call of another function.
+ *
+ * UART and CAN: a request whose output is only partly taken has no time-out and keeps its slot. If you cannot send the
+ * rest, such as after a failed write, drop it with icd_client_cancel().
  */
 ICDGEN_API bool icd_client_output(icd_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
 
