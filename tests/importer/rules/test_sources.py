@@ -246,6 +246,8 @@ TABLE = "<table><tr><td>a<td>b</table>"
         ("<pre>struct <b>a\n{</b>\nint8_t x;</pre>", ["struct a", "{", "int8_t x;"]),
         ("<dl><dt>Id<dd>0x21</dl>", ["Id", "0x21"]),
         ("<ul><li>Id<li>0x21</ul>", ["Id", "0x21"]),
+        ("<p>Id <s>0x20</s><del>0x2</del>0x21</p>", ["Id 0x21"]),
+        ("<p>10 \u00b5A, 20 \u00b0C</p>", ["10 \u00b5A, 20 \u00b0C"]),
     ],
 )
 def test_all_text_of_a_web_page_is_kept_in_the_lines_that_a_browser_shows(
@@ -286,6 +288,46 @@ def test_row_spans_end_with_their_group_of_rows_as_in_browsers(tmp_path, span, r
     _, (table,) = _read_html(tmp_path / "a.html", body)
     assert table.rows[1].cells[0].rows == rows
     assert [cell.text for cell in table.rows[-1].cells] == ["b", "4"]
+
+
+def test_a_page_that_declares_its_encoding_is_read_in_it(tmp_path):
+    page = f"<meta charset='iso-8859-15'><p>10 \u00b5A, 5 \u20ac</p>{TABLE}"
+    (tmp_path / "a.html").write_bytes(page.encode("iso-8859-15"))
+    _, (table,) = sources.read(tmp_path / "a.html", profile.load())
+    assert table.before == ["10 \u00b5A, 5 \u20ac"]
+
+
+def test_a_page_whose_parts_the_parser_leaves_out_is_a_finding(tmp_path):
+    with pytest.raises(Findings) as caught:
+        _read_html(tmp_path / "a.html", "<div>" * 5000 + TABLE)
+    assert "nested too deeply" in caught.value.findings[0].message
+
+
+WORD = """<w:body xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main">
+  <w:p><w:r><w:t xml:space="preserve">Id </w:t></w:r>
+    <w:ins w:id="1" w:author="a"><w:r><w:t>0x21</w:t></w:r></w:ins>
+    <w:del w:id="2" w:author="a"><w:r><w:delText>0x20</w:delText></w:r></w:del></w:p>
+  <w:p><w:r><w:t xml:space="preserve">Table </w:t></w:r>
+    <w:fldSimple w:instr="SEQ Table"><w:r><w:t>3</w:t></w:r></w:fldSimple>
+    <w:r><w:t>: Motor</w:t></w:r></w:p>
+  <w:sdt><w:sdtPr/><w:sdtContent><w:tbl><w:tblPr/><w:tblGrid/>
+    <w:tr><w:tc><w:p><w:sdt><w:sdtContent><w:r><w:t>a</w:t></w:r></w:sdtContent></w:sdt></w:p></w:tc>
+      <w:sdt><w:sdtContent><w:tc><w:p><w:r><w:rPr><w:strike/></w:rPr><w:t>1</w:t></w:r>
+        <w:r><w:rPr><w:strike w:val="0"/></w:rPr><w:t>2</w:t></w:r></w:p></w:tc></w:sdtContent></w:sdt></w:tr>
+    <w:tr><w:trPr><w:del w:id="3" w:author="a"/></w:trPr><w:tc><w:p><w:r><w:t>old</w:t></w:r></w:p></w:tc></w:tr>
+    <w:tr><w:trPr><w:ins w:id="4" w:author="a"/></w:trPr><w:tc><w:p><w:r><w:t>b</w:t></w:r></w:p></w:tc></w:tr>
+  </w:tbl></w:sdtContent></w:sdt></w:body>"""
+
+
+def test_a_word_document_is_read_with_its_changes_fields_and_content_controls(tmp_path):
+    document = docx.Document()
+    for element in reversed(docx.oxml.parse_xml(WORD)):
+        document.element.body.insert(0, element)
+    document.save(str(tmp_path / "a.docx"))
+    _, (table,) = sources.read(tmp_path / "a.docx", profile.load())
+    assert (table.before, table.label, table.caption) == (["Id 0x21"], 3, "Motor")
+    rows = [[cell.text for cell in row.cells] for row in table.rows]
+    assert rows == [["a", "2"], ["b"]]
 
 
 def test_the_lines_of_a_list_in_a_cell_are_lines(tmp_path):

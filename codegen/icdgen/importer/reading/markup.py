@@ -35,11 +35,12 @@ _HEADINGS = {f"h{level}": float(20 - level) for level in range(1, 7)}
 _BREAKS = {
     "address", "article", "aside", "blockquote", "br", "caption", "dd", "details", "div", "dl", "dt", "fieldset",
     "figcaption", "figure", "footer", "form", "h1", "h2", "h3", "h4", "h5", "h6", "header", "hr", "li", "main", "nav",
-    "ol", "p", "pre", "section", "summary", "table", "td", "th", "tr", "ul",
+    "ol", "option", "p", "pre", "section", "summary", "table", "td", "th", "tr", "ul",
 }  # fmt: skip
 # Limits of HTML for `colspan` and `rowspan`.
 _MOST_COLUMNS, _MOST_ROWS = 1000, 65534
-_SKIPPED = {"script", "style", "head", "template", "noscript"}
+# Text that is struck through is no longer valid.
+_SKIPPED = {"script", "style", "head", "template", "noscript", "del", "s", "strike"}
 
 
 def read_html(path: Path, profile: Profile) -> Document:
@@ -75,19 +76,18 @@ def _of_html(data: bytes, name: str, profile: Profile) -> Document:
         raise UserError(
             "reading a web page or Markdown needs lxml", "pip install 'icdgen[import]'"
         ) from None
+    # Without a declared encoding, the parser would read UTF-8 as ISO 8859-1. Other
+    # encodings with bytes above 127 are hardly ever valid UTF-8.
+    encoding = None if data.isascii() or not _is_utf8(data) else "utf-8"
+    parser = html.HTMLParser(encoding=encoding)
     try:
-        root = html.document_fromstring(data)
+        root = html.document_fromstring(data, parser=parser)
     except etree.ParserError as error:
-        raise Findings(
-            [
-                Finding(
-                    CODE,
-                    f"the page cannot be read: {error}",
-                    Place(name),
-                    "is it a web page?",
-                )
-            ]
-        ) from None
+        raise _refused(f"the page cannot be read: {error}", name) from None
+    for entry in parser.error_log:
+        # The parser leaves out what is below.
+        if entry.message.startswith("Excessive depth"):
+            raise _refused("its elements are nested too deeply", name, entry.line)
     title = root.findtext(".//title") or ""
     document = Document(name, title=plain(title))
     _join_source_lines(root)
@@ -96,6 +96,18 @@ def _of_html(data: bytes, name: str, profile: Profile) -> Document:
         list(_html_blocks(body if body is not None else root, profile))
     )
     return document
+
+
+def _is_utf8(data: bytes) -> bool:
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def _refused(message: str, name: str, line: int = 1) -> Findings:
+    return Findings([Finding(CODE, message, Place(name, line), "is it a web page?")])
 
 
 def _html_blocks(element: Any, profile: Profile) -> Iterator[Block | Caption]:
@@ -266,6 +278,7 @@ def read_docx(path: Path, profile: Profile) -> Document:
                 )
             ]
         ) from None
+    _accept_changes(word.element.body)
     document = Document(str(path), title=word.core_properties.title or "")
     blocks: list[Block | Caption] = []
     for part in word.iter_inner_content():
@@ -283,6 +296,44 @@ def read_docx(path: Path, profile: Profile) -> Document:
                 blocks += _paragraphs(part.text, profile)
     document.blocks = attach_captions(blocks)
     return document
+
+
+# Elements around text, rows and tables, which python-docx does not look into: tracked
+# insertions, content controls, tags and fields.
+_WORD_WRAPPERS = ("ins", "moveTo", "sdt", "sdtContent", "smartTag", "customXml", "fldSimple")  # fmt: skip
+# Descriptions of wrappers, and tracked deletions.
+_WORD_SKIPPED = ("del", "moveFrom", "sdtPr", "sdtEndPr", "smartTagPr", "customXmlPr")
+
+
+def _accept_changes(body: Any) -> None:
+    """Take out what is deleted or struck through in a Word document, and wrappers."""
+    word = body.nsmap["w"]
+
+    def elements(*names: str) -> list[Any]:
+        return list(body.iter(*(f"{{{word}}}{name}" for name in names)))
+
+    # Of a row and of a run, these are properties.
+    deleted = [
+        mark.getparent().getparent() for mark in elements("del") if _is_of(mark, "trPr")
+    ]
+    for mark in elements("strike", "dstrike"):
+        if _is_of(mark, "rPr") and mark.get(f"{{{word}}}val") not in (
+            "0",
+            "false",
+            "off",
+        ):
+            deleted.append(mark.getparent().getparent())
+    for element in [*deleted, *elements(*_WORD_SKIPPED)]:
+        if element.getparent() is not None:
+            element.getparent().remove(element)
+    for wrapper in elements(*_WORD_WRAPPERS):
+        parent = wrapper.getparent()
+        at = parent.index(wrapper)
+        parent[at : at + 1] = list(wrapper)
+
+
+def _is_of(mark: Any, name: str) -> bool:
+    return str(mark.getparent().tag).endswith(f"}}{name}")
 
 
 def _word_rows(table: Any) -> list[SourceRow]:
