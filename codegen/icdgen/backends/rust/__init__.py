@@ -130,7 +130,7 @@ def _functions() -> dict[str, object]:
         examples.read_example, examples.write_example, messages.bytes_of, messages.counted_text,
         messages.counter_value, messages.default, messages.derives, messages.element_bytes, messages.typed_constant,
         messages.fits, messages.flag_bytes, messages.imports, messages.literal, messages.overlay_value,
-        messages.part_bytes, messages.part_count, messages.times, messages.uses_enums, messages.write_statements,
+        messages.part_bytes, messages.part_count, messages.times, messages.used_names, messages.write_statements,
         names.constant_name, names.field_name, names.has, names.scale_name, names.setter, nodes.about, nodes.guarded,
         nodes.summary, nodes.typed, parts.parts_of, physical.big_parts, physical.derived_statements,
         physical.has_constant, presence_comment, RUST_NAMES.symbol, sentence, text.arm, text.assigned, text.code,

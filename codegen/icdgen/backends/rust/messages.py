@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from icdgen.backends.rust import bits, elements
-from icdgen.backends.rust.names import ENUMS_MODULE, field_name, reader
+from icdgen.backends.rust.names import field_name, reader
 from icdgen.backends.rust.text import double, integer
 from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, MessageDescription
@@ -96,13 +96,18 @@ def times(step: int, count: str) -> str:
     return f"{step} * ({count})" if " + " in count else f"{step} * {count}"
 
 
-def imports(body: str) -> str:
-    """Return the names of the support module that the body of a module uses, for its
-    ``use`` statement.
+def used_names(body: str) -> frozenset[str]:
+    """Return the names that the body of a module uses."""
+    # For comments and texts, `findall` returns an empty group, which is no name.
+    return frozenset(_USED.findall(body))
+
+
+def imports(used: frozenset[str]) -> str:
+    """Return the names of the support module that a module uses, for its ``use``
+    statement.
     """
     names = sorted(
-        # For comments and texts, `findall` returns an empty group, which is no name.
-        _SUPPORT.intersection(_USED.findall(body)),
+        _SUPPORT & used,
         key=lambda name: (name[0].isupper(), name),
     )
     return f"{{{', '.join(names)}}}" if len(names) > 1 else names[0]
@@ -133,13 +138,6 @@ def fits(composite: Composite[Any]) -> list[str]:
         if field.needs_range_check and not field.model.conditions
         for line in bits.fitting(field)
     ]
-
-
-def uses_enums(body: str) -> bool:
-    """Return whether the body of a module uses the enumerations of its node: of a
-    member, or of an array in a struct whose elements it reads.
-    """
-    return ENUMS_MODULE in _USED.findall(body)
 
 
 def typed_constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
