@@ -14,7 +14,14 @@ _PLAIN = re.compile(r"[ -!#-\[\]-~]*\Z")
 # In both a backslash takes the meaning from what follows: of inline markup, and of what
 # begins a list, a directive, a field.
 _MARKUP = re.compile(
-    r"[\\`]|<(?=[A-Za-z/!?])|(?<![^\s'\"(\[{</:-])[*_|](?=\S)|(?<=\w)_(?!\w)|\|(?=_)"
+    r"""[\\`<*_|]  # characters that markup contains: without one of them, the alternatives are not tried
+        (?: (?<=[\\`])
+          | (?<=<)(?=[A-Za-z/!?])
+          | (?<=[*_|])(?<![^\s'"(\[{</:-].)(?=\S)
+          | (?<=\w_)(?!\w)
+          | (?<=\|)(?=_)
+        )""",
+    re.VERBOSE,
 )
 _BLOCK = re.compile(
     r"\A(\(?(?:[0-9]+|[A-Za-z#])(?=[.)] )|(?=[-+*\u2022] |\.\. |>>>|:|[=#]+ ))"
