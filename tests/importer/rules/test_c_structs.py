@@ -291,6 +291,16 @@ def test_a_struct_is_read_whatever_is_declared_with_it():
     assert [row[0][4] for row in structs_of(text).values()] == ["n", "m", "m"]
 
 
+def test_an_array_can_have_a_name_as_a_type():
+    text = """typedef uint8_t mac_t[6]; typedef mac_t macs_t[2];
+        struct a { mac_t own; mac_t others[3]; macs_t pair; };"""
+    assert [(row[0], row[5]) for row in structs_of(text)["a"]] == [
+        ("0", "6"),
+        ("6", "18"),
+        ("24", "12"),
+    ]
+
+
 def test_structs_in_structs_do_not_exhaust_the_memory():
     text = "struct a0 { uint8_t n; };" + "".join(
         f"struct a{level} {{ struct a{level - 1} n[64]; }};" for level in range(1, 9)

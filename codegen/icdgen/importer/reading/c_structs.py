@@ -509,21 +509,21 @@ class _Reader:
         Offsets count from the beginning of the declaration.
         """
         kind, counts = declaration.type, []
-        while isinstance(kind, self.ast.ArrayDecl):
-            if kind.dim is None:
+        while isinstance(array := self.resolved(kind), self.ast.ArrayDecl):
+            if array.dim is None:
                 raise Unreadable(
                     f"`{declaration.name}` has no size",
                     "write its size, or describe it in the ICD by hand",
                 )
-            counts.append(self.number(kind.dim))
+            counts.append(self.number(array.dim))
             # 0 elements are a flexible array of GNU C.
             if counts[-1] < 1:
                 raise Unreadable(
                     f"`{declaration.name}` has {counts[-1]} elements",
                     "write its size, or describe it in the ICD by hand",
                 )
-            kind = kind.type
-        if isinstance(kind, self.ast.PtrDecl):
+            kind = array.type
+        if isinstance(self.resolved(kind), self.ast.PtrDecl):
             raise Unreadable(
                 f"`{declaration.name}` is a pointer",
                 "a struct with pointers is no frame",

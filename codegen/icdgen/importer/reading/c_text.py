@@ -15,7 +15,7 @@ _PACKED = r"(?:__attribute__\s*\(\(\s*(?:__)?packed(?:__)?\s*\)\)|\b__packed\b|\
 _BEGINS = re.compile(
     rf"\b(?:typedef\s+)?(?:{_PACKED}\s*)?(?:struct|enum|union)\b[^;{{}}()=]*(?:{_PACKED})?[^;{{}}()=]*\{{"
 )
-_TYPEDEF = re.compile(r"\btypedef\s+[\w\s]+?\s\w+\s*;")
+_TYPEDEF = re.compile(r"\btypedef\s+[\w\s]+?\s\w+\s*(?:\[[^][;{}]*\]\s*)*;")
 # Strings and characters match, too, so that `//` in them begins no comment.
 _COMMENT = re.compile(
     r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S
