@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import datetime
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -352,6 +353,26 @@ def test_a_file_that_cannot_be_read_is_a_finding(tmp_path, name, data):
     with pytest.raises(Findings) as caught:
         sources.read(tmp_path / name, profile.load())
     assert caught.value.findings[0].code == "IMP002" and caught.value.findings[0].help
+
+
+def test_commas_of_descriptions_do_not_separate_columns_of_semicolons(tmp_path):
+    text = "Byte;Description\n1;Speed, in rpm, of wheel 1, 2, 3, or 4\n2;Mode\n"
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    _, (table,) = sources.read(tmp_path / "a.csv", profile.load())
+    rows = [[cell.text for cell in row.cells] for row in table.rows]
+    assert rows[1:] == [["1", "Speed, in rpm, of wheel 1, 2, 3, or 4"], ["2", "Mode"]]
+
+
+def test_a_number_that_is_no_number_is_kept_as_text(tmp_path):
+    book = openpyxl.Workbook()
+    book.active.append(["Byte", "Value"])
+    book.active.append([1, 1.5])
+    book.save(tmp_path / "b.xlsx")
+    with ZipFile(tmp_path / "b.xlsx") as old, ZipFile(tmp_path / "a.xlsx", "w") as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name).replace(b"<v>1.5</v>", b"<v>1e999</v>"))
+    _, (table,) = sources.read(tmp_path / "a.xlsx", profile.load())
+    assert [cell.text for cell in table.rows[1].cells] == ["1", "inf"]
 
 
 def test_without_rules_a_spreadsheet_gives_its_tables_and_no_message(tmp_path):

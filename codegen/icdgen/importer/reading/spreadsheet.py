@@ -41,8 +41,13 @@ def read_csv(path: Path) -> Document:
     """
     name = str(path)
     text = utf8_text(path, "save it as CSV in UTF-8")
-    # Spreadsheet programs write semicolons where the comma is the decimal point.
-    delimiter = max(",;\t|", key=text[:10_000].count)
+    # Spreadsheet programs write semicolons where the comma is the decimal point. Commas
+    # of descriptions can be more, but do not stand in each line.
+    lines = text[:10_000].splitlines()
+    delimiter = max(
+        ",;\t|",
+        key=lambda mark: (sum(mark in line for line in lines), text.count(mark)),
+    )
     rows: Cells = []
     reader = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)
     try:
@@ -188,7 +193,8 @@ class _Sheet:
         if isinstance(value, bool):
             return "TRUE" if value else "FALSE"
         if isinstance(value, float):
-            return str(int(value)) if value == int(value) else repr(value)
+            # Also infinity, which a workbook can have as `1e999`, has no integer.
+            return str(int(value)) if value.is_integer() else repr(value)
         if (
             isinstance(value, str)
             and value.startswith("#")
