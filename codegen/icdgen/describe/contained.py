@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from icdgen.describe.description import FieldDescription, Into
 from icdgen.describe.nodes import MessageDescription
 from icdgen.frozen import NamedTuple
+from icdgen.once import cached_by_owner
 
 
 class CopiedMember(NamedTuple):
@@ -41,14 +42,7 @@ class ContainedDescription(NamedTuple):
         """List its members, opening structs, with their sources in a composite from bit
         ``begin`` on.
         """
-        fields = {field.model.at: field for field in composite.fields}
-        arrays = {
-            field.model.at: field
-            for field in composite.walk(Into.ARRAYS_OF_STRUCTS)
-            if field.count
-        }
-        # The composite declares the same bits in lines of its own, so its fields are
-        # found by their positions.
+        fields, arrays = _by_position(composite)
         for member in self.message.walk(Into.ARRAYS_OF_STRUCTS):
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
@@ -62,6 +56,20 @@ class ContainedDescription(NamedTuple):
                         fields[begin + element.model.at] for element in member.elements
                     ),
                 )
+
+
+@cached_by_owner
+def _by_position(
+    composite: MessageDescription,
+) -> tuple[dict[int, FieldDescription], dict[int, FieldDescription]]:
+    """Return the scalars and the arrays of a composite message by their first bits.
+
+    The composite declares the bits of contained messages in lines of its own, so its
+    fields are found by their positions.
+    """
+    fields = {field.model.at: field for field in composite.fields}
+    members = composite.walk(Into.ARRAYS_OF_STRUCTS)
+    return fields, {field.model.at: field for field in members if field.count}
 
 
 def contained_messages(
