@@ -175,7 +175,7 @@ class ScalarDescription(Named[NodePlace]):
         """Number of bytes or characters of a byte string or text."""
         return self.model.bits // 8
 
-    @property
+    @cached_property
     def has_physical(self) -> bool:
         """Whether it has a physical value other than the raw value, and accessors for
         it.
