@@ -131,7 +131,7 @@ class _LinkBuilder:
         optional = {
             "framing": self.part(facts.framing),
             "acknowledge": self.part(facts.acknowledge),
-            "polled": self.commented_rest(self.polled(), "link.buses.i2c.acknowledge"),
+            "polled": self.commented_rest(self.polled(), "link.buses.i2c.commands.ack"),
             "i2c_address": facts.i2c_address,
             # True is the default of the runtime.
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,

@@ -25,7 +25,7 @@
 #include "bootloader/procedures.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
-#define BOOTLOADER_ICD_DIGEST "94d98bd925e16348"
+#define BOOTLOADER_ICD_DIGEST "050a9b1d4adae2a4"
 /** Type that the node reports. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */

@@ -57,7 +57,7 @@
 #include "common/procedures.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
-#define COMMON_ICD_DIGEST "1bddf8e92d1b970a"
+#define COMMON_ICD_DIGEST "89247c2c1f444805"
 
 /** Any telemetry message of Common messages. `id` determines which member of `as` is valid. */
 typedef struct {

@@ -132,7 +132,7 @@
 #include "cubeacp/procedures.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
-#define CUBEACP_ICD_DIGEST "17c0af9388c4d279"
+#define CUBEACP_ICD_DIGEST "abe8d459a10f4b32"
 /** Type that the node reports. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */

@@ -97,7 +97,7 @@ typedef enum {
     ICD_REASON_NONE = 1,
     ICD_REASON_UNKNOWN_ID = 2,
     ICD_REASON_LENGTH = 3,
-    ICD_REASON_PARAMETER = 4,
+    ICD_REASON_VALUE = 4,
     ICD_REASON_CHECKSUM = 5
 } icd_reason_t;
 

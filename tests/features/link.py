@@ -10,7 +10,13 @@ enums:
     members: [{value: 0, name: None}, {value: 1, name: Unknown}, {value: 2, name: Length}, {value: 3, name: Value}]
 protocol:
   link:
-    reasons: {enum: Refusal of the line, none: 0, unknown_id: 1, length: 2, parameter: 3}
+    packets:
+      acknowledge:
+        from: device
+        header: [{bits: 8, role: id, name: Number}, {bits: 8, role: status, name: Refusal, enum: Refusal of the line}]
+    commands:
+      ack: {packet: acknowledge, echo: id, status: status, success: [None]}
+      reasons: {unknown_id: Unknown, length: Length, value: Value}
     buses:
       uart:
         line: {baud_rate: 115200, data_bits: 8, parity: none, stop_bits: 1}
@@ -22,11 +28,6 @@ protocol:
           data: 0x10
           other: error
           escaped_in: [id, data]
-        acknowledge:
-          required_before_next: true
-          data:
-            - {byte: 0, bytes: 1, name: Number,  role: id,    type: uint}
-            - {byte: 1, bytes: 1, name: Refusal, role: error, type: enum, enum: Refusal of the line}
     client: {reply_timeout_ms: 100, retries: 2}
   log_mask:
     bytes: 2

@@ -90,9 +90,6 @@ protocol:
       parity: Not given.
   i2c: {write: {address_7bit: 0x57}}
   client: {retries: 1}
-  errors: {enum: Code, none: 0, length: 1}
-enums:
-  - {name: Code, members: [{value: 0, name: None}, {value: 1, name: Length}]}
 messages:
   - {name: Save, id: 8, kind: telecommand, length: 0}
 """
@@ -102,9 +99,8 @@ def test_buses_are_in_the_link_with_the_keys_of_framed_links(tmp_path):
     text = format_text(BUSES, "pump.yaml")
     link = yaml.safe_load(text)["protocol"]["link"]
     assert yaml.safe_load(text)["protocol"].keys() == {"link"}
-    assert link.keys() == {"ids", "reasons", "client", "buses"}
+    assert link.keys() == {"ids", "client", "buses"}
     assert link["ids"]["source"] == {"table": 2}
-    assert link["reasons"] == {"enum": "Code", "none": 0, "length": 1}
     assert link["buses"] == {
         "uart": {
             "source": {"table": 3},
@@ -199,6 +195,133 @@ notes:
 """
 
 
+RESPONSES = """\
+icdgen: 1
+node: {name: pump, title: Pump, byte_order: big, bit_order: msb0}
+protocol:
+  link:
+    # by the status
+    reasons: {source: {table: 4}, enum: Code, none: 0, length: 1, parameter: 2}  # of all buses
+    buses:
+      uart:
+        framing: {by: escape, escape: 16, start: 2, end: 3, data: 16}
+        acknowledge:
+          source: {table: 5}
+          required_before_next: true  # the buffer holds one
+          data:
+            - {byte: 0, bytes: 1, name: Number, role: id, type: uint}
+            - {byte: 2, bytes: 1, name: Status, role: error, type: enum, enum: Code}
+            - {byte: 3, bytes: 4, name: Since, type: uint, format: msdos_time}
+          assumptions: {data: Not given.}
+        unsolicited:
+          - {message: Level, id_of: Save}  # in a stream
+      i2c:
+        write: {address_7bit: 0x57}
+        acknowledge: {required_before_next: true, message: Outcome, id: Last, until: Done, error: Code, parameter: Index}
+      can:
+        identifier:
+          - {name: Type, role: type, bits: 5}
+          - {name: Channel, role: channel, bits: 8}
+          - {name: From, role: source, bits: 8}
+          - {name: To, role: destination, bits: 8}
+        message_types:
+          source: {table: 7}
+          values:
+            - {value: 1, name: Command, summary: A telecommand.}  # short
+            - {value: 2, name: Accepted}
+            - {value: 3, name: Failed}
+            - {value: 4, name: Request}
+            - {value: 5, name: Frame}
+            - {value: 6, name: Unknown}
+            - {value: 7, name: Long Command}
+            - {value: 8, name: Long Frame}
+        telecommand:
+          {request: Command, extended_request: Long Command, acknowledge: Accepted, failure: Failed, acknowledge_bytes: 0}
+        telemetry:
+          source: {table: 8}
+          request: Request
+          request_bytes: 0
+          response: Frame
+          extended_response: Long Frame
+          failure: Unknown
+        extended: {data_bytes: 7, packets_left_byte: 7}
+enums:
+  - {name: Code, members: [{value: 0, name: None}, {value: 1, name: Length}]}
+messages:
+  - {name: Save, id: 8, kind: telecommand, length: 0}
+  - {name: Level, id: 130, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Level, type: uint}]}
+  - name: Outcome
+    id: 131
+    kind: telemetry
+    length: 4
+    fields:
+      - {at: 0, bits: 8, name: Last, type: uint}
+      - {at: 8, bits: 8, name: Done, type: uint}
+      - {at: 16, bits: 8, name: Code, type: uint}
+      - {at: 24, bits: 8, name: Index, type: uint}
+"""
+
+
+def test_responses_on_buses_are_packets_and_commands(tmp_path):
+    text = format_text(RESPONSES, "pump.yaml")
+    link = yaml.safe_load(text)["protocol"]["link"]
+    assert link["commands"] == {
+        "source": {"table": 4},
+        "reasons": {"length": "Length", "value": 2},
+    }
+    packets = link["packets"]
+    assert packets["acknowledge"] == {
+        "source": {"table": 5},
+        "from": "device",
+        "buses": ["uart"],
+        "header": [
+            {"bits": 8, "role": "id", "name": "Number"},
+            {"at": 16, "bits": 8, "role": "status", "name": "Status", "enum": "Code"},
+            {"bits": 32, "role": "time", "name": "Since"},
+        ],
+        "assumptions": {"header": "Not given."},
+    }
+    constant = {"bits": 8, "role": "constant", "value": 8}
+    assert packets["unasked"]["header"] == [constant]
+    assert packets["unasked"]["messages"] == ["Level"]
+    assert packets["Long Frame"] == {
+        "source": {"table": 7},
+        "from": "device",
+        "buses": ["can"],
+        "type": 8,
+        "segment_of": "Frame",
+    }
+    uart, i2c, can = (link["buses"][bus] for bus in ("uart", "i2c", "can"))
+    assert uart["commands"]["ack"] == {
+        "packet": "acknowledge",
+        "echo": "id",
+        "status": "status",
+        "success": ["None"],
+    }
+    assert i2c["commands"]["ack"] == {
+        "message": "Outcome",
+        "echo": "Last",
+        "until": "Done",
+        "status": "Code",
+        "success": [0],
+        "detail": "Index",
+    }
+    assert can["commands"] == {
+        "ack": {"packet": "Accepted"},
+        "nak": {"packet": "Failed"},
+    }
+    assert can["requests"] == {
+        "source": {"table": 8},
+        "packet": "Request",
+        "nak": {"packet": "Unknown"},
+    }
+    assert can["segments"] == {"data_bytes": 7, "packets_left_byte": 7}
+    words = ("by the status", "of all buses", "the buffer holds one", "in a stream")
+    assert [text.count(f"# {comment}") for comment in (*words, "short")] == [1] * 5
+    (tmp_path / "pump.yaml").write_text(text, encoding="utf-8")
+    assert load([tmp_path / "pump.yaml"]).findings == []
+
+
 def test_errata_name_the_present_places():
     marked, moved, other = yaml.safe_load(format_text(ERRATA, "pump.yaml"))["notes"]
     assert marked["where"] == {"section": "protocol.link.buses.uart.framing"}
@@ -212,7 +335,15 @@ def test_errata_name_the_present_places():
 
 
 @pytest.mark.parametrize(
-    "text", [EARLIER, BUSES, CHECKSUMS, ERRATA, "icdgen: 1\nprotocol: {client: {}}\n"]
+    "text",
+    [
+        EARLIER,
+        BUSES,
+        CHECKSUMS,
+        RESPONSES,
+        ERRATA,
+        "icdgen: 1\nprotocol: {client: {}}\n",
+    ],
 )
 def test_a_second_time_nothing_changes(text):
     once = format_text(text, "pump.yaml")

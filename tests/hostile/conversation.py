@@ -20,7 +20,6 @@ from tests.hostile.devices import Device, Kind
 
 Row = dict[str, Any]
 IDLE = 60  # ms between events of a device while the line is idle
-NO_ERROR, PARAMETER = 0, 3  # codes of the acknowledge (`TcErrorReason`)
 
 FILE = {"type": 2, "counter": 1}
 PROCEDURES: tuple[Row, ...] = (
@@ -148,6 +147,8 @@ class Line:
         """Return the messages that make the client report the events."""
         link, form = self.link, self.link.acknowledge
         assert form
+        (response,) = link.bus_exchanges["uart"].command.responses
+        success, refusal = response.meanings[0][0], response.reasons[0][0]
         for event in events:
             if isinstance(event, Arrived):
                 heads = {telemetry: id for id, telemetry in link.unsolicited.items()}
@@ -160,10 +161,10 @@ class Line:
                     and not link.commands[event.id].acknowledged
                 ):
                     continue
-                code = NO_ERROR if isinstance(event, Done) else event.code
+                code = success if isinstance(event, Done) else event.code
                 acknowledge = bytearray(form.length)
                 acknowledge[form.id_at] = event.id
-                acknowledge[form.error_at] = PARAMETER if code is None else code
+                acknowledge[form.error_at] = refusal if code is None else code
                 yield uart_encode(link, bytes(acknowledge))
 
 

@@ -22,8 +22,8 @@ HELD_ELSEWHERE = {
             "printed_constant",
         )
     ),
-    "link/buses/can/extended/packets_left_in_last",
-    "link/buses/can/extended/max_packets",
+    "link/buses/can/segments/packets_left_in_last",
+    "link/buses/can/segments/max_packets",
     "boot/attempts",
 }
 

@@ -80,8 +80,8 @@ def test_the_table_names_only_features_that_there_are():
         ),
         (
             {"type": "bool", "bits": 1},
-            roles.PROTOCOL["parameter"],
-            ["has 1 bit, but needs 2 at least"],
+            roles.PROTOCOL["period"],
+            ["has 1 bit, but needs 8 at least"],
         ),
         (
             {"type": "uint", "bits": 8},

@@ -43,8 +43,10 @@ protocol:
     buses:
       uart:
         framing: {by: escape, escape: 0x10, start: 0x02, end: 0x03, data: 0x10}
-        acknowledge:
-          data: [{byte: 0, bytes: 1, name: Id, role: id, type: uint}, {byte: 1, bytes: 1, name: Error, role: error, type: uint}]
+    packets:
+      acknowledge: {from: device, header: [{bits: 8, role: id}, {bits: 8, role: status}]}
+    commands:
+      ack: {packet: acknowledge, echo: id, status: status, success: [0]}
 messages:
   - {name: Stop, id: 7, kind: telecommand, length: 0}
 """
@@ -66,7 +68,7 @@ def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):
 
 def test_every_assumption_says_what_is_held_and_why(known):
     held = {(a.section, a.key): a for a in known.assumptions}
-    assert held["link.buses.can.extended", "fill"].value == 0
+    assert held["link.buses.can.segments", "fill"].value == 0
     assert held["log_mask", "frame_order"].value == "rising bits"
     (field,) = held["link.packets.telecommand", "trailer"].value
     assert field["covers"] == {"from": "data", "to": "data"}

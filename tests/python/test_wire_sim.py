@@ -87,7 +87,7 @@ def test_every_telecommand_has_an_outcome(shipped, wire):
                 talking.send(message())
             except wire.RefusedError as error:
                 assert error.event.reason == (
-                    "unknown_id" if message.NAME in uploads else "parameter"
+                    "unknown_id" if message.NAME in uploads else "value"
                 )
     assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
 

@@ -179,7 +179,7 @@ fn sending() {
             seen.push((id, code, reason));
         }
     });
-    assert_eq!(seen, [(13, Some(3), Some(Reason::Parameter))]);
+    assert_eq!(seen, [(13, Some(3), Some(Reason::Value))]);
 }
 
 /// The packets of a message are taken one by one; nothing comes between them.

@@ -100,7 +100,7 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
     [
         (b"\x63", "unknown_id"),
         (b"\x11" + bytes(3), "length"),
-        (b"\x21\x59", "parameter"),
+        (b"\x21\x59", "value"),
     ],
 )
 def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
@@ -318,7 +318,7 @@ def test_a_refused_telecommand_is_not_executed():
         )
         before = client.telemetry(message)
         outcome = client.telecommand(message, bytes([1] * message.length))
-        assert isinstance(outcome, Refused) and outcome.reason == "parameter"
+        assert isinstance(outcome, Refused) and outcome.reason == "value"
         assert client.telemetry(message) == before
 
 

@@ -407,8 +407,10 @@ def test_a_fault_that_no_response_can_express_names_what_the_icd_lacks(
 def test_a_device_without_acknowledges_cannot_refuse(tmp_path):
     text = (LINKS / "battery.yaml").read_text()
     file = tmp_path / "battery.yaml"
-    file.write_text(re.sub(r"\n        acknowledge:\n(          .*\n)*", "\n", text))
-    with pytest.raises(UserError, match="it needs `uart: acknowledge`"):
+    text = re.sub(r"\n        commands:\n(          .*\n)*", "\n", text)
+    text = re.sub(r"\n    commands:\n(      .*\n)*", "\n", text)
+    file.write_text(re.sub(r"\n      acknowledge: .*\n", "\n", text))
+    with pytest.raises(UserError, match="it needs an `ack` of the UART"):
         run.build(load_or_exit((file,)).icd, None, run.Options(faults=["nak=1"]))
 
 

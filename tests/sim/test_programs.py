@@ -69,9 +69,9 @@ def test_copying_what_was_never_uploaded_fails(device):
 def test_a_program_that_cannot_be_copied_and_a_destination_that_is_not_supported_are_refused(
     device,
 ):
-    assert code(device, 0, COPY, 0, 0) == REASONS["parameter"]
-    assert code(device, 0, INITIATE, 10, 0) == REASONS["parameter"]
-    assert code(device, 0, FINALIZE, 10, 0, 0, 0, 0, 1, 0) == REASONS["parameter"]
+    assert code(device, 0, COPY, 0, 0) == REASONS["value"]
+    assert code(device, 0, INITIATE, 10, 0) == REASONS["value"]
+    assert code(device, 0, FINALIZE, 10, 0, 0, 0, 0, 1, 0) == REASONS["value"]
 
 
 def test_a_block_beyond_the_end_of_the_destination_is_not_committed(device):

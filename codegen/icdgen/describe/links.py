@@ -19,7 +19,7 @@ from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Crc, Index, Report, TimePart
 
-REASONS = ("none", "unknown_id", "length", "parameter", "checksum")
+REASONS = ("none", "unknown_id", "length", "value", "checksum")
 """Meanings of error codes that the runtimes support."""
 
 # The orders of these tuples are those of the members in the structs of the C runtime,
@@ -260,14 +260,12 @@ class LinkDescription:
         Its roles are id, processed, error and parameter.
         """
         polled = self.facts.polled
-        names = ("id", "processed", "error", "parameter")
-        return (
-            self.report(
-                Report(polled.message, {name: getattr(polled, name) for name in names})
-            )
-            if polled
-            else None
-        )
+        if polled is None:
+            return None
+        fields = {"id": polled.id, "processed": polled.processed, "error": polled.error}
+        if polled.parameter is not None:
+            fields["parameter"] = polled.parameter
+        return self.report(Report(polled.message, fields))
 
     @property
     def identification(self) -> ReportDescription | None:

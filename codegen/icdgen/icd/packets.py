@@ -45,6 +45,13 @@ class Packet(NamedTuple):
         return names if isinstance(names, list | tuple) else None
 
     @property
+    def segment_of(self) -> object:
+        """Return the name of the packet whose message this is a part of; None for a
+        whole message.
+        """
+        return self.section.get("segment_of")
+
+    @property
     def reserved(self) -> int:
         """Return the bytes of data without meaning, in a packet without a message."""
         reserved: int = self.section.get("reserved", 0)
@@ -96,6 +103,7 @@ class Packets(NamedTuple):
             for packet in self.all
             if direction in packet.directions
             and packet.name not in self.responding
+            and packet.segment_of is None
             and not (direction == TELECOMMAND and self.only_requests(packet))
         ]
 

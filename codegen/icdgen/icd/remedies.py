@@ -44,6 +44,9 @@ _KEYS = {
 _EARLIER = frozenset(
     {"stream", "checksums", "client", "message_id", "errors", "uart", "i2c", "can"}
 )
+_EARLIER_IN_LINKS = frozenset(
+    {"reasons", "acknowledge", "unsolicited", "message_types", "telecommand", "telemetry", "extended"}
+)  # fmt: skip
 
 _IN_BYTES = {
     "byte": ("at", "the first bit, if bytes count from 0"),
@@ -201,6 +204,10 @@ def of_key(key: str, value: object, known_keys: list[str]) -> Remedy | None:
         return Remedy(f"write `{target}:{written}`, {meaning}")
     if key in _EARLIER and "link" in known_keys:
         return Remedy("it is in `link:` now; `icdgen fmt` converts the file")
+    if key in _EARLIER_IN_LINKS and "commands" in known_keys:
+        return Remedy(
+            "it is in `packets:`, `commands:` and `requests:` now; `icdgen fmt` converts the file"
+        )
     if key == "covers":
         return Remedy("write it at the field with the role `checksum`")
     if key.lower() in _REPEATED:

@@ -83,8 +83,6 @@ SPLIT = Role(("uint",), ("array",), most_bits=64)
 # keys allow any integer.
 PROTOCOL: dict[str, Role] = {
     "mask": Role(("bytes", "text")),
-    "id": Role(INTEGERS, least_bits=8),
-    "parameter": Role(INTEGERS, least_bits=2),
     "period": Role(INTEGERS, least_bits=8),
 }
 

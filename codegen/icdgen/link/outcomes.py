@@ -6,9 +6,9 @@ from typing import Any
 
 from icdgen_runtime.wire.events import Busy, Outcome, Refused, Timeout
 
-from icdgen.icd.error_codes import error_enum
 from icdgen.icd.model import Icd, Message, Node, framed_link
 from icdgen.icd.responses import declared_responses, echoes_of, reason_of
+from icdgen.protocol import facts
 from icdgen.values.frame import Frame
 
 
@@ -20,7 +20,7 @@ def reason_name(icd: Icd, node: Node, outcome: Outcome) -> str | None:
         return None
     if framed_link(icd.protocol_of(node)):
         return outcome.reason
-    enum = error_enum(icd, node)
+    enum = facts.of(icd, node).error_enum
     member = enum.member_of(outcome.code) if enum else None
     return member.name if member else None
 

@@ -9,11 +9,12 @@ data; on the UART these are the bytes of the message.
 from __future__ import annotations
 
 from icdgen.frozen import dataclass
+from icdgen.icd.buses import CAN, I2C, UART
 from icdgen.icd.model import Node
 from icdgen.icd.responses import ACK, AGAIN, ID_BYTES, NAK, REPLY, field_of
 from icdgen.protocol.exchange import Echo, Exchange, NumberPlace, Poll, Response
 from icdgen.protocol.responding import place_of
-from icdgen.protocol.sections import CAN, I2C, UART, Acknowledge, Can, Framing, Polled
+from icdgen.protocol.sections import Acknowledge, Can, Framing, Polled
 
 ACKNOWLEDGE, REFUSAL, REQUEST_REFUSAL = range(3)
 
@@ -82,20 +83,22 @@ def _acknowledged(
     """Return the acknowledge on the UART, whose code can also refuse."""
     status = NumberPlace(acknowledge.error_at, 1, 0, 8, False)
     echo = Echo(NumberPlace(acknowledge.id_at, 1, 0, 8, False), 0)
-    return (_with_code(None, ACKNOWLEDGE, echo, status, errors),)
+    return (_with_code(None, ACKNOWLEDGE, echo, status, acknowledge.success, errors),)
 
 
 def _polled(
     node: Node, polled: Polled, errors: dict[str, int]
 ) -> tuple[Response, Poll]:
     """Return the telemetry that is polled on I2C for the outcome of a telecommand."""
-    roles = (polled.id, polled.processed, polled.error, polled.parameter)
-    places = [place_of(node, field_of(polled.message, role)) for role in roles]
+    names = (polled.id, polled.processed, polled.error, polled.parameter)
+    places = [place_of(node, field_of(polled.message, name)) for name in names]
     id, processed, error, parameter = places
     assert id and processed and error, "a field that a client compares is one number"
     # Of a set id and a get id, the last one is the get id.
     telemetry = polled.message.ids[-1]
-    response = _with_code(telemetry, None, Echo(id, 0), error, errors, parameter)
+    response = _with_code(
+        telemetry, None, Echo(id, 0), error, polled.success, errors, parameter
+    )
     return response, Poll(telemetry, processed)
 
 
@@ -104,6 +107,7 @@ def _with_code(
     packet: int | None,
     echo: Echo,
     code: NumberPlace,
+    success: tuple[int, ...],
     errors: dict[str, int],
     detail: NumberPlace | None = None,
 ) -> Response:
@@ -111,7 +115,7 @@ def _with_code(
 
     After a wrong checksum, the telecommand was damaged on the line and is sent again.
     """
-    meanings = [(errors.get("none", 0), ACK)]
+    meanings = [(number, ACK) for number in success]
     if "checksum" in errors:
         meanings.append((errors["checksum"], AGAIN))
     return Response(

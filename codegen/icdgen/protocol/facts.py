@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TypeVar
 
 from icdgen.frozen import dataclass
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.bus_exchanges import BusExchanges, bus_exchanges
 from icdgen.protocol.envelope import Stream
@@ -56,7 +56,9 @@ class Facts:
     i2c_address: int | None
     i2c_repeated_start: bool  # otherwise a read is a separate transaction
     can: Can | None
-    errors: dict[str, int]  # none, unknown_id, length, parameter, checksum
+    # On UART and I2C: none, unknown_id, length, value, checksum, busy
+    errors: dict[str, int]
+    error_enum: Enum | None  # names of the error codes
     checksums: dict[str, ChecksumAlgorithm]  # all, in the order of the ICD
     checksum: Checksum | None  # of messages on UART, I2C and CAN
     mask: LogMask | None
@@ -103,13 +105,15 @@ class Facts:
     @property
     def parts(self) -> dict[str, object]:
         """Described parts with declared facts, by their sections of the ICD."""
-        parts = {
+        parts: dict[str, object | None] = {
             "link.client": self.client, "link.buses.uart.framing": self.framing,
-            "link.buses.uart.acknowledge": self.acknowledge, "link.buses.can": self.can,
-            "link.buses.can.extended": self.can and self.can.extended, "link.packets": self.checksum,
+            "link.buses.can": self.can,
+            "link.buses.can.segments": self.can and self.can.extended, "link.packets": self.checksum,
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
             "index_file": self.index,
         }  # fmt: skip
+        if self.acknowledge:
+            parts[self.acknowledge.section] = self.acknowledge
         return {section: part for section, part in parts.items() if part is not None}
 
     @property
@@ -200,11 +204,8 @@ def of(icd: Icd, node: Node) -> Facts:
         i2c_address=reader.i2c_address(),
         i2c_repeated_start=reader.i2c_repeated_start(),
         can=reader.can(),
-        errors={
-            key: code
-            for key, code in reader.section("link", "reasons").items()
-            if isinstance(code, int)
-        },
+        errors=reader.errors(),
+        error_enum=reader.error_enum(),
         checksums=reader.checksums,
         checksum=reader.checksum(),
         mask=reader.mask(),

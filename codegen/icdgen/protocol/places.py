@@ -9,9 +9,9 @@ from icdgen.protocol import sections
 PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("link.client", sections.Settings),
     ("link.buses.uart.framing", sections.Framing),
-    ("link.buses.uart.acknowledge", sections.Acknowledge),
+    ("link.packets.*", sections.Acknowledge),
     ("link.buses.can", sections.Can),
-    ("link.buses.can.extended", sections.Extended),
+    ("link.buses.can.segments", sections.Extended),
     ("link.packets", sections.Checksum),
     ("log_mask", sections.LogMask),
     ("telemetry_log", sections.LogFile),

@@ -11,6 +11,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
 from icdgen.frozen import NamedTuple
+from icdgen.icd.buses import (
+    BUSES,
+    CAN,
+    I2C,
+    UART,
+    BusLink,
+    bus_link,
+    buses_with,
+    can_packets,
+)
+from icdgen.icd.enumeration import Enum
 from icdgen.icd.model import (
     TELECOMMAND,
     TELEMETRY,
@@ -19,16 +30,17 @@ from icdgen.icd.model import (
     Node,
     framed_link,
 )
-from icdgen.icd.packets import ID_ROLE, declared_packets
+from icdgen.icd.packets import ID_ROLE, declared_packets, value_of
+from icdgen.icd.responses import ACK, field_of, number_of
 from icdgen.icd.variants import ids_of
 from icdgen.once import cached_property
 from icdgen.protocol.declared import read
 from icdgen.protocol.envelope import Stream
-from icdgen.protocol.enveloping import stream_of
+from icdgen.protocol.enveloping import bytes_of, stream_of
 from icdgen.protocol.procedure_steps import ProcedureReader
 from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.sections import (
-    BUSES,
+    CAN_WITH_DATA,
     Acknowledge,
     Can,
     CanPart,
@@ -109,18 +121,93 @@ class Reader:
             ids.get("last", max(self.telemetry, default=0)),
         )
 
+    @cached_property
+    def buses(self) -> dict[str, BusLink]:
+        """Packets and responses of the buses that the ICD describes."""
+        link = self.section("link")
+        return {bus: bus_link(link, bus) for bus in BUSES if self.bus(bus)}
+
     def acknowledge(self) -> Acknowledge | None:
-        rows = self.bus("uart", "acknowledge").get("data", ())
-        at = by_role(rows)
-        if not {"id", "error"} <= set(at):
+        bus = self.buses.get(UART)
+        packet = bus.responding(bus.commands.get(ACK)) if bus else None
+        if bus is None or packet is None:
             return None
-        return Acknowledge(end(rows), at["id"]["byte"], at["error"]["byte"])
+        row = bus.commands[ACK]
+        id, status = (packet.named(row[key]) for key in ("echo", "status"))
+        assert id and status, "rule ICD105 checks the fields"
+        return Acknowledge(
+            packet.name,
+            self._successes(row, self._enum_of(UART, row)),
+            bytes_of((each["at"], each["bits"]) for each in packet.header),
+            id["at"] // 8,
+            status["at"] // 8,
+        )
 
     def polled(self) -> Polled | None:
-        given = self.bus("i2c", "acknowledge")
-        message = self.messages.get(given.get("message", ""))
-        names = [given.get(key) for key in ("id", "until", "error", "parameter")]
-        return Polled(message, *names) if message and all(names) else None  # type: ignore[arg-type]
+        bus = self.buses.get(I2C)
+        row = bus.commands.get(ACK, {}) if bus else {}
+        message = self.messages.get(row.get("message", ""))
+        if message is None:
+            return None
+        success = self._successes(row, self._enum_of(I2C, row))
+        return Polled(
+            message,
+            success,
+            row["echo"],
+            row["until"],
+            row["status"],
+            row.get("detail"),
+        )
+
+    def errors(self) -> dict[str, int]:
+        """Return the error codes in responses on UART and I2C, by their meaning; empty
+        without such responses.
+        """
+        responses = [self.acknowledge(), self.polled()]
+        success = next((each.success for each in responses if each), ())
+        # Rule ICD177 checks the reasons.
+        given = self.section("link", "commands", "reasons")
+        numbers = {
+            key: number_of(value, self.error_enum())
+            for key, value in given.items()
+            if key != "assumptions"
+        }
+        codes = {key: code for key, code in numbers.items() if code is not None}
+        return {"none": success[0], **codes} if success else {}
+
+    def error_enum(self) -> Enum | None:
+        """Return the enumeration of the error codes on UART and I2C; None without one."""
+        enums = (
+            self._enum_of(bus, self.buses[bus].commands.get(ACK, {}))
+            for bus in (UART, I2C)
+            if bus in self.buses
+        )
+        return next((enum for enum in enums if enum), None)
+
+    def _enum_of(self, bus: str, row: Mapping[str, Any]) -> Enum | None:
+        """Return the enumeration of the status of a response on a bus; None without
+        one.
+        """
+        name, packet = row.get("status"), self.buses[bus].responding(row)
+        if name is None:
+            return None
+        if packet is not None:
+            declared = packet.named(name) or {}
+            return self.enums.get(declared.get("enum", ""))
+        message = self.messages.get(row.get("message", ""))
+        field = field_of(message, name) if message else None
+        return field.scalar.enum if field else None
+
+    def _successes(self, row: Mapping[str, Any], enum: Enum | None) -> tuple[int, ...]:
+        """Return the numbers of the status that confirm a telecommand."""
+        numbers = (number_of(value, enum) for value in row["success"])
+        return tuple(number for number in numbers if number is not None)
+
+    @cached_property
+    def enums(self) -> dict[str, Enum]:
+        """Enumerations of the node and of the nodes that it includes, by name."""
+        owners = (*self.icd.included(self.node), self.node)
+        return {enum.name: enum for owner in owners for enum in owner.enums}
 
     def i2c_address(self) -> int | None:
         """Return the 7-bit address.
@@ -139,45 +226,27 @@ class Reader:
         )
 
     def can(self) -> Can | None:
-        given = self.bus("can")
-        if not {"identifier", "message_types", "telecommand", "telemetry"} <= set(
-            given
-        ):
+        given, bus = self.bus(CAN), self.buses.get(CAN)
+        packets = can_packets(bus) if bus else {}
+        if bus is None or "identifier" not in given or not packets:
             return None
         # The identifier is listed from its most significant part on.
         parts, shift = {}, sum(part["bits"] for part in given["identifier"])
         for part in given["identifier"]:
             shift -= part["bits"]
             parts[part.get("role", part["name"])] = CanPart(part["bits"], shift)
-        numbers = {
-            row["name"]: row["value"] for row in given["message_types"]["values"]
-        }
-        telecommand, telemetry = given["telecommand"], given["telemetry"]
-        named = {
-            "telecommand": telecommand.get("request"),
-            "acknowledge": telecommand.get("acknowledge"),
-            "refusal": telecommand.get("failure"),
-            "request": telemetry.get("request"),
-            "reply": telemetry.get("response"),
-            "request_refusal": telemetry.get("failure"),
-        }
-        extended_named = {
-            "telecommand": telecommand.get("extended_request"),
-            "reply": telemetry.get("extended_response"),
-        }
+        segments = {kind: bus.segment_of(packets.get(kind)) for kind in CAN_WITH_DATA}
         return self.part(
             "link.buses.can",
             Can,
             parts=parts,
-            types={
-                kind: numbers[name] for kind, name in named.items() if name is not None
-            },
+            types={kind: packet.section["type"] for kind, packet in packets.items()},
             extended_types={
-                kind: numbers[name]
-                for kind, name in extended_named.items()
-                if name is not None
+                kind: packet.section["type"]
+                for kind, packet in segments.items()
+                if packet is not None
             },
-            extended=self.part("link.buses.can.extended", Extended),
+            extended=self.part("link.buses.can.segments", Extended),
         )
 
     @cached_property
@@ -202,7 +271,7 @@ class Reader:
                 for packet, row in places
                 if direction in packet.directions
                 and not (mandatory and row.get("optional", False))
-                for bus in packet.section.get("buses", BUSES)
+                for bus in buses_with(packet.section)
             }
             return tuple(bus for bus in BUSES if bus in own)
 
@@ -225,11 +294,7 @@ class Reader:
             section,
             self.checksums,
             ids_of(self.icd, self.node),
-            {
-                enum.name: enum
-                for node in (*self.icd.included(self.node), self.node)
-                for enum in node.enums
-            },
+            self.enums,
         )
 
     def mask(self) -> LogMask | None:
@@ -287,22 +352,23 @@ class Reader:
 
     def procedures(self) -> Iterator[Procedure]:
         """Yield the procedures of the node."""
-        owners = (*self.icd.included(self.node), self.node)
-        nodes = {node.name: node for node in owners}
-        enums = {enum.name: enum for node in owners for enum in node.enums}
+        nodes = {node.name: node for node in self.icd.included(self.node)}
+        nodes[self.node.name] = self.node
         for name, section in self.icd.procedures_of(self.node).items():
             reader = ProcedureReader(
-                section, nodes, self.messages, enums, self.checksums
+                section, nodes, self.messages, self.enums, self.checksums
             )
             yield reader.read(name)
 
     def unsolicited(self) -> dict[int, int]:
-        """Return the telemetry that the node sends unasked on the UART: the id that
-        heads it -> its own id.
+        """Return the telemetry that the node sends unasked on the UART: the constant that
+        heads its packet -> its own id.
         """
+        bus = self.buses.get(UART)
         return {
-            self.messages[row["id_of"]].ids[0]: self.messages[row["message"]].ids[-1]
-            for row in self.bus("uart").get("unsolicited", ())
+            value_of(packet.header[0], TELEMETRY, True): self.messages[name].ids[-1]
+            for packet in (bus.packets.all if bus else ())
+            for name in packet.messages or ()
         }
 
     def report(self, given: dict[str, Any]) -> Report | None:

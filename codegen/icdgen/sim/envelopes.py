@@ -14,12 +14,12 @@ from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder
 
 from icdgen import codec
+from icdgen.icd.buses import UART
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.variants import ids_of
 from icdgen.procedures.counterpart import Refused
 from icdgen.protocol.envelope import DATAGRAM
 from icdgen.protocol.facts import need
-from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults

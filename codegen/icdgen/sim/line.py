@@ -5,8 +5,7 @@ from __future__ import annotations
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from icdgen.icd.error_codes import error_enum
-from icdgen.protocol.sections import UART
+from icdgen.icd.buses import UART
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
@@ -37,11 +36,11 @@ class Line(DeviceLine):
         )
         if not is_acknowledged and program.facts.polled is None:
             self.no_refusal = (
-                "it needs `uart: acknowledge`, and telecommands that are acknowledged"
+                "it needs an `ack` of the UART, and telecommands that are acknowledged"
             )
         self.no_busy_response = "only a framed link (`link: framing`) can have one"
         self._no_error = program.facts.errors.get("none", 0)
-        enum = error_enum(program.icd, program.node)
+        enum = program.facts.error_enum
         self._codes = {
             member.name: member.value
             for member in (enum.members if enum else ())

@@ -92,7 +92,7 @@ class Program:
         self.count("telecommands")
         telecommand = self.facts.telecommands.get(message[0])
         is_acknowledged = telecommand is None or telecommand.acknowledge
-        outcome = self._refusal("parameter", acknowledge=is_acknowledged)
+        outcome = self._refusal("value", acknowledge=is_acknowledged)
         if code is not None:
             outcome = replace(outcome, code=code)
         self.last = (message[0], True, outcome.code, outcome.parameter)
@@ -183,13 +183,13 @@ class Program:
             return self._refusal("length")
         raw = codec.decode(self.icd.node(telecommand.node), telecommand, data)
         if (index := self.first_invalid(telecommand, raw)) is not None:
-            return self._refusal("parameter", index)
+            return self._refusal("value", index)
         if telecommand.kind == CONFIGURATION:
             self.values.put(telecommand, data)
         try:
             self.counterpart.telecommand(now, telecommand, data)
         except Refused as refused:
-            return self._refusal("parameter", self._index(telecommand, refused.place))
+            return self._refusal("value", self._index(telecommand, refused.place))
         if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
         code, reset = (
@@ -256,7 +256,7 @@ class Program:
             polled.id: id,
             polled.processed: processed,
             polled.error: code,
-            polled.parameter: parameter,
+            **polled.detail(parameter),
         }
 
     def _log_role(self) -> dict[str, Any]:

@@ -302,7 +302,7 @@ static const icd_error_code_t icdgen_node_common_errors[] = {
     {ICD_REASON_NONE, 0u},
     {ICD_REASON_UNKNOWN_ID, 1u},
     {ICD_REASON_LENGTH, 2u},
-    {ICD_REASON_PARAMETER, 3u},
+    {ICD_REASON_VALUE, 3u},
     {ICD_REASON_CHECKSUM, 4u},
 };
 /**
@@ -318,8 +318,8 @@ static const icd_framing_t icdgen_node_common_framing = {
     false, /* ignores_other */
 };
 /**
- * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
- * that no other id heads the message, stood in a figure.
+ * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
+ * and that no other id heads the message, stood in a figure.
  */
 static const icd_acknowledge_t icdgen_node_common_acknowledge = {
     2u, /* length */

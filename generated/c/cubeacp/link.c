@@ -909,7 +909,7 @@ static const icd_error_code_t icdgen_node_cubeacp_errors[] = {
     {ICD_REASON_NONE, 0u},
     {ICD_REASON_UNKNOWN_ID, 1u},
     {ICD_REASON_LENGTH, 2u},
-    {ICD_REASON_PARAMETER, 3u},
+    {ICD_REASON_VALUE, 3u},
     {ICD_REASON_CHECKSUM, 4u},
 };
 /**
@@ -925,8 +925,8 @@ static const icd_framing_t icdgen_node_cubeacp_framing = {
     false, /* ignores_other */
 };
 /**
- * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
- * that no other id heads the message, stood in a figure.
+ * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
+ * and that no other id heads the message, stood in a figure.
  */
 static const icd_acknowledge_t icdgen_node_cubeacp_acknowledge = {
     2u, /* length */
@@ -1205,12 +1205,12 @@ static const icd_bus_exchanges_t icdgen_node_cubeacp_on_can = {
 ICDGEN_API const icd_link_t *cubeacp_link(void)
 {
     /**
-     * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
-     * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed trailer:
-     * Whether the id counts among the bytes of a command is not said. The extra byte of a frame can cover the frame
-     * only. Assumed buses: The checksum is offered for commands in general, CAN included. None is sent there by choice,
-     * for in an extended message the receiver could not tell the checksum from the fill. Assumed attempts: One attempt
+     * Assumed trailer: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
+     * cover the frame only. Assumed buses: The checksum is offered for commands in general, CAN included. None is sent
+     * there by choice, for in an extended message the receiver could not tell the checksum from the fill. Assumed
+     * reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing is said
+     * about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is given.
+     * Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One attempt
      * and two more are announced. But the status is raised before each start, so it reads 3 Failed boot attempts before
      * the third, and at that value no start is said to follow. Assumed period_unit_ms: No unit is given. The control
      * loop runs once a second.

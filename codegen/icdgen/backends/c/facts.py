@@ -6,9 +6,9 @@ from typing import Any
 
 from icdgen.backends.lines import STEP
 from icdgen.frozen import NamedTuple
+from icdgen.icd.buses import BUSES
 from icdgen.protocol import sections
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.sections import BUSES
 
 MOST_SIGNED = 0x7FFF_FFFF
 TYPES: dict[type, str] = {

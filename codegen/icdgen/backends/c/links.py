@@ -27,6 +27,7 @@ from icdgen.describe.links import (
     SentMessage,
 )
 from icdgen.frozen import NamedTuple
+from icdgen.icd.buses import BUSES, CAN, UART
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.envelope import (
     CRC,
@@ -35,7 +36,7 @@ from icdgen.protocol.envelope import (
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
-from icdgen.protocol.sections import BUSES, CAN, CAN_KINDS, UART
+from icdgen.protocol.sections import CAN_KINDS
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256

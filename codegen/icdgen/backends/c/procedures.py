@@ -22,6 +22,7 @@ from icdgen.describe.nodes import Description, NodeDescription
 from icdgen.describe.procedures import input_text, procedure_text
 from icdgen.describe.storage import holding
 from icdgen.frozen import NamedTuple
+from icdgen.icd.buses import BUSES
 from icdgen.icd.model import Enum
 from icdgen.icd.procedures import FIXED_NAMES
 from icdgen.icd.responses import ID_BYTES
@@ -50,7 +51,6 @@ from icdgen.protocol.procedures import (
     Verify,
     VerifyChecksum,
 )
-from icdgen.protocol.sections import BUSES
 
 # A request is a poll without conditions.
 _KINDS: dict[type, str] = {

@@ -19,7 +19,7 @@ from icdgen.backends.html import (
 from icdgen.backends.html.all_facts import Row, as_text
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.frozen import NamedTuple
-from icdgen.icd.error_codes import error_enum
+from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.model import Node, buses_of
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import LENGTH
@@ -69,13 +69,11 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "identifier": _identifier(node_facts, section),
         "types": [
             Row(
-                f"{message_type['value']} · {message_type['name']}",
-                message_type.get("summary", ""),
+                f"{packet.section['type']} · {packet.name}",
+                packet.section.get("summary", ""),
             )
-            for message_type in buses_of(section)
-            .get("can", {})
-            .get("message_types", {})
-            .get("values", ())
+            for packet in bus_link(section.get("link", {}), CAN).packets.all
+            if "type" in packet.section
         ],
         "errors": errors(relations, node, node_facts, section),
         "responses": responses.of_node(relations, node),
@@ -199,7 +197,7 @@ def errors(
     relations: Relations, node: Node, node_facts: Facts, section: dict[str, Any]
 ) -> list[tuple[int, str, str, str]]:
     """Return code, name, role in the protocol, and link of each error."""
-    enum = error_enum(relations.icd, node)
+    enum = node_facts.error_enum
     roles = {code: key.replace("_", " ") for key, code in node_facts.errors.items()}
     if enum is None:
         return [(code, role, "", "") for code, role in sorted(roles.items())]

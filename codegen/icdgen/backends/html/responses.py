@@ -105,7 +105,7 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
         "telecommands": rows,
         "requests": requests,
         "reasons": [
-            Row(capitalized(about), reasons[cause])
+            Row(capitalized(about), str(reasons[cause]))
             for cause, about in _CAUSES.items()
             if cause in reasons
         ],
@@ -190,7 +190,7 @@ def _milliseconds(timeout: int | None) -> str:
 
 
 def _commands(relations: Relations, node: Node) -> Mapping[str, Any]:
-    link: Mapping[str, Any] = relations.icd.protocol_of(node).get("link", {})
+    link = framed_link(relations.icd.protocol_of(node))
     commands: Mapping[str, Any] = link.get("commands", {})
     return commands
 

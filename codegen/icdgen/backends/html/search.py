@@ -12,6 +12,7 @@ from icdgen.frozen import NamedTuple
 from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node, buses_of
 from icdgen.icd.places import NodePlace
 from icdgen.naming import words
+from icdgen.protocol import facts
 
 _MOST = 300  # searched characters of a text
 
@@ -186,14 +187,11 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
     """Return the names of enumerations of the node that contain error codes of a
     protocol.
     """
-    protocols = [
-        relations.icd.protocol_of(speaker) for speaker in relations.speakers[node.name]
-    ]
-    return {
-        section["link"]["reasons"]["enum"]
-        for section in protocols
-        if "reasons" in section.get("link", {})
-    }
+    enums = (
+        facts.of(relations.icd, speaker).error_enum
+        for speaker in relations.speakers[node.name]
+    )
+    return {enum.name for enum in enums if enum}
 
 
 def _of_enum(

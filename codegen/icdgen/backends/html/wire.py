@@ -19,6 +19,7 @@ from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html import envelopes
 from icdgen.frozen import NamedTuple
+from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.model import Message, buses_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Framing
@@ -399,8 +400,10 @@ def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
         role: id >> part.shift & (1 << part.bits) - 1
         for role, part in form.parts.items()
     }
-    rows = buses_of(wire.section)["can"]["message_types"]["values"]
-    name = next(row["name"] for row in rows if row["value"] == parts["type"])
+    packets = bus_link(wire.section["link"], CAN).packets.all
+    name = next(
+        packet.name for packet in packets if packet.section.get("type") == parts["type"]
+    )
     addressing = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
     bits = sum(part.bits for part in form.parts.values())
     return Chunk(

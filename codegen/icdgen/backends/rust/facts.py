@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, some, spelled
 from icdgen.backends.rust.text import mask
+from icdgen.icd.buses import BUSES
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.sections import BUSES, Crc, Index
+from icdgen.protocol.sections import Crc, Index
 
 # Types whose names in generated code are not those of the facts.
 _TYPES: dict[type, str] = {Crc: "CrcForm", Index: "IndexForm"}

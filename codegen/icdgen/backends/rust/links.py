@@ -122,7 +122,9 @@ class _Literal:
             part(
                 "acknowledge",
                 some(self.struct(facts.acknowledge)),
-                self.assumed.why("link.buses.uart.acknowledge", "data"),
+                self.assumed.why(facts.acknowledge.section, "header")
+                if facts.acknowledge
+                else "",
             ),
             part("i2c_address", some(facts.i2c_address)),
             part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),

@@ -30,11 +30,11 @@ from icdgen.describe.links import LinkDescription
 from icdgen.describe.procedures import input_text, source_text
 from icdgen.describe.storage import holding
 from icdgen.frozen import dataclass
+from icdgen.icd.buses import BUSES
 from icdgen.icd.enumeration import Enum
 from icdgen.protocol import procedures as model
 from icdgen.protocol.exchange import NumberPlace
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import BUSES
 
 SECTION = "procedures."
 """Beginning of the names of sections with assumptions about procedures."""

@@ -19,6 +19,7 @@ from icdgen.backends.rust.literals import (
 )
 from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.text import mask, string
+from icdgen.icd.buses import BUSES
 from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import (
@@ -33,7 +34,7 @@ from icdgen.protocol.envelope import (
     StreamRow,
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Poll, Response
-from icdgen.protocol.sections import BUSES, ChecksumAlgorithm, Crc
+from icdgen.protocol.sections import ChecksumAlgorithm, Crc
 
 _CONTENTS = {NOTHING: "Nothing"}
 

@@ -17,6 +17,7 @@ from icdgen.diagnostics import Finding, in_order
 from icdgen.icd.errata import Applied
 from icdgen.icd.model import Icd
 from icdgen.icd.rules import (  # noqa: F401
+    buses,
     checksums,
     composites,
     conditional,

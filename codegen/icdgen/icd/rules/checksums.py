@@ -5,26 +5,18 @@ without effect.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import product
 from typing import Any
 
-from icdgen.icd import checksum
 from icdgen.icd.fault import Fault
-from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import (
     TELECOMMAND,
-    TELEMETRY,
     Message,
     Node,
-    buses_of,
     framed_link,
 )
-from icdgen.icd.packets import ID_ROLE, declared_packets
+from icdgen.icd.packets import declared_packets
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.envelopes import DATA, links, links_on_buses
-from icdgen.icd.rules.protocol_effects import NAMES_OF_BUSES
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.trees import mappings
 from icdgen.wording import quote
 
 CAN = "can"
@@ -111,114 +103,3 @@ def _share_a_line(ctx: Context, node: Node, other: Node) -> bool:
     """
     own = {id(owner) for owner in ctx.scope(node) if owner.protocol}
     return any(id(owner) in own for owner in ctx.scope(other))
-
-
-# Keys of a packet on buses, and of its checksum, that have an effect. The position of
-# the checksum follows from the data.
-ON_BUSES = ("source", "from", "buses", "trailer", "summary", "assumptions")
-OF_CHECKSUM = ("at", "bits", "role", "name", "checksum", "covers", "optional", "summary")  # fmt: skip
-# Keys that only packets on buses have.
-ONLY_ON_BUSES = ("buses", "optional")
-
-
-@rule("ICD175", needs_complete=True)
-def packets_on_buses_have_an_effect(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
-        packets = link.section.get("packets")
-        own = [*packets.values()] if isinstance(packets, Map) else []
-        for section in (*mappings(own), *(row for _, row in link.rows)):
-            for key in ONLY_ON_BUSES:
-                if key in section:
-                    text = f"`{key}` has no effect on framed links"
-                    yield Fault.at_key(section, key, text, "remove it")
-    for link in links_on_buses(ctx):
-        sections = link.section.get("packets")
-        if not isinstance(sections, Map):
-            continue
-        taken: dict[tuple[str, str], str] = {}
-        first: Map | None = None
-        for packet in link.declared.all:
-            section = sections[packet.name]
-            yield from _unused_keys(section)
-            for direction, bus in product(packet.directions, _buses(section)):
-                other = taken.setdefault((direction, bus), packet.name)
-                if other != packet.name:
-                    text = f"{direction} on `{bus}` is in the packet {quote(other)} already"
-                    help = "leave out the bus, or one of the packets"
-                    yield Fault.at(section, "from", text, help)
-                elif (direction, bus) == (TELEMETRY, CAN) and _uses_can(ctx, link.node):
-                    yield _on_can(section)
-            for row in mappings(section.get("trailer")):
-                if row.get("role") != "checksum":
-                    text = "on buses, nothing but a checksum is sent behind the data"
-                    yield Fault.at(row, "role", text, "remove the field")
-                    continue
-                yield from _field(ctx, link.node, row)
-                first = row if first is None else first
-                yield from _differences(row, first)
-
-
-def _unused_keys(section: Map) -> Iterator[Fault]:
-    """Yield the faults of the keys of a packet that have no effect on buses."""
-    for key in section:
-        if key not in ON_BUSES:
-            text = f"`{key}` has no effect on buses, where a message is its id and its data"
-            yield Fault.at_key(section, key, text, "remove it")
-    if "trailer" not in section:
-        text = "the packet adds nothing to the id and the data"
-        yield Fault.at(section, "from", text, "add a `trailer`, or remove the packet")
-
-
-def _buses(section: Map) -> list[str]:
-    """Return the buses on which a packet is sent."""
-    buses = section.get("buses")
-    return [bus for bus in NAMES_OF_BUSES if not isinstance(buses, Seq) or bus in buses]
-
-
-def _uses_can(ctx: Context, node: Node) -> bool:
-    """Return whether a node, or one that includes it, is on CAN."""
-    return any(CAN in buses_of(ctx.protocol_of(user)) for user in ctx.users(node))
-
-
-def _on_can(section: Map) -> Fault:
-    """Return the fault of a checksum of telemetry on CAN."""
-    message = "frames on CAN have no checksum, so the checksum of telemetry has no effect there"
-    if "buses" in section:
-        return Fault.at(section, "buses", message, "remove `can` from `buses`")
-    help = "add `buses`, with the links that have a checksum"
-    return Fault.at(section, "from", message, help)
-
-
-def _field(ctx: Context, node: Node, row: Map) -> Iterator[Fault]:
-    """Yield the faults of a checksum that buses cannot have."""
-    for key in row:
-        if key not in OF_CHECKSUM:
-            text = f"`{key}` has no effect on buses"
-            yield Fault.at_key(row, key, text, "remove it")
-    if isinstance(bits := row.get("bits"), int) and bits % 8:
-        text = "on buses, a checksum has whole bytes"
-        yield Fault.at(row, "bits", text, "correct `bits` and `width`")
-    covers = row.get("covers")
-    bounds = (covers.get("from"), covers.get("to")) if isinstance(covers, Map) else ()
-    if bounds not in ((ID_ROLE, DATA), (DATA, DATA)):
-        text = "on buses, a checksum covers the data, or id and data"
-        help = "write `covers: {from: data, to: data}`, or `from: id`"
-        yield Fault.at(row, "covers" if "covers" in row else "role", text, help)
-    declared = ctx.fact(node, "link", "checksums", str(row.get("checksum")))
-    if isinstance(declared, Mapping) and declared.get("kind") != checksum.CRC:
-        yield Fault.at(row, "checksum", "on buses, a checksum is a CRC", "name a CRC")
-    elif isinstance(declared, Mapping) and "seeds" in declared:
-        text = "`seeds` have no effect on buses"
-        yield Fault.at(row, "checksum", text, "name a checksum without `seeds`")
-
-
-def _differences(row: Map, first: Map) -> Iterator[Fault]:
-    """Yield the faults of a checksum that is not that of the first packet."""
-    for key in ("checksum", "bits", "covers"):
-        if row.get(key) != first.get(key):
-            text = (
-                f"`{key}` is not that of the other packets, and a node has one checksum"
-            )
-            help = f"give all packets the same `{key}`"
-            yield Fault.at(row, key if key in row else "role", text, help)
-            return

@@ -35,7 +35,7 @@ RARE_KEYS = frozenset({"enum", "unit", "formula", "formula_for", "points", "outs
     "byte_order", "bit_order", "view", "when", "display",
 })  # fmt: skip
 
-BUSES = ("link", "buses")  # path of UART, I2C and CAN in a protocol section
+PATH_OF_BUSES = ("link", "buses")  # path of UART, I2C and CAN in a protocol section
 
 Owner = Message | Struct
 

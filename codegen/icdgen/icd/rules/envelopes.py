@@ -42,10 +42,12 @@ ONLY_WITH = {
 }
 # Keys of a protocol section with a framed link.
 ALLOWED_WITH_LINK = ("link", "boot", "procedures")
-# Keys of `link` that other links have as well.
-ALLOWED_WITHOUT_FRAMING = ("source", "ids", "reasons", "buses", "packets", "checksums", "client", "assumptions")  # fmt: skip
+# Keys of `link` that only framed links have.
+FRAMED_ONLY = ("line", "header", "trailer")
+# Keys of `link` that belong to its framing, or to its buses.
+WITH_FRAMING_OR_BUSES = ("packets", "commands", "requests")
 # Keys of `link` that framed links do not have.
-WITHOUT_FRAMING_ONLY = ("ids", "reasons", "buses")
+WITHOUT_FRAMING_ONLY = ("ids", "buses")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -203,10 +205,10 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at_key(client, key, message, "remove it")
     for node in ctx.icd.nodes:
         section = section_of(node, "link") or unread()
-        allowed = {*ALLOWED_WITHOUT_FRAMING}
+        keys: tuple[str, ...] = FRAMED_ONLY
         if framed_link(ctx.protocol_of(node)):  # of an included file
-            allowed.remove("packets")
-        key = next((key for key in section if key not in allowed), None)
+            keys += WITH_FRAMING_OR_BUSES
+        key = next((key for key in section if key in keys), None)
         if key is not None and "framing" not in section:
             message = f"`{key}` belongs to a framed link, and `framing` is missing"
             help = "add `framing: {by: ...}`, how bytes become packets"

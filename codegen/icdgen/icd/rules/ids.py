@@ -10,7 +10,7 @@ from icdgen.icd import variants, wire_ids
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.rules.context import BUSES, Context
+from icdgen.icd.rules.context import PATH_OF_BUSES, Context
 from icdgen.icd.rules.duplicates import brings_together, together
 from icdgen.icd.rules.protocol_limits import section_in_effect
 from icdgen.icd.rules.rule import rule
@@ -291,7 +291,10 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         declared = _ranges(ctx, node)
         # ICD056 and ICD103 check declared ranges.
-        if ctx.fact(node, *BUSES, "uart", "framing") is None or len(declared) == 2:
+        if (
+            ctx.fact(node, *PATH_OF_BUSES, "uart", "framing") is None
+            or len(declared) == 2
+        ):
             continue
         uses = [use for use in _uses_in_scope(ctx, node) if use.message is not None]
         # Without declared ranges the generated client takes the span of the telemetry

@@ -12,7 +12,7 @@ from icdgen.icd import checksum
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import BUSES, Context
+from icdgen.icd.rules.context import PATH_OF_BUSES, Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import at_path, mappings
@@ -48,7 +48,7 @@ def _mappings_in(tree: object) -> Iterator[Map]:
 
 @rule("ICD090")
 def i2c_address_forms_agree(ctx: Context) -> Iterator[Fault]:
-    for i2c in ctx.sections(*BUSES, "i2c"):
+    for i2c in ctx.sections(*PATH_OF_BUSES, "i2c"):
         for key, bit in (("write", 0), ("read", 1)):
             if isinstance(i2c.get(key), Map):
                 yield from _forms_agree(i2c[key], key, bit)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from icdgen.icd.buses import BUSES, UART
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.model import Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.roles import INTEGERS, PROTOCOL, Role, reasons_against
-from icdgen.icd.rules.context import BUSES, Context, section_of
+from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_occur_once
 from icdgen.icd.rules.protocol_names import FIELDS
@@ -17,9 +18,8 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import mappings, named
 from icdgen.wording import quote
 
-NAMES_OF_BUSES = ("uart", "i2c", "can")
 INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")
-ROWS = ((*BUSES, "uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
+ROWS = (("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
     ("unsolicited_log", "message"))  # fmt: skip
 ROWS_AS_BYTES = ("mask", "meta")
 
@@ -27,37 +27,7 @@ ROWS_AS_BYTES = ("mask", "meta")
 @rule("ICD115")
 def keys_have_an_effect(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        yield from _acknowledges(node)
-        yield from _can_data(node)
         yield from _faults_of_unsolicited_log(node)
-
-
-def _acknowledges(node: Node) -> Iterator[Fault]:
-    """Yield a fault if a node does not require acknowledges, for which clients wait in
-    any case.
-    """
-    for bus in ("uart", "i2c"):
-        section = section_of(node, *BUSES, bus, "acknowledge")
-        if section is not None and section.get("required_before_next") is False:
-            message = "a client waits for each acknowledge before it sends the next telecommand, whatever this key says"
-            help = "remove `required_before_next`; a message that is not acknowledged has `acknowledge: false`"
-            yield Fault.at(section, "required_before_next", message, help)
-
-
-def _can_data(node: Node) -> Iterator[Fault]:
-    """Yield the faults of acknowledges and requests on CAN that have data."""
-    for direction, key, what in (
-        (
-            TELECOMMAND,
-            "acknowledge_bytes",
-            "an acknowledge on CAN is taken with no data only",
-        ),
-        (TELEMETRY, "request_bytes", "a request on CAN is sent with no data"),
-    ):
-        section = section_of(node, *BUSES, "can", direction)
-        if section is not None and section.get(key, 0) != 0:
-            help = "correct it to 0, or leave `can` out: such a bus is not supported"
-            yield Fault.at(section, key, what, help)
 
 
 def _faults_of_unsolicited_log(node: Node) -> Iterator[Fault]:
@@ -72,7 +42,7 @@ def _faults_of_unsolicited_log(node: Node) -> Iterator[Fault]:
         yield Fault.at(log, "framed", message, "remove it, or `unsolicited_log`")
     buses = log.get("buses")
     for bus, place in buses.placed() if isinstance(buses, Seq) else ():
-        if bus in NAMES_OF_BUSES and bus != "uart":
+        if bus in BUSES and bus != UART:
             yield Fault(
                 log,
                 place,

@@ -8,21 +8,23 @@ from collections.abc import Iterator, Sequence
 from math import ceil
 
 from icdgen.diagnostics import Related
+from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import (
     CAN_DATA_BYTES,
     CAN_PACKETS,
     KEYS_OF_IDS,
+    TELECOMMAND,
+    TELEMETRY,
     Message,
     Node,
     replaced_part,
 )
-from icdgen.icd.rules.context import BUSES, Context, own_fact, section_of
-from icdgen.icd.rules.protocol_sizes import of_one_number
+from icdgen.icd.rules.context import PATH_OF_BUSES, Context, own_fact, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
-from icdgen.icd.trees import at_path, mappings
+from icdgen.icd.trees import mappings
 from icdgen.wording import count, listing, quote
 
 BYTE = 255
@@ -44,8 +46,8 @@ def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
 def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         can, extended = (
-            section_in_effect(ctx, node, *BUSES, "can"),
-            section_in_effect(ctx, node, *BUSES, "can", "extended"),
+            section_in_effect(ctx, node, *PATH_OF_BUSES, "can"),
+            section_in_effect(ctx, node, *PATH_OF_BUSES, "can", "segments"),
         )
         size = extended.get("data_bytes") if extended is not None else None
         if can is None or extended is None or not isinstance(size, int) or size < 1:
@@ -67,18 +69,18 @@ def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
             if last + packets - 1 > BYTE:
                 takes = f"{quote(message.name)} takes {count(packets, 'CAN packet')}"
                 text = f"{takes}, the first with {last + packets - 1} left: a byte holds {BYTE}"
-                help = f"{count((BYTE + 1 - last) * size, 'byte')} can be sent: correct `length` or `extended` of `can`"
+                help = f"{count((BYTE + 1 - last) * size, 'byte')} can be sent: correct `length` or `segments` of `can`"
                 yield Fault.at(message.source, "length", text, help)
 
 
 def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
     """Yield the messages that are sent as several packets."""
     room = can.get("max_data_bytes", CAN_DATA_BYTES)
-    types = (("telecommand", "extended_request"), ("telemetry", "extended_response"))
+    link = bus_link(ctx.protocol_of(node)["link"], CAN)
     directions = {
         direction
-        for direction, key in types
-        if at_path(can, (direction, key)) is not None
+        for direction in (TELECOMMAND, TELEMETRY)
+        if link.segment_of(link.carrying(direction)) is not None
     }
     for message in ctx.messages_of(node) if isinstance(room, int) else ():
         if message.length > room and any(
@@ -91,33 +93,24 @@ def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
 def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _on_can(ctx, node)
-    for errors in ctx.sections("link", "reasons"):
-        for first, role, code in of_one_number(
-            errors, "none", "unknown_id", "length", "parameter", "checksum"
-        ):
-            yield Fault.at(
-                errors,
-                role,
-                f"{code} stands for both `{first}` and `{role}`",
-                "give each its own code",
-            )
 
 
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     """Yield the faults of numbers that do not fit their part of a CAN identifier."""
-    own = section_of(node, *BUSES, "can")
-    can = section_in_effect(ctx, node, *BUSES, "can")
+    own = section_of(node, *PATH_OF_BUSES, "can")
+    can = section_in_effect(ctx, node, *PATH_OF_BUSES, "can")
     bits: dict[str, int] = {}  # of each part of a CAN identifier, by role or name
     for row in mappings(can.get("identifier")) if can is not None else ():
         if isinstance(row.get("bits"), int):
             bits[str(row.get("role", row.get("name")))] = row["bits"]
     if own is not None:
-        for row in mappings(own_fact(node, *BUSES, "can", "message_types", "values")):
-            yield from _fits(ctx, row, "value", bits.get("type"), "a message type")
         for role in ("source", "destination"):
             yield from _fits(
                 ctx, own, "node_address", bits.get(role), f"a {role} address"
             )
+    packets = own_fact(node, "link", "packets")
+    for section in mappings([*packets.values()]) if isinstance(packets, Map) else ():
+        yield from _fits(ctx, section, "type", bits.get("type"), "a message type")
     for message in ctx.messages_of(node):
         for key, _ in KEYS_OF_IDS[message.kind]:
             yield from _fits(
@@ -182,8 +175,8 @@ def roles_occur_once(
 
 @rule("ICD101")
 def can_identifier_has_all_parts(ctx: Context) -> Iterator[Fault]:
-    for can in ctx.sections(*BUSES, "can"):
-        if {"message_types", "telecommand", "telemetry"} & can.keys():
+    for can in ctx.sections(*PATH_OF_BUSES, "can"):
+        if {"commands", "requests", "identifier"} & can.keys():
             yield from roles_occur_once(
                 can, "identifier", ROLES, "the identifier has no part for"
             )

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diagnostics import Related
+from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import (
@@ -16,21 +16,11 @@ from icdgen.icd.model import (
     TELEMETRY,
     buses_of,
 )
-from icdgen.icd.rules.context import BUSES, Context, own_fact, section_of
-from icdgen.icd.rules.protocol_limits import roles_occur_once, section_in_effect
+from icdgen.icd.rules.context import PATH_OF_BUSES, Context, own_fact, section_of
+from icdgen.icd.rules.protocol_limits import section_in_effect
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of
-from icdgen.icd.trees import mappings
 from icdgen.wording import count, quote
-
-ACKNOWLEDGE_ROLES = ("id", "error")
-# Keys of the CAN message types for data in each direction, in one packet and in several
-# packets.
-CAN_TYPES = {
-    TELECOMMAND: ("request", "extended_request"),
-    TELEMETRY: ("response", "extended_response"),
-}
 
 
 @rule("ICD103")
@@ -92,48 +82,6 @@ def _overlap(telecommands: Map, telemetry: Map) -> Iterator[Fault]:
         )
 
 
-@rule("ICD104")
-def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
-    for types in ctx.sections(*BUSES, "can", "message_types"):
-        seen: dict[tuple[str, object], Map] = {}
-        for row in mappings(types.get("values")):
-            for key in ("value", "name"):
-                value = row.get(key)
-                first = (
-                    seen.setdefault((key, value), row)
-                    if isinstance(value, int | str)
-                    else row
-                )
-                if first is not row:
-                    line = line_of(first.at(key), row.at(key))
-                    message = (
-                        f"the name {quote(value)} is given twice, here and in {line}"
-                    )
-                    if key == "value":
-                        message = f"the value {value} already belongs to {quote(first.get('name'))} ({line})"
-                    related = Related(first.at(key), f"the first `{key}`")
-                    yield Fault.at(
-                        row, key, message, f"correct one `{key}`", related=related
-                    )
-
-
-@rule("ICD105")
-def acknowledges_have_all_parts(ctx: Context) -> Iterator[Fault]:
-    for section in ctx.sections(*BUSES, "uart", "acknowledge"):
-        yield from roles_occur_once(
-            section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for"
-        )
-        for row in mappings(section.get("data")):
-            role, size = row.get("role"), row.get("bytes")
-            if role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
-                message = (
-                    f"the {role} has {count(size, 'byte')}, but icdgen reads one byte"
-                )
-                yield Fault.at(
-                    row, "bytes", message, "correct `bytes`, or leave the section out"
-                )
-
-
 @rule("ICD106", needs_complete=True)
 def named_buses_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
@@ -154,14 +102,21 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
 def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
     seen: set[int] = set()
     for node in ctx.icd.nodes:
-        can = section_in_effect(ctx, node, *BUSES, "can")
+        can = section_in_effect(ctx, node, *PATH_OF_BUSES, "can")
         # Messages that are too long for CAN can be sent over another bus.
         if can is None or not {"uart", "i2c"}.isdisjoint(
             buses_of(ctx.protocol_of(node))
         ):
             continue
         room = can.get("max_data_bytes", CAN_DATA_BYTES)
-        short = {direction for direction in CAN_TYPES if _is_short(can, direction)}
+        link = bus_link(ctx.protocol_of(node)["link"], CAN)
+        has_segments = isinstance(can.get("segments"), Map)
+        short = {
+            direction
+            for direction in (TELECOMMAND, TELEMETRY)
+            if (packet := link.carrying(direction)) is not None
+            and not (has_segments and link.segment_of(packet))
+        }
         for message in ctx.messages_of(node):
             is_short = any(
                 direction in short for _, direction in KEYS_OF_IDS[message.kind]
@@ -169,14 +124,5 @@ def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
             if is_short and message.length > room and id(message.source) not in seen:
                 seen.add(id(message.source))
                 text = f"{quote(message.name)} has {count(message.length, 'byte')}, but a packet has up to {room}"
-                help = "correct `length`, or say how CAN sends several packets: `extended` of `can` and its message types"
+                help = "correct `length`, or say how CAN sends several packets: `segments` of `can`, and a packet with `segment_of`"
                 yield Fault.at(message.source, "length", text, help)
-
-
-def _is_short(can: Map, direction: str) -> bool:
-    """Return whether messages of a direction are sent in one packet each."""
-    section = can.get(direction)
-    single, several = CAN_TYPES[direction]
-    if not isinstance(section, Map) or single not in section:
-        return False
-    return several not in section or not isinstance(can.get("extended"), Map)

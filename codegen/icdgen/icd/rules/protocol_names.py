@@ -5,7 +5,6 @@ nodes.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,12 +14,12 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in
-from icdgen.icd.rules.context import BUSES, Context
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
-from icdgen.icd.trees import at_path, mappings, named
+from icdgen.icd.trees import named
 from icdgen.wording import quote
 
 T = TypeVar("T")
@@ -28,14 +27,13 @@ T = TypeVar("T")
 # Keys that name messages.
 MESSAGES = (
     "message",
-    "id_of",
     "stop_request",
     "set_by",
     "reset_by",
     "if_not_started",
 )
 # Keys that name fields of the message of the key `message` in the same mapping.
-FIELDS = ("id", "until", "error", "parameter", "field")
+FIELDS = ("field",)
 # Keys that name an enumeration, with the keys of the same mapping that have its values.
 MEMBERS = (
     (
@@ -43,26 +41,12 @@ MEMBERS = (
         (
             "value",
             "values",
-            "none",
-            "unknown_id",
-            "length",
-            "parameter",
-            "checksum",
             "selected",
             "success",
             "failed",
         ),
     ),
     ("failure_enum", ("failure",)),
-)
-# Keys of `can.telecommand` and `can.telemetry` that name message types.
-TYPES = (
-    "request",
-    "extended_request",
-    "acknowledge",
-    "response",
-    "extended_response",
-    "failure",
 )
 
 
@@ -154,24 +138,6 @@ def named_fields_have_the_orders_of_the_node(ctx: Context) -> Iterator[Fault]:
                     yield Fault.at(
                         owner, key, f"{text} {node.byte_order} {node.bit_order}", help
                     )
-
-
-@rule("ICD095")
-def message_types_exist(ctx: Context) -> Iterator[Fault]:
-    for can in ctx.sections(*BUSES, "can"):
-        values = at_path(can, ("message_types", "values"))
-        if not isinstance(values, Seq):
-            continue
-        names = {
-            row["name"] for row in mappings(values) if isinstance(row.get("name"), str)
-        }
-        for direction, key in product(("telecommand", "telemetry"), TYPES):
-            name = at_path(can, (direction, key))
-            if isinstance(name, str) and name not in names:
-                message = f"there is no message type {quote(name)}"
-                yield Fault.at(
-                    can[direction], key, message, *suggestion(name, names, VERBATIM)
-                )
 
 
 @rule("ICD109", needs_complete=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import BUSES, Context, own_fact
+from icdgen.icd.rules.context import PATH_OF_BUSES, Context, own_fact
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import at_path, mappings
@@ -37,7 +37,7 @@ def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
 
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
-    for path in (("link", "framing"), (*BUSES, "uart", "framing")):
+    for path in (("link", "framing"), (*PATH_OF_BUSES, "uart", "framing")):
         for framing in ctx.sections(*path):
             yield from _equal_markers(framing, "start", "end", "data")
 
@@ -61,9 +61,9 @@ def _equal_markers(section: Map, *keys: str) -> Iterator[Fault]:
 
 @rule("ICD097")
 def sizes_agree(ctx: Context) -> Iterator[Fault]:
-    for can in ctx.sections(*BUSES, "can"):
+    for can in ctx.sections(*PATH_OF_BUSES, "can"):
         yield from _identifier(can)
-        extended = can.get("extended")
+        extended = can.get("segments")
         if isinstance(extended, Map):
             yield from _product(extended, "max_bytes", "max_packets", "data_bytes")
             yield from _packets_left(can, extended)

@@ -33,7 +33,7 @@ from icdgen.icd.responses import (
     number_run,
     reason_of,
 )
-from icdgen.icd.rules.context import BUSES, Context
+from icdgen.icd.rules.context import PATH_OF_BUSES, Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
@@ -45,7 +45,11 @@ WHOLE_NUMBERS = ("uint", "int", "bool", "enum")
 
 MOST_VALUES = 256  # of a range of reasons, since a client stores the name of each value
 
-OTHER_LINKS = ((*BUSES, "uart", "framing"), (*BUSES, "i2c"), (*BUSES, "can"))
+OTHER_LINKS = (
+    (*PATH_OF_BUSES, "uart", "framing"),
+    (*PATH_OF_BUSES, "i2c"),
+    (*PATH_OF_BUSES, "can"),
+)
 """Paths in a protocol section that describe a link other than a framed one."""
 
 STREAM_SETTINGS = ("busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
@@ -92,7 +96,7 @@ def _owners(ctx: Context, link: Link) -> list[tuple[Map, list[Message]]]:
     return [(commands, telecommands), *own, (requests, [])]
 
 
-def _declared(ctx: Context, link: Link) -> Iterator[Declared]:
+def declared_in(ctx: Context, link: Link) -> Iterator[Declared]:
     """Yield the responses of a link that conform to the schema."""
     commands, requests = (link.section.get(key) for key in ("commands", "requests"))
     for owner, messages in _owners(ctx, link):
@@ -130,7 +134,7 @@ def _inherits(message: Message, kind: str) -> bool:
     return own is None or (isinstance(own, Map) and kind not in own)
 
 
-def _response(ctx: Context, declared: Declared) -> Message | None:
+def telemetry_of(ctx: Context, declared: Declared) -> Message | None:
     """Return the telemetry of a response; None if there is none."""
     telemetry = ids_of(ctx, declared.link.node, TELEMETRY)
     return next((each for _, each in telemetry if each.name == declared.name), None)
@@ -145,7 +149,7 @@ def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
         telecommands = {each.name for _, each in ids_of(ctx, link.node, TELECOMMAND)}
         broken = ctx.broken_messages(link.node)
         yield from _sources(ctx, link)
-        for declared in _declared(ctx, link):
+        for declared in declared_in(ctx, link):
             name = declared.name
             if declared.is_packet:
                 yield from _of_packet(declared)
@@ -201,16 +205,21 @@ def _of_packet(declared: Declared) -> Iterator[Fault]:
 
 
 @rule("ICD177")
-def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
+def responses_can_becompared(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
-        for declared in _declared(ctx, link):
-            if declared.packet is None and _response(ctx, declared) is None:
+        for declared in declared_in(ctx, link):
+            if declared.packet is None and telemetry_of(ctx, declared) is None:
                 continue  # ICD176
-            yield from _echoes(ctx, declared)
-            yield from _status(ctx, declared)
-            yield from _reason(ctx, declared)
+            yield from comparison_faults(ctx, declared)
         yield from _reasons(ctx, link)
         yield from _numbers_of_parts(ctx, link)
+
+
+def comparison_faults(ctx: Context, declared: Declared) -> Iterator[Fault]:
+    """Yield the faults of the fields of a response that a client compares."""
+    yield from _echoes(ctx, declared)
+    yield from _status(ctx, declared)
+    yield from _reason(ctx, declared)
 
 
 class Compared(NamedTuple):
@@ -228,13 +237,13 @@ class Compared(NamedTuple):
         return integer_range(self.bits, self.is_signed)
 
 
-def _compared(
+def compared(
     ctx: Context, declared: Declared, name: str, key: str
 ) -> tuple[Compared | None, str, str]:
     """Return the field that ``key`` of a response names; otherwise what is wrong, and
     its remedy.
     """
-    enum, packet = _enum_of(ctx, declared, name), declared.packet
+    enum, packet = enum_of(ctx, declared, name), declared.packet
     if packet is not None:
         row = packet.named(name)
         if row is not None:
@@ -248,7 +257,7 @@ def _compared(
             text,
             suggestion(name, known, "name a field by its name or role")[0],
         )
-    response = _response(ctx, declared)
+    response = telemetry_of(ctx, declared)
     assert response is not None, "rule ICD176 checks the telemetry"
     field, text, help = _number(response, declared.link.node, name, key)
     if field is None:
@@ -257,14 +266,14 @@ def _compared(
     return Compared(name, field.bits, enum, signed, field.bits), "", ""
 
 
-def _enum_of(ctx: Context, declared: Declared, name: str | None) -> Enum | None:
+def enum_of(ctx: Context, declared: Declared, name: str | None) -> Enum | None:
     """Return the enumeration of a field of a response; None without one."""
     if declared.packet is not None:
         row = declared.packet.named(name or "") or {}
         scope = ctx.scope(declared.link.node)
         enums = {enum.name: enum for node in scope for enum in node.enums}
         return enums.get(row.get("enum", ""))
-    response = _response(ctx, declared)
+    response = telemetry_of(ctx, declared)
     field = response and field_of(response, name)
     return field.scalar.enum if field else None
 
@@ -298,7 +307,7 @@ def _no_echo(
 def _numbers_of_parts(ctx: Context, link: Link) -> Iterator[Fault]:
     """Yield a fault for each telecommand of which responses repeat too many parts."""
     parts: dict[int, set[str]] = {}
-    for declared in _declared(ctx, link):
+    for declared in declared_in(ctx, link):
         for message in declared.telecommands:
             repeated = parts.setdefault(id(message), set())
             before = len(repeated)
@@ -362,7 +371,7 @@ def _echoes(ctx: Context, declared: Declared) -> Iterator[Fault]:
         if not isinstance(repeated, str):
             continue
         key = name if isinstance(echo, Map) else "echo"
-        field, text, help = _compared(ctx, declared, name, "echo")
+        field, text, help = compared(ctx, declared, name, "echo")
         if field is None:
             yield Fault.at_key(owner, key, text, help)
             continue
@@ -451,7 +460,7 @@ def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
                 text = f"`{key}` lists values of a status, and there is no `status`"
                 yield Fault.at_key(row, key, text, f"add `status`, or remove `{key}`")
         return
-    field, text, help = _compared(ctx, declared, name, "status")
+    field, text, help = compared(ctx, declared, name, "status")
     if field is None:
         yield Fault.at(row, "status", text, help)
         return
@@ -471,7 +480,7 @@ def _busy_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
         text = "`busy` lists reasons, and no field has the reason"
         yield Fault.at_key(row, BUSY, text, "add `reason`, or remove `busy`")
     else:
-        field, _, _ = _compared(ctx, declared, name, "reason")
+        field, _, _ = compared(ctx, declared, name, "reason")
         if field is not None:
             yield from _values(declared, field)
 
@@ -522,7 +531,7 @@ def _reason(ctx: Context, declared: Declared) -> Iterator[Fault]:
         text = f"a response `{declared.kind}` without a status refuses nothing, so it has no reason"
         yield Fault.at_key(row, "reason", text, "add `status`, or remove `reason`")
         return
-    field, text, help = _compared(ctx, declared, name, "reason")
+    field, text, help = compared(ctx, declared, name, "reason")
     if field is None:
         yield Fault.at(row, "reason", text, help)
     elif field.enum is None:
@@ -534,7 +543,7 @@ def _reason(ctx: Context, declared: Declared) -> Iterator[Fault]:
 
 def _ranges_of_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
     """Yield the faults of reasons that are too many values."""
-    enum = _enum_of(ctx, declared, reason_of(declared.row))
+    enum = enum_of(ctx, declared, reason_of(declared.row))
     for member in enum.members if enum else ():
         values = member.last - member.value + 1
         if values > MOST_VALUES:
@@ -551,8 +560,8 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
     if not isinstance(reasons, Map):
         return
     members: list[str] = []
-    for declared in _declared(ctx, link):
-        enum = _enum_of(ctx, declared, reason_of(declared.row))
+    for declared in declared_in(ctx, link):
+        enum = enum_of(ctx, declared, reason_of(declared.row))
         members += [member.name for member in enum.members] if enum else []
     for cause, name in reasons.items():
         if isinstance(name, str) and cause != "assumptions" and name not in members:
@@ -562,7 +571,7 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
 
 
 @rule("ICD178")
-def telecommands_of_one_id_have_one_response(ctx: Context) -> Iterator[Fault]:
+def telecommands_of_one_id_have_onetelemetry_of(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         first_of_id: dict[int, Message] = {}
         for id, message in ids_of(ctx, link.node, TELECOMMAND):

@@ -16,10 +16,10 @@ from icdgen_runtime.wire.logs import LogMessage
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen import codec
+from icdgen.icd.buses import CAN, I2C, UART
 from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.facts import Facts, need
-from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests, Row, Script
 
@@ -439,7 +439,7 @@ def _i2c(
             for field in frame_fields(polled.message.layout, facts.node.orders)
         }
         raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
-        raw[polled.error], raw[polled.parameter] = code, 7 if code else 0
+        raw |= {polled.error: code, **polled.detail(7 if code else 0)}
         return {
             "at": at,
             "receive": frame(

@@ -10,6 +10,7 @@ from typing import Any
 
 from icdgen_runtime.wire.awaited import Request
 
+from icdgen.icd.buses import UART
 from icdgen.icd.model import Message
 from icdgen.procedures.actions import Listing
 from icdgen.procedures.blocks import Packet, Reading
@@ -28,7 +29,7 @@ from icdgen.protocol.procedures import (
     Verify,
     VerifyChecksum,
 )
-from icdgen.protocol.sections import UART, ChecksumAlgorithm
+from icdgen.protocol.sections import ChecksumAlgorithm
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.runtime_objects.procedures import LONGEST
 from icdgen.vectors.wire import Requests, Row

@@ -10,9 +10,9 @@ from typing import Any
 from icdgen_runtime.wire.i2c import i2c_write
 
 from icdgen import codec
+from icdgen.icd.buses import CAN, I2C, UART
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 

@@ -109,9 +109,9 @@ LINK: link.Link[_Node] = link.Link(
         escapes_id=True,
         ignores_other=False,
     ),
-    # Assumed, data: Two bytes are announced, the last being the error. That the first
-    #   is the id of the telecommand, and that no other id heads the message, stood in a
-    #   figure.
+    # Assumed, header: Two bytes are announced, the last being the error. That the
+    #   first is the id of the telecommand, and that no other id heads the message,
+    #   stood in a figure.
     acknowledge=link.Acknowledge(
         length=2,
         id_at=0,
@@ -455,7 +455,7 @@ LINK: link.Link[_Node] = link.Link(
                         status=link.NumberPlace(1, 1, 0, 8, False),
                         reason=link.NumberPlace(1, 1, 0, 8, False),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "parameter"), (4, "checksum")),
+                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
                         packet=0,
                     ),
                 ),
@@ -488,7 +488,7 @@ LINK: link.Link[_Node] = link.Link(
                         reason=link.NumberPlace(2, 1, 0, 8, True),
                         detail=link.NumberPlace(3, 1, 0, 8, True),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "parameter"), (4, "checksum")),
+                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
                     ),
                 ),
                 poll=link.ResponsePoll(240, link.NumberPlace(1, 1, 0, 1, True)),
@@ -541,6 +541,26 @@ LINK: link.Link[_Node] = link.Link(
     },
     assumptions=(
         link.Assumption(
+            section="link.packets.acknowledge",
+            key="header",
+            value=(
+                {
+                    "bits": 8,
+                    "role": "id",
+                    "name": "Telecommand ID",
+                    "at": 0,
+                },
+                {
+                    "bits": 8,
+                    "role": "status",
+                    "name": "TC Error",
+                    "enum": "TcErrorReason",
+                    "at": 8,
+                },
+            ),
+            why="Two bytes are announced, the last being the error. That the first is the id of the telecommand, and that no other id heads the message, stood in a figure.",
+        ),
+        link.Assumption(
             section="link.client",
             key="reply_timeout_ms",
             value=1000,
@@ -577,35 +597,13 @@ LINK: link.Link[_Node] = link.Link(
             why="By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.",
         ),
         link.Assumption(
-            section="link.buses.uart.acknowledge",
-            key="data",
-            value=(
-                {
-                    "byte": 0,
-                    "bytes": 1,
-                    "name": "Telecommand ID",
-                    "role": "id",
-                    "type": "uint",
-                },
-                {
-                    "byte": 1,
-                    "bytes": 1,
-                    "name": "TC Error",
-                    "role": "error",
-                    "type": "enum",
-                    "enum": "TcErrorReason",
-                },
-            ),
-            why="Two bytes are announced, the last being the error. That the first is the id of the telecommand, and that no other id heads the message, stood in a figure.",
-        ),
-        link.Assumption(
-            section="link.buses.can.extended",
+            section="link.buses.can.segments",
             key="fill",
             value=0,
             why="Neither the value of the fill nor how the receiver learns the true length is said. The receiver takes the length of the message from its id.",
         ),
         link.Assumption(
-            section="link.buses.can.extended",
+            section="link.buses.can.segments",
             key="packet_timeout_ms",
             value=1000,
             why="No time-out between packets is given.",

@@ -250,9 +250,6 @@ LINK: link.Link[_Node] = link.Link(
         escapes_id=True,
         ignores_other=False,
     ),
-    # Assumed, data: Two bytes are announced, the last being the error. That the first
-    #   is the id of the telecommand, and that no other id heads the message, stood in a
-    #   figure.
     acknowledge=link.Acknowledge(
         length=2,
         id_at=0,
@@ -326,6 +323,9 @@ LINK: link.Link[_Node] = link.Link(
             ),
         ),
     },
+    # Assumed, acknowledge header: Two bytes are announced, the last being the error.
+    #   That the first is the id of the telecommand, and that no other id heads the
+    #   message, stood in a figure.
     # Assumed, telecommand trailer: Whether the id counts among the bytes of a command
     #   is not said. The extra byte of a frame can cover the frame only.
     # Assumed, telecommand buses: The checksum is offered for commands in general, CAN
@@ -715,7 +715,7 @@ LINK: link.Link[_Node] = link.Link(
                         status=link.NumberPlace(1, 1, 0, 8, False),
                         reason=link.NumberPlace(1, 1, 0, 8, False),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "parameter"), (4, "checksum")),
+                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
                         packet=0,
                     ),
                 ),
@@ -748,7 +748,7 @@ LINK: link.Link[_Node] = link.Link(
                         reason=link.NumberPlace(2, 1, 0, 8, True),
                         detail=link.NumberPlace(3, 1, 0, 8, True),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "parameter"), (4, "checksum")),
+                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
                     ),
                 ),
                 poll=link.ResponsePoll(240, link.NumberPlace(1, 1, 0, 1, True)),
@@ -801,6 +801,50 @@ LINK: link.Link[_Node] = link.Link(
     },
     assumptions=(
         link.Assumption(
+            section="link.packets.acknowledge",
+            key="header",
+            value=(
+                {
+                    "bits": 8,
+                    "role": "id",
+                    "name": "Telecommand ID",
+                    "at": 0,
+                },
+                {
+                    "bits": 8,
+                    "role": "status",
+                    "name": "TC Error",
+                    "enum": "TcErrorReason",
+                    "at": 8,
+                },
+            ),
+            why="Two bytes are announced, the last being the error. That the first is the id of the telecommand, and that no other id heads the message, stood in a figure.",
+        ),
+        link.Assumption(
+            section="link.packets.telecommand",
+            key="trailer",
+            value=(
+                {
+                    "bits": 8,
+                    "role": "checksum",
+                    "checksum": "crc8",
+                    "covers": {
+                        "from": "data",
+                        "to": "data",
+                    },
+                    "optional": True,
+                    "at": 0,
+                },
+            ),
+            why="Whether the id counts among the bytes of a command is not said. The extra byte of a frame can cover the frame only.",
+        ),
+        link.Assumption(
+            section="link.packets.telecommand",
+            key="buses",
+            value=("uart", "i2c"),
+            why="The checksum is offered for commands in general, CAN included. None is sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.",
+        ),
+        link.Assumption(
             section="link.client",
             key="reply_timeout_ms",
             value=1000,
@@ -837,62 +881,16 @@ LINK: link.Link[_Node] = link.Link(
             why="By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.",
         ),
         link.Assumption(
-            section="link.buses.uart.acknowledge",
-            key="data",
-            value=(
-                {
-                    "byte": 0,
-                    "bytes": 1,
-                    "name": "Telecommand ID",
-                    "role": "id",
-                    "type": "uint",
-                },
-                {
-                    "byte": 1,
-                    "bytes": 1,
-                    "name": "TC Error",
-                    "role": "error",
-                    "type": "enum",
-                    "enum": "TcErrorReason",
-                },
-            ),
-            why="Two bytes are announced, the last being the error. That the first is the id of the telecommand, and that no other id heads the message, stood in a figure.",
-        ),
-        link.Assumption(
-            section="link.buses.can.extended",
+            section="link.buses.can.segments",
             key="fill",
             value=0,
             why="Neither the value of the fill nor how the receiver learns the true length is said. The receiver takes the length of the message from its id.",
         ),
         link.Assumption(
-            section="link.buses.can.extended",
+            section="link.buses.can.segments",
             key="packet_timeout_ms",
             value=1000,
             why="No time-out between packets is given.",
-        ),
-        link.Assumption(
-            section="link.packets.telecommand",
-            key="trailer",
-            value=(
-                {
-                    "bits": 8,
-                    "role": "checksum",
-                    "checksum": "crc8",
-                    "covers": {
-                        "from": "data",
-                        "to": "data",
-                    },
-                    "optional": True,
-                    "at": 0,
-                },
-            ),
-            why="Whether the id counts among the bytes of a command is not said. The extra byte of a frame can cover the frame only.",
-        ),
-        link.Assumption(
-            section="link.packets.telecommand",
-            key="buses",
-            value=("uart", "i2c"),
-            why="The checksum is offered for commands in general, CAN included. None is sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.",
         ),
         link.Assumption(
             section="boot",

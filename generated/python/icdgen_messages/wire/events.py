@@ -53,7 +53,7 @@ class Refused:
     """The node rejected a request.
 
     ``reason`` is the role of the code in the ICD: ``unknown_id``, ``length``,
-    ``parameter`` or ``checksum``; on a framed link, the member of the enumeration of the
+    ``value`` or ``checksum``; on a framed link, the member of the enumeration of the
     code. CAN has no code. Only I2C reports the parameter. ``data`` is that of the
     response, of the class ``type`` if it is a message.
     """

@@ -201,8 +201,8 @@ pub enum Reason {
     UnknownId,
     /// The message has a wrong length.
     Length,
-    /// A parameter is wrong.
-    Parameter,
+    /// A value is not allowed.
+    Value,
     /// Wrong checksum.
     Checksum,
 }

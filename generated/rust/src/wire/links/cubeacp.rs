@@ -258,7 +258,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         (0, link::Reason::NoError),
         (1, link::Reason::UnknownId),
         (2, link::Reason::Length),
-        (3, link::Reason::Parameter),
+        (3, link::Reason::Value),
         (4, link::Reason::Checksum),
     ],
     framing: Some(link::Framing {

@@ -199,8 +199,8 @@ pub enum Reason {
     UnknownId,
     /// The message has a wrong length.
     Length,
-    /// A parameter is wrong.
-    Parameter,
+    /// A value is not allowed.
+    Value,
     /// Wrong checksum.
     Checksum,
 }

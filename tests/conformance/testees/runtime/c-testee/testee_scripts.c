@@ -6,7 +6,7 @@
 
 static void on_event(void *context, const icd_event_t *event)
 {
-    static const char *const reasons[] = {"", "none", "unknown_id", "length", "parameter", "checksum"};
+    static const char *const reasons[] = {"", "none", "unknown_id", "length", "value", "checksum"};
     const icd_event_kind_t kind = event->kind;
     const bool outcome = kind >= ICD_EVENT_DONE && kind <= ICD_EVENT_TIMEOUT;
     (void)context;

@@ -108,7 +108,7 @@ fn step<S: Sink>(
             id,
             attempts,
             code: Some(1),
-            reason: Some(Reason::Parameter).filter(|_| name == "refused"),
+            reason: Some(Reason::Value).filter(|_| name == "refused"),
             detail: None,
             reply: 0,
             packet: None,

@@ -290,7 +290,7 @@ fn shown(event: &Event<'_>, bus: Option<Bus>) -> String {
                 Reason::NoError => " reason=none",
                 Reason::UnknownId => " reason=unknown_id",
                 Reason::Length => " reason=length",
-                Reason::Parameter => " reason=parameter",
+                Reason::Value => " reason=value",
                 Reason::Checksum => " reason=checksum",
             });
             format!(" refused id={id} attempts={attempts}{code}{reason}{detail}")

@@ -1,0 +1,100 @@
+"""Links on buses (UART, I2C and CAN), as the ICD declares them: ``packets``, ``commands``
+and ``requests`` of a `link` without ``framing``, and those of each of its ``buses``.
+
+`icdgen.icd.rules.buses` checks them; `icdgen.protocol.reading` makes tables of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from icdgen.icd.model import TELECOMMAND, TELEMETRY
+from icdgen.icd.packets import Packet, Packets, declared_packets
+from icdgen.icd.responses import Section, responses_in
+
+UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
+
+
+class BusLink(NamedTuple):
+    """What a `link` says about one of its buses."""
+
+    packets: Packets
+    commands: Mapping[str, Section]  # responses to telecommands, by kind
+    requests: Mapping[str, Section]  # responses to requests of telemetry, by kind
+
+    def carrying(self, direction: str) -> Packet | None:
+        """Return the packet of the messages of a direction that no packet lists; None
+        without one: such messages have no format of their own.
+        """
+        for packet in self.packets.carrying(direction):
+            if packet.messages is None and packet.name != self.packets.requesting:
+                return packet
+        return None
+
+    def responding(self, response: Section | None) -> Packet | None:
+        """Return the packet of a response; None without one."""
+        return self.packets.by_name((response or {}).get("packet"))
+
+    def segment_of(self, packet: Packet | None) -> Packet | None:
+        """Return the packet with a part of a message that needs several packets; None
+        without one.
+        """
+        for each in self.packets.all:
+            if packet is not None and each.segment_of == packet.name:
+                return each
+        return None
+
+
+def buses_with(packet: Section) -> tuple[str, ...]:
+    """Return the buses on which a packet is sent: all, unless it lists some."""
+    listed = packet.get("buses")
+    if not isinstance(listed, list | tuple):
+        return BUSES
+    return tuple(bus for bus in BUSES if bus in listed)
+
+
+def bus_link(link: Section, bus: str) -> BusLink:
+    """Return what a `link` says about a bus: its packets, and the responses of the link,
+    which those of the bus precede.
+    """
+    packets, buses = _mapping(link, "packets"), _mapping(link, "buses")
+    section: dict[str, Section] = {
+        "packets": {
+            name: packet
+            for name, packet in packets.items()
+            if isinstance(packet, Mapping) and bus in buses_with(packet)
+        }
+    }
+    own = _mapping(buses, bus)
+    for key in ("commands", "requests"):
+        if key in link or key in own:
+            section[key] = {**_mapping(link, key), **_mapping(own, key)}
+    return BusLink(
+        declared_packets(section),
+        responses_in(section.get("commands", {})),
+        responses_in(section.get("requests", {})),
+    )
+
+
+def can_packets(link: BusLink) -> dict[str, Packet]:
+    """Return the packets on CAN by what each is for, in the words of
+    `icdgen.protocol.sections.CAN_KINDS`.
+    """
+    packets = {
+        "telecommand": link.carrying(TELECOMMAND),
+        "acknowledge": link.responding(link.commands.get("ack")),
+        "refusal": link.responding(link.commands.get("nak")),
+        "request": link.packets.by_name(link.packets.requesting),
+        "reply": link.carrying(TELEMETRY),
+        "request_refusal": link.responding(link.requests.get("nak")),
+    }
+    return {kind: packet for kind, packet in packets.items() if packet is not None}
+
+
+def _mapping(section: Section, key: str) -> Section:
+    """Return the mapping of a key; empty for anything else, which the schema check
+    reports.
+    """
+    value = section.get(key)
+    return value if isinstance(value, Mapping) else {}

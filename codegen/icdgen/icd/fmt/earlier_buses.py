@@ -1,0 +1,304 @@
+"""Conversion of buses that were written before their acknowledges, message types and
+error codes took the form of framed links: packets, commands and requests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.scalars import name
+from icdgen.icd.fmt.trees import (
+    entries_of,
+    entry_of,
+    mapping,
+    move,
+    part_of,
+    value_of,
+    word,
+)
+
+_CAUSES = {"unknown_id": "unknown_id", "length": "length", "parameter": "value", "checksum": "checksum"}  # fmt: skip
+_POLLED = {"source": "source", "message": "message", "id": "echo", "until": "until",
+    "error": "status", "parameter": "detail", "assumptions": "assumptions"}  # fmt: skip
+# Keys of `telecommand` and `telemetry` of CAN -> who sends the packet, and the key of the
+# packet of which it is a part
+_TYPES = {
+    "telecommand": {"request": ("host", ""), "extended_request": ("host", "request"),
+        "acknowledge": ("device", ""), "failure": ("device", "")},
+    "telemetry": {"request": ("host", ""), "response": ("device", ""), "failure": ("device", ""),
+        "extended_response": ("device", "response")},
+}  # fmt: skip
+PATHS = {
+    "protocol.link.reasons": "protocol.link.commands.reasons",
+    "protocol.link.buses.uart.acknowledge": "protocol.link.packets.acknowledge",
+    "protocol.link.buses.i2c.acknowledge": "protocol.link.buses.i2c.commands.ack",
+    "protocol.link.buses.can.message_types": "protocol.link.packets",
+    "protocol.link.buses.can.telecommand": "protocol.link.buses.can.commands",
+    "protocol.link.buses.can.telemetry": "protocol.link.buses.can.requests",
+    "protocol.link.buses.can.extended": "protocol.link.buses.can.segments",
+}
+"""Places of earlier sections -> their present places, for errata."""
+
+
+def convert_buses(link: Branch, root: Branch) -> bool:
+    """Change the buses of a link, and its error codes, to the present keys.
+
+    ``root``: the ICD, for ids and for names of error codes. Return whether there was
+    something to change.
+    """
+    buses = value_of(link, "buses")
+    uart, i2c, can = (value_of(buses, bus) for bus in ("uart", "i2c", "can"))
+    before = [entry_of(link, "reasons")]
+    before += [entry_of(uart, key) for key in ("acknowledge", "unsolicited")]
+    before += [entry_of(i2c, "acknowledge")]
+    keys = ("message_types", "telecommand", "telemetry", "extended")
+    before += [entry_of(can, key) for key in keys]
+    if not any(before):
+        return False
+    # Where the field with the code has no enumeration, its values are numbers.
+    rows = value_of(value_of(uart, "acknowledge"), "data")
+    is_named = any(
+        entry_of(row.value, "enum")
+        for row in (rows.children if isinstance(rows, Branch) else ())
+    )
+    number, member = _convert_reasons(link, root, is_named)
+    packets = Branch(True, False, 0)
+    if isinstance(uart, Branch):
+        _convert_acknowledge(uart, packets, member)
+        _convert_unsolicited(uart, packets, root)
+    if isinstance(i2c, Branch) and (polled := value_of(i2c, "acknowledge")):
+        _convert_polled(i2c, polled, number)
+    if isinstance(can, Branch):
+        _convert_can(can, packets)
+    if packets.children:
+        own = part_of(link, "packets")
+        if own is not None:
+            own.children += packets.children
+    return True
+
+
+def _convert_reasons(link: Branch, root: Branch, is_named: bool) -> tuple[Text, Text]:
+    """Move the error codes to the commands, as members of their enumeration if the field
+    with the code has one.
+
+    Return what confirms a telecommand: as a number, and like the error codes.
+    """
+    reasons = entry_of(link, "reasons")
+    none = number = Text(0, "0")
+    if reasons is None or not isinstance(reasons.value, Branch):
+        return number, none
+    section = reasons.value
+    names = _members(root, value_of(section, "enum")) if is_named else {}
+    causes: dict[str, Text | Branch] = {}
+    for child in section.children:
+        key, given = name(child.key), child.value
+        if isinstance(given, Text) and isinstance(given.value, int):
+            member = names.get(given.value)
+            code = given if member is None else word(member)
+            if key == "none":
+                number, none = given, code
+            elif key in _CAUSES:
+                causes[_CAUSES[key]] = code
+    commands = Branch(True, False, 0)
+    move(section, {"source": "source"}, commands)
+    if causes:
+        commands.children.append(Child(word("reasons"), mapping(causes)))
+    comments = section.comments()
+    reasons.before += comments
+    reasons.key, reasons.value = word("commands"), commands
+    if not commands.children:
+        link.children.remove(reasons)
+    return number, none
+
+
+def _members(root: Branch, enum: object) -> dict[int, str]:
+    """Return the names of an enumeration of the file by their values."""
+    wanted = enum.value if isinstance(enum, Text) else None
+    enums = value_of(root, "enums")
+    for item in enums.children if isinstance(enums, Branch) else ():
+        given = value_of(item.value, "name")
+        if isinstance(given, Text) and given.value == wanted:
+            members = value_of(item.value, "members")
+            rows = members.children if isinstance(members, Branch) else []
+            return dict(_numbered(rows))
+    return {}
+
+
+def _numbered(rows: list[Child]) -> Iterator[tuple[int, str]]:
+    for row in rows:
+        number, named = (value_of(row.value, key) for key in ("value", "name"))
+        if isinstance(number, Text) and isinstance(named, Text):
+            if isinstance(number.value, int):
+                yield number.value, str(named.value)
+
+
+def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
+    """Make the acknowledge of the UART a packet, and let it confirm telecommands."""
+    acknowledge = entry_of(uart, "acknowledge")
+    if acknowledge is None or not isinstance(acknowledge.value, Branch):
+        return
+    section = acknowledge.value
+    packet = Branch(True, False, 0)
+    move(section, {"source": "source"}, packet)
+    packet.children += mapping({"from": word("device"), "buses": _list(word("uart"))}).children  # fmt: skip
+    data = entry_of(section, "data")
+    if data is not None and isinstance(data.value, Branch):
+        section.children.remove(data)
+        data.key = word("header")
+        end = 0
+        for item in data.value.children:
+            if isinstance(item.value, Branch):
+                end = _convert_row(item.value, end)
+        packet.children.append(data)
+    reasons = value_of(section, "assumptions")
+    for child in entries_of(reasons):
+        if name(child.key) == "data":
+            child.key = word("header")
+    move(section, {"assumptions": "assumptions"}, packet)
+    response: dict[str, Text | Branch] = {"packet": word("acknowledge")}
+    response |= {
+        "echo": word("id"),
+        "status": word("status"),
+        "success": _list(success),
+    }
+    commands = mapping({"ack": mapping(response)}, False)
+    acknowledge.before += section.comments()
+    acknowledge.key, acknowledge.value = word("commands"), commands
+    packets.children.append(Child(word("acknowledge"), packet))
+
+
+def _convert_row(row: Branch, end: int) -> int:
+    """Change a row of bytes into a field of a packet. ``end``: end of the row in front of
+    it in bytes. Return the end of the row.
+    """
+    at, size = (value_of(row, key) for key in ("byte", "bytes"))
+    first = at.value if isinstance(at, Text) and isinstance(at.value, int) else end
+    count = size.value if isinstance(size, Text) and isinstance(size.value, int) else 1
+    is_time = entry_of(row, "format") is not None
+    role = value_of(row, "role")
+    roles = {"id": "id", "error": "status"}
+    named = role.value if isinstance(role, Text) else ""
+    present = roles.get(str(named), "time" if is_time else "flags")
+    kept = [child for child in row.children if name(child.key) in ("name", "enum", "summary")]  # fmt: skip
+    field: dict[str, Text | Branch] = {}
+    if first != end:
+        field["at"] = Text(8 * first, str(8 * first))
+    field |= {"bits": Text(8 * count, str(8 * count)), "role": word(present)}
+    row.children = mapping(field).children + kept
+    return first + count
+
+
+def _convert_unsolicited(uart: Branch, packets: Branch, root: Branch) -> None:
+    """Make packets of the telemetry that a node sends unasked on the UART."""
+    section = entry_of(uart, "unsolicited")
+    unsolicited = section.value if section else None
+    rows = unsolicited.children if isinstance(unsolicited, Branch) else []
+    ids = [_id_of(root, value_of(row.value, "id_of")) for row in rows]
+    # An ICD that names a message of another file stays as it is.
+    if section is None or not rows or None in ids:
+        return
+    for row, id in zip(rows, ids, strict=True):
+        message = value_of(row.value, "message")
+        constant = {"bits": Text(8, "8"), "role": word("constant"), "value": id or word("0")}  # fmt: skip
+        packet: dict[str, Text | Branch] = {
+            "from": word("device"),
+            "buses": _list(word("uart")),
+            "header": _list(mapping(constant)),
+            "messages": _list(message if isinstance(message, Text) else word("")),
+        }
+        number = f" {len(packets.children)}" if len(rows) > 1 else ""
+        inside = row.value.comments() if isinstance(row.value, Branch) else []
+        comments = [*row.before, *inside, *row.trailing]
+        packets.children.append(
+            Child(word(f"unasked{number}"), mapping(packet, False), comments)
+        )
+    uart.children.remove(section)
+
+
+def _id_of(root: Branch, named: object) -> Text | None:
+    """Return the id of a message of the file; None without one."""
+    messages = value_of(root, "messages")
+    for item in messages.children if isinstance(messages, Branch) else ():
+        given = value_of(item.value, "name")
+        if isinstance(given, Text) and isinstance(named, Text) and given.value == named.value:  # fmt: skip
+            id = value_of(item.value, "id") or value_of(item.value, "set_id")
+            return id if isinstance(id, Text) else None
+    return None
+
+
+def _convert_polled(i2c: Branch, polled: object, success: Text) -> None:
+    """Let the telemetry that is polled on I2C confirm telecommands."""
+    if not isinstance(polled, Branch):
+        return
+    response = Branch(True, False, 0)
+    move(polled, _POLLED, response)
+    response.children.append(Child(word("success"), _list(success)))
+    acknowledge = entry_of(i2c, "acknowledge")
+    assert acknowledge is not None
+    acknowledge.before += polled.comments()
+    acknowledge.key = word("commands")
+    acknowledge.value = Branch(True, False, 0, [Child(word("ack"), response)])
+
+
+def _convert_can(can: Branch, packets: Branch) -> None:
+    """Make packets of the message types on CAN, and let them respond."""
+    uses: dict[str, dict[str, Text | Branch]] = {}
+    for direction, keys in _TYPES.items():
+        section = value_of(can, direction)
+        for key, (sender, whole) in keys.items():
+            given, part_of_ = value_of(section, key), value_of(section, whole)
+            if isinstance(given, Text):
+                use = uses.setdefault(str(given.value), {"from": word(sender)})
+                if whole and isinstance(part_of_, Text):
+                    use["segment_of"] = part_of_
+    types = entry_of(can, "message_types")
+    rows = value_of(types.value, "values") if types else None
+    source = value_of(types.value, "source") if types else None
+    for row in rows.children if isinstance(rows, Branch) else ():
+        number, named = (value_of(row.value, key) for key in ("value", "name"))
+        if not isinstance(number, Text) or not isinstance(named, Text):
+            continue
+        use = uses.get(str(named.value), {"from": word("both")})
+        packet = {"from": use.pop("from"), "buses": _list(word("can")), "type": number, **use}  # fmt: skip
+        if isinstance(source, Branch):
+            packet = {"source": source, **packet}
+        summary = value_of(row.value, "summary")
+        if isinstance(summary, Text):
+            packet["summary"] = summary
+        child = Child(named, mapping(packet), row.before, row.trailing)
+        packets.children.append(child)
+    if types:
+        can.children.remove(types)
+    for direction, present in (("telecommand", "commands"), ("telemetry", "requests")):
+        if owner := entry_of(can, direction):
+            responses = _responses(owner.value, direction)
+            owner.before += (
+                owner.value.comments() if isinstance(owner.value, Branch) else []
+            )
+            owner.key, owner.value = word(present), responses
+            if not responses.children:
+                can.children.remove(owner)
+    if extended := entry_of(can, "extended"):
+        extended.key = word("segments")
+
+
+def _responses(section: object, direction: str) -> Branch:
+    """Return the responses to telecommands, or to requests of telemetry, on CAN."""
+    responses = Branch(True, False, 0)
+    if isinstance(section, Branch):
+        move(section, {"source": "source"}, responses)
+    keys: Mapping[str, str] = {"acknowledge": "ack", "failure": "nak"}
+    if direction == "telemetry":
+        keys = {"request": "packet", "failure": "nak"}
+    for key, present in keys.items():
+        packet = value_of(section, key)
+        if isinstance(packet, Text):
+            is_response = present != "packet"
+            given = mapping({"packet": packet}) if is_response else packet
+            responses.children.append(Child(word(present), given))
+    return responses
+
+
+def _list(*items: Text | Branch) -> Branch:
+    return Branch(False, True, 0, [Child(NOTHING, item) for item in items])

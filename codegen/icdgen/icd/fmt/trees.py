@@ -1,0 +1,62 @@
+"""Access to the trees of the formatter by key, for conversions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from icdgen.icd.fmt.commented import Branch, Child, Text
+from icdgen.icd.fmt.scalars import name
+
+
+def word(word: str) -> Text:
+    return Text(word, word)
+
+
+def entries_of(value: object) -> list[Child]:
+    """Return the entries of a mapping; none of anything else."""
+    return value.children if isinstance(value, Branch) and value.mapping else []
+
+
+def entry_of(value: object, key: str) -> Child | None:
+    """Return the entry of a key; None without one."""
+    return next((each for each in entries_of(value) if name(each.key) == key), None)
+
+
+def value_of(value: object, key: str) -> object:
+    """Return the value of a key; None without one."""
+    entry = entry_of(value, key)
+    return entry.value if entry else None
+
+
+def branches(branch: Branch) -> Iterator[Branch]:
+    """Yield a mapping or sequence and all that are in it."""
+    yield branch
+    for child in branch.children:
+        if isinstance(child.value, Branch):
+            yield from branches(child.value)
+
+
+def mapping(entries: Mapping[str, Text | Branch], flow: bool = True) -> Branch:
+    children = [Child(word(key), value) for key, value in entries.items()]
+    return Branch(True, flow, 0, children)
+
+
+def part_of(section: Branch, key: str) -> Branch | None:
+    """Return the mapping of a key, which is added if it is missing; None if the key has
+    another value.
+    """
+    entry = entry_of(section, key)
+    if entry is None:
+        entry = Child(word(key), Branch(True, False, 0))
+        section.children.append(entry)
+    is_mapping = isinstance(entry.value, Branch) and entry.value.mapping
+    return entry.value if is_mapping else None  # type: ignore[return-value]
+
+
+def move(section: Branch, keys: Mapping[str, str], target: Branch) -> None:
+    """Move entries to another mapping, under their present keys."""
+    for key, present_key in keys.items():
+        if entry := entry_of(section, key):
+            section.children.remove(entry)
+            entry.key = word(present_key)
+            target.children.append(entry)
