@@ -582,29 +582,29 @@ typedef struct {
     uint64_t high;
     uint64_t low;
     bool negative;
-} icdgen_wide_t;
+} icdgen_int128_t;
 
 static inline uint64_t icdgen_magnitude(int64_t value)
 {
     return value < 0 ? UINT64_C(0) - ICDGEN_U64(value) : ICDGEN_U64(value);
 }
 
-static inline icdgen_wide_t icdgen_product(uint64_t left, uint64_t right, bool negative)
+static inline icdgen_int128_t icdgen_product(uint64_t left, uint64_t right, bool negative)
 {
     const uint64_t half = UINT64_C(0xFFFFFFFF);
     const uint64_t low = (left & half) * (right & half);
     const uint64_t middle = (left >> 32) * (right & half) + (low >> 32);
     const uint64_t other = (left & half) * (right >> 32) + (middle & half);
-    icdgen_wide_t product;
+    icdgen_int128_t product;
     product.high = (left >> 32) * (right >> 32) + (middle >> 32) + (other >> 32);
     product.low = (other << 32) | (low & half);
     product.negative = negative;
     return product;
 }
 
-static inline icdgen_wide_t icdgen_sum(icdgen_wide_t left, uint64_t right, bool negative)
+static inline icdgen_int128_t icdgen_sum(icdgen_int128_t left, uint64_t right, bool negative)
 {
-    icdgen_wide_t sum = left;
+    icdgen_int128_t sum = left;
     if (left.negative == negative) {
         sum.low = left.low + right;
         sum.high = left.high + (sum.low < right ? 1u : 0u);
@@ -619,7 +619,7 @@ static inline icdgen_wide_t icdgen_sum(icdgen_wide_t left, uint64_t right, bool 
 }
 
 /* Divide the magnitude and return the remainder. */
-static inline uint64_t icdgen_divide(icdgen_wide_t *value, uint64_t divisor)
+static inline uint64_t icdgen_divide(icdgen_int128_t *value, uint64_t divisor)
 {
     uint64_t rest = 0;
     if (value->high == 0u) {
@@ -640,7 +640,7 @@ static inline uint64_t icdgen_divide(icdgen_wide_t *value, uint64_t divisor)
 }
 
 /* Return the quotient as a correctly rounded double. */
-static inline double icdgen_rounded(icdgen_wide_t value, uint64_t divisor)
+static inline double icdgen_rounded(icdgen_int128_t value, uint64_t divisor)
 {
     uint64_t bits = 0;
     uint64_t rest = icdgen_divide(&value, divisor);
@@ -679,14 +679,14 @@ static inline double icdgen_rounded(icdgen_wide_t value, uint64_t divisor)
 
 static inline double icdgen_physical_i64(int64_t raw, int64_t factor, int64_t offset, int64_t divisor)
 {
-    const icdgen_wide_t product =
+    const icdgen_int128_t product =
         icdgen_product(icdgen_magnitude(raw), icdgen_magnitude(factor), (raw < 0) != (factor < 0));
     return icdgen_rounded(icdgen_sum(product, icdgen_magnitude(offset), offset < 0), ICDGEN_U64(divisor));
 }
 
 static inline double icdgen_physical_u64(uint64_t raw, int64_t factor, int64_t offset, int64_t divisor)
 {
-    const icdgen_wide_t product = icdgen_product(raw, icdgen_magnitude(factor), factor < 0);
+    const icdgen_int128_t product = icdgen_product(raw, icdgen_magnitude(factor), factor < 0);
     return icdgen_rounded(icdgen_sum(product, icdgen_magnitude(offset), offset < 0), ICDGEN_U64(divisor));
 }
 
@@ -727,7 +727,7 @@ static inline icd_status_t icdgen_nearest(
     /*
      * |value| * divisor = whole + fraction. The fraction is reduced to its first bit and a flag for any further bits.
      */
-    icdgen_wide_t whole = icdgen_product(significand, ICDGEN_U64(divisor), false);
+    icdgen_int128_t whole = icdgen_product(significand, ICDGEN_U64(divisor), false);
     bool half = false;
     bool more = false;
     for (uint32_t power = exponent; power > 1075u; --power) {
