@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent
 MAKERS = {
     "codegen/icdgen/icd/schema.json": schema.written,
     "runtime/python/icdgen_runtime/wire/link.py": python.written,
-    "runtime/python/icdgen_runtime/wire/envelope.py": python.written,
+    "runtime/python/icdgen_runtime/wire/packet_formats.py": python.written,
     **{
         f"runtime/c/wire/{name}.h": c.written
         for name in ("forms", "procedure_forms", "link")

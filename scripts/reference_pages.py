@@ -38,7 +38,7 @@ _OBJECTS = {
     "missing": ("Missing message", "an entry of `missing`"),
     "source": ("Source", "`source` of messages, fields and enumerations"),
     "document": ("Document", "`source` of a node"),
-    "envelope_field": ("Field of a frame", "an entry of `header` or `trailer`"),
+    "packet_field": ("Field of a frame", "an entry of `header` or `trailer`"),
     "errata": ("Errata file", ""),
     "erratum": ("Erratum", "an entry of `entries`"),
     "note": ("Note", "an entry of `notes`"),

@@ -16,16 +16,16 @@ from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.icd.model import Message
 from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.envelope import (
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.packet_formats import (
     MESSAGE,
-    EnvelopeField,
     Escaping,
+    PacketField,
     PacketFormat,
     Stream,
     StreamRow,
     TelemetryRequest,
 )
-from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.procedures import (
     Blocks,
     Input,
@@ -336,7 +336,7 @@ def _packet(packet: PacketFormat) -> Call:
     parts: dict[str, object] = {
         "header_bytes": packet.header_bytes,
         "trailer_bytes": packet.trailer_bytes,
-        "fields": tuple(map(_envelope_field, packet.fields)),
+        "fields": tuple(map(_packet_field, packet.fields)),
     }
     if packet.check:
         check = _members(packet.check)
@@ -363,13 +363,13 @@ def _crc(crc: Crc) -> Call:
     )
 
 
-def _envelope_field(field: EnvelopeField) -> Call:
+def _packet_field(field: PacketField) -> Call:
     parts = _members(field)
     defaults = {"id_shift": 0, "unit": 1, "plus": 0}
     # By keyword and only if needed: most fields of a header have the defaults.
     own = {name: parts.pop(name) for name in defaults}
     more = {name: value for name, value in own.items() if value != defaults[name]}
-    return _row("EnvelopeField", *parts.values(), **more)
+    return _row("PacketField", *parts.values(), **more)
 
 
 def _stream_rows(

@@ -487,11 +487,11 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
 
 /* Whether the sender chooses the value of a field. */
 #define ICDGEN_IS_OF_SENDER(field)                                                                                     \
-    ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_ENVELOPE_VALUES) - 1u)) != 0u && (field)->role < ICD_ENVELOPE_CONSTANT)
+    ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_HEADER_VALUES) - 1u)) != 0u && (field)->role < ICD_FIELD_CONSTANT)
 
 /* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
-static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
+static inline uint32_t icdgen_field_mask(const icd_packet_field_t *field)
 {
     return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
 }
@@ -503,8 +503,7 @@ static inline size_t icdgen_packet_around(const icd_packet_form_t *packet)
 }
 
 /* Return the field with this role; NULL if there is none. */
-static inline const icd_envelope_field_t *icdgen_envelope_field(
-    const icd_packet_form_t *packet, icd_envelope_role_t role)
+static inline const icd_packet_field_t *icdgen_packet_field(const icd_packet_form_t *packet, icd_field_role_t role)
 {
     for (size_t i = 0; i < packet->field_count; ++i) {
         if (packet->fields[i].role == role) {
@@ -515,42 +514,42 @@ static inline const icd_envelope_field_t *icdgen_envelope_field(
 }
 
 /* Return the value of a field. `bytes` is the header or the trailer that contains the field. */
-static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, const uint8_t *bytes)
+static inline uint32_t icdgen_field_get(const icd_packet_field_t *field, const uint8_t *bytes)
 {
     uint32_t number = 0;
     for (size_t i = 0; i < field->size; ++i) {
         number = (number << 8) | bytes[field->at + (field->little ? field->size - 1u - i : i)];
     }
-    return (number >> field->shift) & icdgen_envelope_mask(field);
+    return (number >> field->shift) & icdgen_field_mask(field);
 }
 
 /* Return the id of a packet whose id is in the header. */
-static inline uint32_t icdgen_envelope_id(
+static inline uint32_t icdgen_field_id(
     const icd_packet_form_t *packet, icd_direction_t direction, const uint8_t *header)
 {
     uint32_t id = packet->ids[direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID) && !field->in_trailer) {
-            id |= icdgen_envelope_get(field, header) << field->values[0];
+        const icd_packet_field_t *const field = &packet->fields[i];
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID) && !field->in_trailer) {
+            id |= icdgen_field_get(field, header) << field->values[0];
         }
     }
     return id;
 }
 
 /* Return the number of data bytes that a length field says. */
-static inline int64_t icdgen_envelope_bytes(const icd_envelope_field_t *field, uint32_t value)
+static inline int64_t icdgen_field_bytes(const icd_packet_field_t *field, uint32_t value)
 {
     return (ICDGEN_I64(value) * ICDGEN_I64(field->values[1])) - ICDGEN_I64(ICDGEN_I32(field->values[0]));
 }
 
 /* Return the value of a length field for a number of data bytes. */
-static inline uint32_t icdgen_envelope_counted(const icd_envelope_field_t *field, size_t length)
+static inline uint32_t icdgen_field_counted(const icd_packet_field_t *field, size_t length)
 {
     return (ICDGEN_U32(length) + field->values[0]) / field->values[1];
 }
 
-static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
+static inline void icdgen_field_put(const icd_packet_field_t *field, uint8_t *bytes, uint32_t value)
 {
     uint32_t rest = value << field->shift;
     for (size_t i = 0; i < field->size; ++i) {
@@ -585,7 +584,7 @@ static inline uint32_t icdgen_stream_number(
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.
  */
-static inline uint32_t icdgen_envelope_check(
+static inline uint32_t icdgen_field_check(
     const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
     const uint8_t *header,
@@ -633,7 +632,7 @@ static inline const icd_stream_row_t *icdgen_stream_row(
     return NULL;
 }
 
-#define ICDGEN_ENVELOPE_BYTES 64u /* largest header or trailer */
+#define ICDGEN_HEADER_BYTES 64u /* largest header or trailer */
 
 #define ICDGEN_SLIP_END 0xC0u
 #define ICDGEN_SLIP_ESCAPE 0xDBu
@@ -745,23 +744,23 @@ static inline void icdgen_line_write(icdgen_line_t *line, const uint8_t *bytes, 
     }
 }
 
-ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction)
+ICDGEN_API icd_header_values_t icd_header_values(const icd_link_t *link, icd_direction_t direction)
 {
     const icd_stream_form_t *const form = link->stream;
-    icd_envelope_values_t values;
+    icd_header_values_t values;
     uint32_t seen = 0; /* roles, as a mask */
     (void)memset(&values, 0, sizeof values);
     for (size_t i = 0; form != NULL && i < form->packet_count; ++i) {
         const icd_packet_form_t *const packet = &form->packets[i];
         for (size_t j = 0; packet->is_sent[direction] && j < packet->field_count; ++j) {
-            const icd_envelope_field_t *const field = &packet->fields[j];
+            const icd_packet_field_t *const field = &packet->fields[j];
             if (ICDGEN_IS_OF_SENDER(field)) {
                 const uint32_t role = UINT32_C(1) << ICDGEN_U32(field->role);
                 uint32_t *const value = &values.of[field->role];
                 if ((seen & role) == 0u) {
                     *value = field->values[direction];
                 } else if (*value != field->values[direction] && field->bits < 32u) {
-                    *value = ICD_ENVELOPE_DEFAULT;
+                    *value = ICD_HEADER_DEFAULT;
                 } else {
                     /* the packets have the same default */
                 }
@@ -773,9 +772,9 @@ ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd
 }
 
 /* Return whether the sender chose the value of a field. Otherwise, the field has the default of its packet. */
-static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, const icd_envelope_values_t *values)
+static inline bool icdgen_field_is_chosen(const icd_packet_field_t *field, const icd_header_values_t *values)
 {
-    return values != NULL && (values->of[field->role] != ICD_ENVELOPE_DEFAULT || field->bits == 32u);
+    return values != NULL && (values->of[field->role] != ICD_HEADER_DEFAULT || field->bits == 32u);
 }
 
 /* A packet that is to be encoded. */
@@ -793,48 +792,47 @@ typedef struct {
 } icdgen_outgoing_t;
 
 /* Return the part of an id that belongs into a field. If the id is too large, its topmost part does not fit. */
-static inline uint32_t icdgen_envelope_part(
-    const icd_packet_form_t *packet, const icd_envelope_field_t *field, uint32_t id)
+static inline uint32_t icdgen_field_part(const icd_packet_form_t *packet, const icd_packet_field_t *field, uint32_t id)
 {
     const uint32_t shift = field->values[0];
     uint32_t bits = 0;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        bits += ICDGEN_HAS_ROLE(&packet->fields[i], ICD_ENVELOPE_ID) ? packet->fields[i].bits : 0u;
+        bits += ICDGEN_HAS_ROLE(&packet->fields[i], ICD_FIELD_ID) ? packet->fields[i].bits : 0u;
     }
     const uint32_t part = id >> shift;
-    return shift + field->bits < bits ? part & icdgen_envelope_mask(field) : part;
+    return shift + field->bits < bits ? part & icdgen_field_mask(field) : part;
 }
 
 /* Write all fields except the checksum. Return false if a value does not fit. */
-static inline bool icdgen_envelope_fill(
+static inline bool icdgen_field_fill(
     const icdgen_outgoing_t *outgoing,
     size_t length,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *header,
     uint8_t *trailer)
 {
     const icd_packet_form_t *const packet = outgoing->packet;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
+        const icd_packet_field_t *const field = &packet->fields[i];
         uint32_t value = field->values[outgoing->direction];
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CHECKSUM)) {
             continue;
         }
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
-            value = icdgen_envelope_part(packet, field, outgoing->id);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
-            value = icdgen_envelope_counted(field, length);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH) && outgoing->row != NULL) {
-            value = icdgen_envelope_counted(field, outgoing->row->most);
-        } else if (ICDGEN_IS_OF_SENDER(field) && icdgen_envelope_is_chosen(field, values)) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
+            value = icdgen_field_part(packet, field, outgoing->id);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
+            value = icdgen_field_counted(field, length);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH) && outgoing->row != NULL) {
+            value = icdgen_field_counted(field, outgoing->row->most);
+        } else if (ICDGEN_IS_OF_SENDER(field) && icdgen_field_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
             /* the value of the ICD */
         }
-        if (value > icdgen_envelope_mask(field)) {
+        if (value > icdgen_field_mask(field)) {
             return false;
         }
-        icdgen_envelope_put(field, field->in_trailer ? trailer : header, value);
+        icdgen_field_put(field, field->in_trailer ? trailer : header, value);
     }
     return true;
 }
@@ -922,7 +920,7 @@ static inline icd_status_t icdgen_outgoing_packet(
 
 static inline icd_status_t icdgen_outgoing_encode(
     const icdgen_outgoing_t *outgoing,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -931,15 +929,15 @@ static inline icd_status_t icdgen_outgoing_encode(
     const uint8_t *const data = outgoing->data;
     const bool cuts_zeros = outgoing->is_message && ICDGEN_HAS_FLAG(outgoing->row, ICD_STREAM_CUTS_ZEROS);
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
-    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
-    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (!icdgen_envelope_fill(outgoing, length, values, header, trailer)) {
+    uint8_t header[ICDGEN_HEADER_BYTES] = {0};
+    uint8_t trailer[ICDGEN_HEADER_BYTES] = {0};
+    if (!icdgen_field_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
-    const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);
+    const icd_packet_field_t *const check = icdgen_packet_field(packet, ICD_FIELD_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
-        const uint32_t sum = icdgen_envelope_check(packet, outgoing->row, header, data, length, trailer);
-        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
+        const uint32_t sum = icdgen_field_check(packet, outgoing->row, header, data, length, trailer);
+        icdgen_field_put(check, check->in_trailer ? trailer : header, sum);
     }
     if (outgoing->exchange != NULL) {
         const icd_exchange_t *const exchange = outgoing->exchange;
@@ -964,7 +962,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     uint32_t id,
     const uint8_t *data,
     size_t length,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -977,7 +975,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
 ICDGEN_API icd_status_t icd_stream_encode_request(
     const icd_link_t *link,
     uint32_t telemetry,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -992,7 +990,7 @@ ICDGEN_API icd_status_t icd_stream_encode_packet(
     icd_direction_t direction,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -1012,7 +1010,7 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     (void)memset(sender, 0, sizeof *sender);
     sender->link = link;
     sender->direction = direction;
-    sender->values = icd_envelope_values(link, direction);
+    sender->values = icd_header_values(link, direction);
     sender->sequences = sequences;
     sender->sequence_count = sequence_count;
     for (size_t i = 0; i < sequence_count; ++i) {
@@ -1025,34 +1023,34 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
 static inline icd_status_t icdgen_outgoing_send(
     const icdgen_outgoing_t *outgoing,
     icd_stream_sender_t *sender,
-    const icd_envelope_values_t *chosen,
+    const icd_header_values_t *chosen,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
 {
     const bool per_id = outgoing->form->per_id;
-    const icd_envelope_field_t *const field = icdgen_envelope_field(outgoing->packet, ICD_ENVELOPE_SEQUENCE);
+    const icd_packet_field_t *const field = icdgen_packet_field(outgoing->packet, ICD_FIELD_SEQUENCE);
     size_t counter = 0;
     if (per_id && outgoing->is_message) {
         counter = ICDGEN_SIZE(outgoing->row - outgoing->form->rows[outgoing->direction]);
     }
     /* With a sequence for each id, only messages have a counter. */
     const bool is_counted = field != NULL && counter < sender->sequence_count && (outgoing->is_message || !per_id);
-    icd_envelope_values_t values = *chosen;
+    icd_header_values_t values = *chosen;
     if (is_counted) {
-        uint32_t number = sender->values.of[ICD_ENVELOPE_SEQUENCE];
+        uint32_t number = sender->values.of[ICD_FIELD_SEQUENCE];
         if (sender->sequences[counter] != ICDGEN_NO_SEQUENCE) {
-            number = (sender->sequences[counter] + 1u) & icdgen_envelope_mask(field);
-        } else if (number == ICD_ENVELOPE_DEFAULT) {
+            number = (sender->sequences[counter] + 1u) & icdgen_field_mask(field);
+        } else if (number == ICD_HEADER_DEFAULT) {
             number = field->values[sender->direction];
         } else {
             /* the first number of the sender */
         }
-        values.of[ICD_ENVELOPE_SEQUENCE] = number;
+        values.of[ICD_FIELD_SEQUENCE] = number;
     }
     const icd_status_t status = icdgen_outgoing_encode(outgoing, &values, buffer, capacity, written);
     if (status == ICD_OK && is_counted) {
-        sender->sequences[counter] = values.of[ICD_ENVELOPE_SEQUENCE];
+        sender->sequences[counter] = values.of[ICD_FIELD_SEQUENCE];
     }
     return status;
 }
@@ -1085,13 +1083,13 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     icd_stream_sender_t *sender,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
 {
     icdgen_outgoing_t outgoing;
-    const icd_envelope_values_t *const chosen = values != NULL ? values : &sender->values;
+    const icd_header_values_t *const chosen = values != NULL ? values : &sender->values;
     const icd_status_t status = icdgen_outgoing_packet(&outgoing, sender->link, sender->direction, packet, id);
     return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, chosen, buffer, capacity, written);
 }
@@ -1213,7 +1211,7 @@ static inline icdgen_incoming_t icdgen_incoming(
 static inline void icdgen_stream_count(
     icd_stream_decoder_t *decoder,
     const icdgen_incoming_t *incoming,
-    const icd_envelope_field_t *field,
+    const icd_packet_field_t *field,
     const icd_event_t *message,
     const icdgen_listener_t *listener)
 {
@@ -1226,9 +1224,9 @@ static inline void icdgen_stream_count(
     if (key >= decoder->sequence_count) {
         return;
     }
-    const uint32_t number = message->values.of[ICD_ENVELOPE_SEQUENCE];
+    const uint32_t number = message->values.of[ICD_FIELD_SEQUENCE];
     const uint32_t last = decoder->sequences[key];
-    const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
+    const uint32_t missing = (number - last - 1u) & icdgen_field_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
         icd_event_t event;
@@ -1249,11 +1247,11 @@ static inline bool icdgen_stream_constants(
     const uint8_t *trailer)
 {
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
+        const icd_packet_field_t *const field = &packet->fields[i];
         const uint8_t *const bytes = field->in_trailer ? trailer : frame;
         const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && came &&
-            icdgen_envelope_get(field, bytes) != field->values[direction]) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CONSTANT) && came &&
+            icdgen_field_get(field, bytes) != field->values[direction]) {
             return false;
         }
     }
@@ -1288,9 +1286,9 @@ static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t 
 {
     size_t next = packet->header_bytes;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
+        const icd_packet_field_t *const field = &packet->fields[i];
         const size_t end = ICDGEN_SIZE(field->at) + field->size;
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && !field->in_trailer && end > left && end < next) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CONSTANT) && !field->in_trailer && end > left && end < next) {
             next = end;
         }
     }
@@ -1313,7 +1311,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     const size_t length = count - around;
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
-    const icd_envelope_field_t *sequence = NULL;
+    const icd_packet_field_t *sequence = NULL;
     int64_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
     uint32_t sum = 0;
     bool is_framed = true;
@@ -1322,20 +1320,20 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     icdgen_event_init(&event, ICD_EVENT_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
-        const uint32_t value = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT)) {
+        const icd_packet_field_t *const field = &packet->fields[i];
+        const uint32_t value = icdgen_field_get(field, field->in_trailer ? trailer : frame);
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CONSTANT)) {
             is_framed = is_framed && value == field->values[decoder->direction];
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
             event.id |= value << field->values[0];
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
-            is_long = is_long && icdgen_envelope_bytes(field, value) == ICDGEN_I64(length);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH)) {
-            wanted = icdgen_envelope_bytes(field, value);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
+            is_long = is_long && icdgen_field_bytes(field, value) == ICDGEN_I64(length);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH)) {
+            wanted = icdgen_field_bytes(field, value);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CHECKSUM)) {
             sum = value;
         } else if (ICDGEN_IS_OF_SENDER(field)) {
-            sequence = ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_SEQUENCE) ? field : sequence;
+            sequence = ICDGEN_HAS_ROLE(field, ICD_FIELD_SEQUENCE) ? field : sequence;
             event.values.of[field->role] = value;
         } else {
             /* there are no other roles */
@@ -1351,7 +1349,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     if (packet->check != NULL) {
         if (packet->check->is_seeded && incoming.kind == ICD_EVENT_UNKNOWN_ID) {
             verdict = ICDGEN_DOUBTFUL;
-        } else if (icdgen_envelope_check(packet, incoming.row, frame, data, length, trailer) != sum) {
+        } else if (icdgen_field_check(packet, incoming.row, frame, data, length, trailer) != sum) {
             event.kind = ICD_EVENT_CHECKSUM;
             verdict = ICDGEN_DOUBTFUL;
         } else {
@@ -1404,12 +1402,12 @@ static inline size_t icdgen_stream_front(
         decoder->needed = icdgen_stream_next(packet, left);
         return 0;
     }
-    const icd_envelope_field_t *const field = icdgen_envelope_field(packet, ICD_ENVELOPE_LENGTH);
+    const icd_packet_field_t *const field = icdgen_packet_field(packet, ICD_FIELD_LENGTH);
     int64_t length;
     if (field != NULL) {
-        length = icdgen_envelope_bytes(field, icdgen_envelope_get(field, frame));
+        length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
-        const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
+        const uint32_t id = icdgen_field_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
         if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);

@@ -355,39 +355,39 @@ typedef struct {
     bool ignores_other; /**< Within a packet: whether an escape byte and any other byte are skipped. */
 } icd_escaping_t;
 
-/** Role of a header or trailer field. The sender chooses the values of the first ICD_ENVELOPE_VALUES roles. */
+/** Role of a header or trailer field. The sender chooses the values of the first ICD_HEADER_VALUES roles. */
 typedef enum {
-    ICD_ENVELOPE_SEQUENCE = 0,
-    ICD_ENVELOPE_SOURCE = 1,
-    ICD_ENVELOPE_DESTINATION = 2,
-    ICD_ENVELOPE_TYPE = 3,
-    ICD_ENVELOPE_FLAGS = 4,
-    ICD_ENVELOPE_TIME = 5,
-    ICD_ENVELOPE_STATUS = 6,
-    ICD_ENVELOPE_REASON = 7,
-    ICD_ENVELOPE_CONSTANT = 8,
-    ICD_ENVELOPE_ID = 9,
-    ICD_ENVELOPE_LENGTH = 10,
-    ICD_ENVELOPE_CHECKSUM = 11,
-    ICD_ENVELOPE_RESPONSE_LENGTH = 12
-} icd_envelope_role_t;
+    ICD_FIELD_SEQUENCE = 0,
+    ICD_FIELD_SOURCE = 1,
+    ICD_FIELD_DESTINATION = 2,
+    ICD_FIELD_TYPE = 3,
+    ICD_FIELD_FLAGS = 4,
+    ICD_FIELD_TIME = 5,
+    ICD_FIELD_STATUS = 6,
+    ICD_FIELD_REASON = 7,
+    ICD_FIELD_CONSTANT = 8,
+    ICD_FIELD_ID = 9,
+    ICD_FIELD_LENGTH = 10,
+    ICD_FIELD_CHECKSUM = 11,
+    ICD_FIELD_RESPONSE_LENGTH = 12
+} icd_field_role_t;
 
-#define ICD_ENVELOPE_VALUES 8 /**< Number of roles whose values the sender chooses. */
+#define ICD_HEADER_VALUES 8 /**< Number of roles whose values the sender chooses. */
 
-/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
+/** Values of the header and trailer fields that the sender chooses, indexed by icd_field_role_t. */
 typedef struct {
-    uint32_t of[ICD_ENVELOPE_VALUES];
-} icd_envelope_values_t;
+    uint32_t of[ICD_HEADER_VALUES];
+} icd_header_values_t;
 
 /** A value that stands for the default of the packet format, in fields of less than 32 bits. */
-#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
+#define ICD_HEADER_DEFAULT UINT32_C(0xFFFFFFFF)
 
 /**
  * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
  * `bits` bits.
  */
 typedef struct {
-    icd_envelope_role_t role;
+    icd_field_role_t role;
     bool in_trailer;
     uint8_t at;
     uint8_t size;
@@ -399,7 +399,7 @@ typedef struct {
      * length, what is added to the number of data bytes, modulo 2^32, and the number of bytes that it counts as one.
      */
     uint32_t values[2];
-} icd_envelope_field_t;
+} icd_packet_field_t;
 
 /** The checksum of a packet format. */
 typedef struct {
@@ -420,7 +420,7 @@ typedef enum {
 /** A packet format: header, data and trailer. */
 typedef struct {
     uint32_t ids[2]; /**< Without an id field: id of its only telecommand and telemetry; otherwise 0. */
-    const icd_envelope_field_t *fields;
+    const icd_packet_field_t *fields;
     const icd_check_form_t *check;
     uint8_t field_count;
     uint8_t header_bytes;
@@ -565,7 +565,7 @@ typedef struct {
 /* Of icd_packet_content_t. */
 #define ICDGEN_CONTENTS 0u
 
-/* Of icd_envelope_role_t. */
+/* Of icd_field_role_t. */
 #define ICDGEN_ROLES 0u
 
 /* Flags of messages in packets. */
@@ -892,7 +892,7 @@ typedef struct {
     uint8_t source;          /**< CAN: address of the sender. */
     uint8_t destination;     /**< MESSAGE on CAN. */
     icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
-    icd_envelope_values_t values; /**< Framed links: header and trailer values of a message. */
+    icd_header_values_t values; /**< Framed links: header and trailer values of a message. */
 } icd_event_t;
 
 /** Callback for events. `context` is the pointer that was passed together with the callback. */
@@ -1052,9 +1052,9 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
 
 /**
  * Return the values of the ICD for this direction. Fields without a value in the ICD are 0. If packet formats have
- * different values, the value is ICD_ENVELOPE_DEFAULT; for fields of 32 bits, it is that of the first format.
+ * different values, the value is ICD_HEADER_DEFAULT; for fields of 32 bits, it is that of the first format.
  */
-ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction);
+ICDGEN_API icd_header_values_t icd_header_values(const icd_link_t *link, icd_direction_t direction);
 
 /**
  * Encode a message with header, trailer and delimiters. `values`: fields that the sender chooses, or NULL for the
@@ -1068,7 +1068,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     uint32_t id,
     const uint8_t *data,
     size_t length,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -1081,7 +1081,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
 ICDGEN_API icd_status_t icd_stream_encode_request(
     const icd_link_t *link,
     uint32_t telemetry,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -1098,7 +1098,7 @@ ICDGEN_API icd_status_t icd_stream_encode_packet(
     icd_direction_t direction,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -1107,7 +1107,7 @@ ICDGEN_API icd_status_t icd_stream_encode_packet(
 typedef struct {
     const icd_link_t *link;
     icd_direction_t direction;
-    icd_envelope_values_t values; /**< Initially those of the ICD. The sequence is the first number. */
+    icd_header_values_t values; /**< Initially those of the ICD. The sequence is the first number. */
     uint32_t *sequences;
     size_t sequence_count;
 } icd_stream_sender_t;
@@ -1150,7 +1150,7 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     icd_stream_sender_t *sender,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);

@@ -22,7 +22,7 @@
 
 #include "wire/uart.c"
 
-#include "wire/envelope.h"
+#include "wire/packet_fields.h"
 
 #include "wire/stream_encode.c"
 

@@ -1,7 +1,7 @@
 "use strict";
 /* A frame that was pasted anywhere -> links to its message, with the frame in them. */
 const icdgenFrameLinks = (() => {
-  const NEEDED = ["frames.js", "packets.js", "pasted.js", "stream.js", "envelopes.js", "recognize.js", "frame-index.js"];
+  const NEEDED = ["frames.js", "packets.js", "pasted.js", "stream.js", "framed.js", "recognize.js", "frame-index.js"];
   const root = document.body.dataset.root;
   const OF = { request: "request for", acknowledge: "acknowledge of", refusal: "refusal of" };
 

@@ -1,6 +1,6 @@
 "use strict";
 /* What was pasted on the page of a message -> its data: id, framing and checksum come off, as `icdgen decode NODE MESSAGE` does it. */
-const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
+const icdgenGiven = ((frames, packets, pasted, stream, framedPackets) => {
   /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
   function messageIn(wire, length, text) {
     const given = pasted.read(text);
@@ -11,13 +11,13 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
 
   /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
   function unwrap(wire, length, bytes) {
-    const begun = wire.stream && envelopes.faultOfBeginning(wire.stream, bytes, "this node", namesIn(wire));
+    const begun = wire.stream && framedPackets.faultOfBeginning(wire.stream, bytes, "this node", namesIn(wire));
     if (hasLength(wire, length, bytes)) {
-      const sure = surelyEnveloped(wire, length, bytes);
+      const sure = surelyFramed(wire, length, bytes);
       if (!sure && begun?.isCertain) throw new Error(begun.text);
       return sure ?? { data: bytes, remarks: begun ? [`the data begin like a packet: ${begun.text}`] : [] };
     }
-    const taken = wire.stream && ofEnvelopes(wire, length, bytes);
+    const taken = wire.stream && ofFramed(wire, length, bytes);
     if (taken) return taken;
     if (begun) throw new Error(begun.text);
     const read = wire.framing && stream.messages(wire, bytes);
@@ -31,34 +31,34 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
   }
 
   /** Where frames differ in length one in its packet can be as long as another without: a checksum tells. */
-  function surelyEnveloped(wire, length, bytes) {
+  function surelyFramed(wire, length, bytes) {
     if (!wire.lengths || !wire.stream || !isChecked(wire)) return null;
     try {
-      return ofEnvelopes(wire, length, bytes);
+      return ofFramed(wire, length, bytes);
     } catch {
       return null;
     }
   }
 
   /** The first message of this kind in its packet; null if there is none. Throws an Error where one is damaged, another one's, or has no data. */
-  function ofEnvelopes(wire, length, bytes) {
+  function ofFramed(wire, length, bytes) {
     const form = wire.stream;
     const able = (what) => form[what].length || (what === "telecommand" && form.request?.ids.length);
-    const heard = envelopes.directionsOf(form).filter(able).map((what) => ({ what, ...envelopes.decode(form, what, bytes) }));
+    const heard = framedPackets.directionsOf(form).filter(able).map((what) => ({ what, ...framedPackets.decode(form, what, bytes) }));
     const isMine = (what, { event, id, data }) => event === "message" && idIn(wire, what) === id && hasLength(wire, length, data);
-    const usable = heard.filter(({ what, events, lost }) => events.some((event) => isMine(what, event)) && (!lost || envelopes.isMarked(form)));
+    const usable = heard.filter(({ what, events, lost }) => events.some((event) => isMine(what, event)) && (!lost || framedPackets.isMarked(form)));
     const best = usable.sort((one, other) => one.lost - other.lost)[0];
     if (best) {
       const [first, ...others] = best.events.filter((event) => isMine(best.what, event));
       const left = others.length ? [`${others.length} other frame${others.length === 1 ? "" : "s"} left out`] : [];
-      return { data: first.data, remarks: [envelopes.removed(form, first), ...left, ...envelopes.around(best.lost)] };
+      return { data: first.data, remarks: [framedPackets.removed(form, first), ...left, ...framedPackets.around(best.lost)] };
     }
-    if (!envelopes.isMarked(form)) return null;
+    if (!framedPackets.isMarked(form)) return null;
     const events = heard.flatMap(({ what, events: own }) => own.map((event) => ({ ...event, what })));
     const damaged = events.find(({ event }) => event === "checksum");
     if (damaged) {
-      const faults = envelopes.DIRECTIONS.map((what) => envelopes.faultOf(form, what, damaged.frame, true, "this node", namesIn(wire)));
-      throw new Error(envelopes.likeliest(faults.filter(Boolean)).text);
+      const faults = framedPackets.DIRECTIONS.map((what) => framedPackets.faultOf(form, what, damaged.frame, true, "this node", namesIn(wire)));
+      throw new Error(framedPackets.likeliest(faults.filter(Boolean)).text);
     }
     const dataless = events.find(({ event }) => event === "request" || event === "packet");
     if (dataless) {
@@ -66,13 +66,13 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
       throw new Error(dataless.event === "request" ? "a request of this message, which carries no data" : `a packet ${name}, which carries no message`);
     }
     const other = events.find(({ event, is, id, what }) => (event === "message" ? id !== idIn(wire, what) : event === "unknown_id" && is === "proven"));
-    if (other) throw new Error(`in a packet with id ${envelopes.idText(form, other.id)}, which is another message's`);
+    if (other) throw new Error(`in a packet with id ${framedPackets.idText(form, other.id)}, which is another message's`);
     return null;
   }
 
   /** Whether the packets of the message have a checksum. */
   const isChecked = (wire) =>
-    envelopes.DIRECTIONS.every((what) => wire.stream[what].every(([id, , , , packet]) => id !== idIn(wire, what) || wire.stream.packets[packet].check));
+    framedPackets.DIRECTIONS.every((what) => wire.stream[what].every(([id, , , , packet]) => id !== idIn(wire, what) || wire.stream.packets[packet].check));
 
   /** What a packet of an id of a direction is called: other messages are not known here. */
   const namesIn = (wire) => (direction, id) => (idIn(wire, direction) === id ? ["this message"] : []);
@@ -146,5 +146,5 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
   const timed = ({ time }) => (time ? [`time ${time}`] : []);
 
   return { unwrap, messageIn };
-})(...(typeof icdgenFrames === "undefined" ? ["frames", "packets", "pasted", "stream", "envelopes"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPackets, icdgenPasted, icdgenStream, icdgenEnvelopes]));
+})(...(typeof icdgenFrames === "undefined" ? ["frames", "packets", "pasted", "stream", "framed"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPackets, icdgenPasted, icdgenStream, icdgenFramed]));
 if (typeof module !== "undefined") module.exports = icdgenGiven;

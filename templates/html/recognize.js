@@ -6,7 +6,7 @@
  * packets of the input, `time` what candump printed or seconds of slcan, `what` telecommand, telemetry, request,
  * acknowledge, refusal, or configuration where nothing tells the direction. `message` is empty for a response without id.
  */
-const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
+const icdgenRecognize = ((frames, pasted, stream, packets, framedPackets) => {
   const OF_CAN = { telecommand: "telecommand", acknowledge: "acknowledge", refusal: "refusal", request: "request", reply: "telemetry", request_refusal: "refusal" };
   const SENT = ["telecommand", "acknowledge", "refusal"];
 
@@ -49,23 +49,23 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
       found = onCan(index, talking.filter((speaker) => speaker.can), given.packets);
     } else {
       const data = given.packets ? Uint8Array.from(given.packets.flatMap((one) => [...one.data])) : given.data;
-      found = enveloped(index, talking, data);
+      found = framedMessages(index, talking, data);
       if (!found.length) found = framed(index, talking, data);
       if (!found.length) found = given.packets ? byIdentifier(index, talking, given.packets) : [bare(index, talking, data)];
     }
     return given.form ? found.map((one) => noted(one, `read as ${given.form}`)) : found;
   }
 
-  // Envelopes
+  // Framed links
 
   /** The messages, of the direction that leaves the least; none if there are none, or hardly by intent. */
-  function enveloped(index, talking, data) {
-    const heard = talking.filter((one) => one.stream).flatMap((speaker) => envelopes.directionsOf(speaker.stream).map((what) => heardOf(index, speaker, what, data)));
-    const found = heard.filter((one) => one.read.length && (!one.lost || envelopes.isMarked(one.speaker.stream)));
+  function framedMessages(index, talking, data) {
+    const heard = talking.filter((one) => one.stream).flatMap((speaker) => framedPackets.directionsOf(speaker.stream).map((what) => heardOf(index, speaker, what, data)));
+    const found = heard.filter((one) => one.read.length && (!one.lost || framedPackets.isMarked(one.speaker.stream)));
     if (!found.length) {
-      const firsts = heard.filter((one) => envelopes.isMarked(one.speaker.stream)).flatMap((one) => one.faults.slice(0, 1));
+      const firsts = heard.filter((one) => framedPackets.isMarked(one.speaker.stream)).flatMap((one) => one.faults.slice(0, 1));
       const at = Math.min(...firsts.map((one) => one.at));
-      const fault = envelopes.likeliest(firsts.filter((one) => one.at === at));
+      const fault = framedPackets.likeliest(firsts.filter((one) => one.at === at));
       if (fault) throw new Error(fault.text);
       return [];
     }
@@ -98,7 +98,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     }
     const left = leftOut(heard.filter(({ speaker }) => speaker === best[0].speaker), isFree);
     const [first, ...others] = chosen.sort(([a], [b]) => a[0] - b[0]).map(([, one]) => one);
-    return [noted(without(first, ...left), ...envelopes.around(lost)), ...others];
+    return [noted(without(first, ...left), ...framedPackets.around(lost)), ...others];
   }
 
   /** `[at, reading]` of the requests of telemetry, in order. */
@@ -133,13 +133,13 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   /** What is wrong with bytes that begin as a packet of a link does; null if they do not. */
   function begunOf(index, talking, data) {
-    const every = talking.filter((one) => one.stream).map((one) => envelopes.faultOfBeginning(one.stream, data, one.title, namesOf(index, one)));
-    return envelopes.likeliest(every.filter(Boolean));
+    const every = talking.filter((one) => one.stream).map((one) => framedPackets.faultOfBeginning(one.stream, data, one.title, namesOf(index, one)));
+    return framedPackets.likeliest(every.filter(Boolean));
   }
 
   /** What one direction of a link makes of the bytes. */
   function heardOf(index, speaker, what, data) {
-    const { events, lost: unused } = envelopes.decode(speaker.stream, what, data);
+    const { events, lost: unused } = framedPackets.decode(speaker.stream, what, data);
     const [read, faults] = [[], []];
     let lost = unused;
     for (const one of events) {
@@ -150,9 +150,9 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
       }
       if (one.is === "message") lost += one.end - one.at;
       const isWhole = one.event === "cut" ? one.whole : one.event !== "framing";
-      const fault = envelopes.faultOf(speaker.stream, what, one.frame, isWhole, speaker.title, namesOf(index, speaker));
+      const fault = framedPackets.faultOf(speaker.stream, what, one.frame, isWhole, speaker.title, namesOf(index, speaker));
       // Without a sync, noise is as likely as a packet.
-      if (fault && (fault.isOfMessage || envelopes.hasSync(speaker.stream, what))) faults.push({ ...fault, at: one.at, end: one.end });
+      if (fault && (fault.isOfMessage || framedPackets.hasSync(speaker.stream, what))) faults.push({ ...fault, at: one.at, end: one.end });
     }
     return { speaker, lost, read, faults };
   }
@@ -171,7 +171,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     const form = speaker.stream;
     const checked = Boolean(form.packets[event.packet].check);
     if (event.event === "packet") return responseOf(index, speaker, event, checked);
-    const note = envelopes.removed(form, event);
+    const note = framedPackets.removed(form, event);
     if (event.event === "request") {
       const [number] = numbersOf(speaker.telemetry[event.id]);
       return reading(index, speaker, "request", number, event.id, event.data, [note], checked);
@@ -184,7 +184,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   /** The reading of a packet without a message: what it says about the message of its id; null if no message has the id. */
   function responseOf(index, speaker, event, checked) {
-    const statement = envelopes.statement(speaker.stream, event);
+    const statement = framedPackets.statement(speaker.stream, event);
     if (!statement) return null;
     const { what, reason, about } = statement;
     const { name, fields } = speaker.stream.packets[event.packet];
@@ -242,7 +242,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   /** Bytes without the framing that their node has: what they can be shows only if the message is named. */
   function noPacket(index, talking, data) {
-    const syncs = talking.flatMap((one) => envelopes.DIRECTIONS.flatMap((direction) => envelopes.syncTexts(one.stream, direction)));
+    const syncs = talking.flatMap((one) => framedPackets.DIRECTIONS.flatMap((direction) => framedPackets.syncTexts(one.stream, direction)));
     const begin = [...new Set(syncs)].join(" or ");
     const nodes = talking.map((one) => one.title).join(", ");
     const text = `${data.length} byte${data.length === 1 ? " is" : "s are"} no packet of ${nodes}${begin ? `: packets begin with ${begin}` : ""}`;
@@ -474,5 +474,5 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
   }
 
   return { recognize, Ambiguous };
-})(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets", "envelopes"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets, icdgenEnvelopes]));
+})(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets", "framed"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets, icdgenFramed]));
 if (typeof module !== "undefined") module.exports = icdgenRecognize;

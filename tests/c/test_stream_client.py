@@ -203,10 +203,10 @@ static void responds(uint32_t now, uint32_t id, uint8_t first, uint8_t second, u
     static uint8_t sequence = 0;
     const uint8_t data[6] = {first, second, third, fourth, 0, 0};
     const size_t length = id == ARM_POSITION_ID ? ARM_POSITION_LENGTH : ARM_COMMAND_RESULT_LENGTH;
-    icd_envelope_values_t values = icd_envelope_values(arm_link(), ICD_TELEMETRY);
+    icd_header_values_t values = icd_header_values(arm_link(), ICD_TELEMETRY);
     uint8_t line[ARM_LINE_BYTES];
     size_t count = 0;
-    values.of[ICD_ENVELOPE_SEQUENCE] = sequence++;
+    values.of[ICD_FIELD_SEQUENCE] = sequence++;
     assert(icd_stream_encode(arm_link(), ICD_TELEMETRY, id, data, length, &values, line, sizeof line, &count) == ICD_OK);
     icd_client_received(&arm.client, now, line, count, on_event, NULL);
 }

@@ -87,13 +87,15 @@ def test_streams_packets_and_scripts_that_nobody_thought_of(icd, testee):
 def agree(icd, vectors, testee, count=3000):
     asked = list(wire_changed.requests(icd, vectors, random.Random(7), count))
     assert differences(asked, testee) == []
-    of_envelopes = {
+    of_framed_links = {
         "stream_encode",
         "stream_encode_packet",
         "stream_events",
         "stream_client",
     }  # the shipped ICDs have none: tests/conformance/test_links.py asks them
-    assert {request["op"] for request, _ in asked} == set(reference.OPS) - of_envelopes
+    assert {request["op"] for request, _ in asked} == set(
+        reference.OPS
+    ) - of_framed_links
 
 
 def differences(asked, testee):

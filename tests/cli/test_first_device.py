@@ -306,7 +306,9 @@ def test_who_forgets_to_name_an_icd_is_told_whose_nodes_there_are(icdgen, tmp_pa
     sorted((ROOT / "examples" / "links").glob("*.yaml")),
     ids=lambda file: file.stem,
 )
-def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path, file):
+def test_a_device_in_the_style_of_one_with_a_framed_link_has_one(
+    icdgen, tmp_path, file
+):
     origin = load([file]).icd.nodes[0]
     result = icdgen("init", "pump", "--from", origin.name, "--icd", file)
     assert result.status == 0, result.err

@@ -27,8 +27,8 @@ from icdgen_runtime._errors import IcdError
 from icdgen.icd.model import Icd
 from icdgen.icd.responses import BUSY, NAK
 from icdgen.protocol import facts
-from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.exchange import Exchange, Response
+from icdgen.protocol.packet_formats import Stream, StreamRow
 from icdgen.runtime_objects import reference
 from icdgen.runtime_objects.links import link_of
 from icdgen.vectors.wire.asking import Sample, wire_place

@@ -1,4 +1,4 @@
-"""Decoders of envelopes in noise: a megabyte costs nothing but itself, and where a
+"""Decoders of framed links in noise: a megabyte costs nothing but itself, and where a
 stream is cut does not matter.
 """
 

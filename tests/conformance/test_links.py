@@ -1,4 +1,4 @@
-"""Links that are described as envelopes: every language answers as the reference does,
+"""Framed links: every language answers as the reference does,
 of examples and of odd links.
 """
 
@@ -36,7 +36,9 @@ def test_a_language_agrees_with_the_reference_on_links_of_all_kinds(links, name)
 
 
 @pytest.mark.parametrize("name", ["python", "c-sanitizers", "rust-debug"])
-def test_changed_requests_about_envelopes_are_answered_like_the_reference(links, name):
+def test_changed_requests_about_framed_links_are_answered_like_the_reference(
+    links, name
+):
     icd, files = links
     asked = list(wire_changed.requests(icd, files, random.Random(7), 2000))
     testee = Testee(build(all_languages()[name], icd))

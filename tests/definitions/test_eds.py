@@ -52,7 +52,7 @@ def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
     ) and not camera.failed
 
 
-def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
+def test_the_header_of_space_packets_in_another_file_is_the_header_of_packets(camera):
     (tree,) = camera.trees.values()
     header = tree["protocol"]["link"]["header"]
     assert [(one["bits"], one["role"]) for one in header] == [
@@ -286,7 +286,7 @@ def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
     assert field(read, "Housekeeping", "Peaks")["count"] == 3
 
 
-def test_packets_of_another_version_have_it_in_their_envelope(tmp_path):
+def test_packets_of_another_version_have_it_in_their_header(tmp_path):
     folder = copied(
         tmp_path,
         "packets.xml",
@@ -516,7 +516,7 @@ def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tm
     assert [one["name"] for one in fields] == ["P", "Q P", "R"]
 
 
-def test_an_id_in_front_of_all_is_the_envelope(tmp_path):
+def test_an_id_in_front_of_all_is_the_header(tmp_path):
     told = '<ConstraintSet><ValueConstraint entry="P" value="{}"/></ConstraintSet>'
     types = "".join(
         container(name, entry("byte", "R"), told.format(id), baseType="X")

@@ -1,4 +1,4 @@
-"""XTCE becomes ICDs: space packets with their header as envelope, what inherits, what
+"""XTCE becomes ICDs: space packets with their header as header of packets, what inherits, what
 is told by values, and commands.
 
 What is read of random packets is compared with space-packet-parser's reading in
@@ -36,7 +36,9 @@ def imported(name):
     return run.read(FILES / name, reader)
 
 
-def test_the_primary_header_is_the_envelope_and_the_application_process_the_id(probe):
+def test_the_primary_header_is_that_of_packets_and_the_application_process_the_id(
+    probe,
+):
     (tree,) = probe.trees.values()
     header = tree["protocol"]["link"]["header"]
     assert [(one["bits"], one["role"]) for one in header] == [

@@ -58,7 +58,7 @@ def _definition(dialect: Any, message: Any, held: dict | None) -> Definition:
 
 
 def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
-    """What pymavlink makes of the frame, in the envelope that it wants."""
+    """What pymavlink makes of the frame, in the packet format that it wants."""
     if dialect.WIRE_PROTOCOL_VERSION == "1.0":
         start, head = b"\xfe", bytes([len(data), 0, 1, 1, message.id])
     else:

@@ -36,7 +36,7 @@ static void put(icd_status_t status)
     (void)printf("\\n");
 }
 
-static icd_status_t packet(icd_stream_sender_t *sender, size_t index, uint32_t id, const icd_envelope_values_t *values)
+static icd_status_t packet(icd_stream_sender_t *sender, size_t index, uint32_t id, const icd_header_values_t *values)
 {
     return icd_stream_send_packet(sender, index, id, values, line, sizeof line, &size);
 }
@@ -46,12 +46,12 @@ int main(void)
     icd_stream_sender_t sender;
     uint32_t sequences[FORMATS_SEQUENCES + STATION_SEQUENCES];
     const uint8_t data[3] = {1, 2, 3};
-    icd_envelope_values_t values;
+    icd_header_values_t values;
     assert(icd_stream_sender_init(&sender, formats_link(), ICD_TELEMETRY, sequences, FORMATS_SEQUENCES) == ICD_OK);
-    sender.values.of[ICD_ENVELOPE_REASON] = 1;
+    sender.values.of[ICD_FIELD_REASON] = 1;
     values = sender.values;
-    values.of[ICD_ENVELOPE_REASON] = 2;
-    values.of[ICD_ENVELOPE_SEQUENCE] = 77;
+    values.of[ICD_FIELD_REASON] = 2;
+    values.of[ICD_FIELD_SEQUENCE] = 77;
     put(packet(&sender, 1, 0x010203, &values));
     put(icd_stream_send(&sender, FORMATS_POSITION_ID, data, 2, line, sizeof line, &size));
     put(packet(&sender, 0, 0x010299, NULL));
@@ -59,15 +59,15 @@ int main(void)
     assert(packet(&sender, 4, 0, NULL) == ICD_ERROR_RANGE);
     assert(packet(&sender, 99, 0, NULL) == ICD_ERROR_RANGE);
     assert(packet(&sender, 1, 0x01000000, NULL) == ICD_ERROR_RANGE);
-    values.of[ICD_ENVELOPE_REASON] = 16;
+    values.of[ICD_FIELD_REASON] = 16;
     assert(packet(&sender, 1, 0, &values) == ICD_ERROR_RANGE);
     assert(icd_stream_send_packet(&sender, 1, 0, NULL, line, 3, &size) == ICD_ERROR_LENGTH);
     put(packet(&sender, 1, 0xFFFFFF, NULL));
     assert(icd_stream_sender_init(&sender, station_link(), ICD_TELEMETRY, sequences, STATION_SEQUENCES) == ICD_OK);
-    sender.values.of[ICD_ENVELOPE_SEQUENCE] = 5;
+    sender.values.of[ICD_FIELD_SEQUENCE] = 5;
     values = sender.values;
-    values.of[ICD_ENVELOPE_SEQUENCE] = 77;
-    values.of[ICD_ENVELOPE_REASON] = 2;
+    values.of[ICD_FIELD_SEQUENCE] = 77;
+    values.of[ICD_FIELD_REASON] = 2;
     put(packet(&sender, 3, 0x10, &values));
     put(packet(&sender, 3, 0x10, NULL));
     put(icd_stream_send(&sender, STATION_POSITION_ID, data, 3, line, sizeof line, &size));

@@ -31,7 +31,7 @@ from icdgen.values.errors import Ambiguous
 from tests.conftest import ROOT
 from tests.python import packages
 from tests.sim.device import simulator
-from tests.sim.test_envelopes import icdgen
+from tests.sim.test_framed_line import icdgen
 
 METER = ROOT / "examples" / "links" / "modbus.yaml"
 MEASURED = [2301, 0, 1250, 0, 2876, 0, 2901, 991, 5002, 0xFFF6]  # registers from 0 on

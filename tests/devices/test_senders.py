@@ -47,8 +47,8 @@ int main(void)
     if (icd_stream_sender_init(&sender, autopilot_link(), ICD_TELECOMMAND, sequences, AUTOPILOT_SEQUENCES) != ICD_OK) {
         return 1;
     }
-    sender.values.of[ICD_ENVELOPE_SOURCE] = 9;
-    sender.values.of[ICD_ENVELOPE_SEQUENCE] = 254;
+    sender.values.of[ICD_FIELD_SOURCE] = 9;
+    sender.values.of[ICD_FIELD_SEQUENCE] = 254;
     for (int i = 0; i < 3; ++i) {
         if (autopilot_set_mode_encode(&mode, data, sizeof data) != ICD_OK ||
             icd_stream_send(&sender, AUTOPILOT_SET_MODE_ID, data, sizeof data, line, sizeof line, &size) != ICD_OK ||

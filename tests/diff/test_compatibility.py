@@ -187,7 +187,7 @@ def test_the_step_of_the_version_and_its_reason(tmp_path, change, expected):
     assert bool(found.deciding) == (expected != "none")
 
 
-ENVELOPED = (
+FRAMED = (
     BASE
     + """\
 protocol:
@@ -225,10 +225,10 @@ protocol:
         (("    commands: {ack: Status}\n", ""), "yes", "yes"),
     ],
 )
-def test_nobody_finds_messages_in_another_envelope(
+def test_nobody_finds_messages_in_another_packet_format(
     tmp_path, change, telemetry, telecommands
 ):
-    got = answers(tmp_path, change, ENVELOPED)
+    got = answers(tmp_path, change, FRAMED)
     assert (got["telemetry"].verdict, got["telecommands"].verdict) == (
         telemetry,
         telecommands,
@@ -237,15 +237,15 @@ def test_nobody_finds_messages_in_another_envelope(
 
 def test_nobody_finds_messages_between_other_escape_characters(tmp_path):
     escaped = "framing: {by: escape, escape: 0x10, start: 0x02, end: 0x03}"
-    base = ENVELOPED.replace("framing: {by: length}", escaped)
+    base = FRAMED.replace("framing: {by: length}", escaped)
     got = answers(tmp_path, ("end: 0x03", "end: 0x04"), base)
     assert (got["telemetry"].verdict, got["telecommands"].verdict) == ("no", "no")
 
 
 def test_an_order_that_is_stated_now_and_held_before_breaks_nothing(tmp_path):
-    new = ENVELOPED.replace(
+    new = FRAMED.replace(
         "bits: 16, role: length", "bits: 16, role: length, byte_order: little"
     )
-    assert [change.code for change in compared(tmp_path, ENVELOPED, new).changes] == [
+    assert [change.code for change in compared(tmp_path, FRAMED, new).changes] == [
         "DIF413"
     ]

@@ -47,7 +47,7 @@ protocol:
 """
 
 
-def envelope(id_bits: int) -> dict[str, object]:
+def framed_link(id_bits: int) -> dict[str, object]:
     """The link of a node whose messages do not fit that line: with longer ids, or of
     several lengths.
     """

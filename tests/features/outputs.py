@@ -42,9 +42,9 @@ from icdgen.values.frame import frame
 from icdgen.vectors.make import make
 from tests import links
 from tests.conformance.build import renderer
-from tests.features import enveloped
+from tests.features import framed
 from tests.features.data import Feature
-from tests.features.link import LINK, envelope
+from tests.features.link import LINK, framed_link
 from tests.python import packages
 from tests.xtce import readback
 
@@ -96,18 +96,18 @@ class Subject:
     @cached_property
     def linked(self) -> tuple[Icd, str]:
         """The ICD with a link on which it is spoken: its own; else a line and a log;
-        else one with envelopes. Raises `Refused`.
+        else one with a framed link. Raises `Refused`.
         """
         tree = yaml.safe_load(self.content)
         if "protocol" in tree:
             return self.icd, tree["node"]["name"]
         with suppress(Refused):
             return self._with_log(tree)
-        tree |= envelope(tree["node"].get("id_bits", 8))
+        tree |= framed_link(tree["node"].get("id_bits", 8))
         return icd_of(json.dumps(tree), self.folder), tree["node"]["name"]
 
     @cached_property
-    def has_envelopes(self) -> bool:
+    def has_framed_link(self) -> bool:
         """Whether that link has."""
         icd, name = self.linked
         return facts.of(icd, icd.node(name)).stream is not None
@@ -306,8 +306,8 @@ def _simulator(subject: Subject) -> object:
     """
     icd, name = subject.linked
     node = icd.node(name)
-    if subject.has_envelopes:
-        return enveloped.simulator(icd, node, subject.frames, subject.words)
+    if subject.has_framed_link:
+        return framed.simulator(icd, node, subject.frames, subject.words)
     program = Program(icd, node, Storage(), Settings(strict=True), 0)
     said: list[object] = []
     for message, data in subject.messages():
@@ -341,16 +341,16 @@ def _answers(program: Program, now: int) -> list[bytes | None]:
 
 
 def _recordings(subject: Subject) -> tuple[object, object]:
-    """As CSV and as Parquet; of envelopes what is made of the bytes that the example
+    """As CSV and as Parquet; of framed links what is made of the bytes that the example
     sends.
     """
     icd, name = subject.linked
-    if subject.has_envelopes:
+    if subject.has_framed_link:
         example = replace(subject, content=subject.feature.example)
-        sent = enveloped.recorded(
+        sent = framed.recorded(
             example.linked[0], example.linked[0].node(name), subject.frames
         )
-        return enveloped.log(icd, icd.node(name), sent, subject.folder)
+        return framed.log(icd, icd.node(name), sent, subject.folder)
     link = links.link(icd, name)
     mask = bytes([(1 << len(link.mask.bits)) - 1, 0])
     slots = link.mask.selected(mask)

@@ -125,7 +125,7 @@ def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
 
 
 def c_stream_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream in envelopes of the golden vectors of the protocol, for
+    """An input for every stream of a framed link in the golden vectors of the protocol, for
     the harness `c_stream`.
     """
     for index, node in enumerate(icd.nodes):
@@ -185,7 +185,7 @@ def c_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 
 def c_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """The same on the decoders of envelopes."""
+    """The same on the decoders of framed links."""
     return _c(icd, folder, "c_stream_target.c")
 
 
@@ -246,7 +246,7 @@ def rust_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 
 def rust_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """The same on the decoders of envelopes."""
+    """The same on the decoders of framed links."""
     return _rust_links(icd, folder, "stream")
 
 

@@ -1,4 +1,4 @@
-/* libFuzzer harness on the decoders of envelopes. See README.md. */
+/* libFuzzer harness on the decoders of framed links. See README.md. */
 
 #include "testee.h"
 

@@ -29,7 +29,7 @@ class Streams:
             self.log,
             *clients,
             self.procedure,
-            self.envelopes,
+            self.framed_links,
         )
 
     def one(self, data: bytes) -> None:
@@ -61,7 +61,7 @@ class Streams:
         for message in messages:
             self.wire.uart_kind(link, message)
 
-    def envelopes(self, link, size: int, data: bytes) -> None:
+    def framed_links(self, link, size: int, data: bytes) -> None:
         """The lowest bit of ``size`` is the direction."""
         direction = "telemetry" if size & 1 else "telecommand"
         whole, cut = (self.wire.StreamDecoder(link, direction) for _ in range(2))

@@ -1,4 +1,4 @@
-//! cargo-fuzz harness on the decoders of envelopes of the generated crate. See README.md.
+//! cargo-fuzz harness on the decoders of framed links of the generated crate. See README.md.
 #![no_main]
 
 use icd::wire::stream::{encode, encode_request, Decoder, Event};

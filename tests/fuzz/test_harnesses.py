@@ -72,7 +72,7 @@ def wire_inputs(icd):
 
 @pytest.fixture(scope="module")
 def linked():
-    """Links of other protocols, as envelopes."""
+    """Links of other protocols, on framed links."""
     return icd_of([ROOT / "examples" / "links"])
 
 
@@ -181,7 +181,7 @@ def test_the_python_harness_of_streams_finds_nothing(icd, package):
         streams.one(source.randbytes(source.randrange(200)))
 
 
-def test_the_python_harness_of_streams_finds_nothing_in_envelopes(
+def test_the_python_harness_of_streams_finds_nothing_in_framed_links(
     linked, tmp_path, monkeypatch
 ):
     for package in _imported(linked, tmp_path, monkeypatch):

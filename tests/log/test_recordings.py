@@ -1,5 +1,5 @@
 """`icdgen log` of what a receiver wrote to a file, of a link whose messages travel in
-envelopes.
+packet formats.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from icdgen.logfile.recording import Recording
 from icdgen.values.frame import frame
 from icdgen.vectors.make import make
 from tests.conftest import ROOT
-from tests.features.enveloped import recorded
+from tests.features.framed import recorded
 from tests.log.test_command import icdgen
 from tests.log.test_convert import _same, value_of
 

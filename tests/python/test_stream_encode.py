@@ -17,7 +17,7 @@ def link():
     return link_of(icd, facts.of(icd, icd.nodes[0]))
 
 
-def test_values_that_the_envelope_does_not_have_are_refused(link):
+def test_values_that_the_header_does_not_have_are_refused(link):
     id = link.stream.telecommands[0].id
     data = bytes([1]) * link.stream.telecommands[0].most
     assert stream_encode(link, id, data, sequence=7) != stream_encode(link, id, data)

@@ -68,7 +68,7 @@ def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
     ],
 )
 @pytest.mark.parametrize("frame", [LIMIT, "0101 0208"])
-def test_the_message_or_the_kind_decides_with_the_envelope_and_with_the_id_alone(
+def test_the_message_or_the_kind_decides_with_the_header_and_with_the_id_alone(
     icd, frame, key, kind, name
 ):
     (found,) = recognize(icd, frame, "pack", key, kind)
@@ -141,7 +141,7 @@ def test_the_id_of_messages_that_share_it_names_the_one_that_the_frame_is(
         assert found.message.name == name
 
 
-def test_an_envelope_comes_off_where_its_bytes_could_be_text_of_the_message_too(icd):
+def test_a_header_comes_off_where_its_bytes_could_be_text_of_the_message_too(icd):
     frame = sent(icd, "telemetry", 261, b"ready")
     (found,) = recognize(icd, frame, "pack", "Log")
     assert found.data == b"ready" and "header with id 01 05 removed" in found.remarks

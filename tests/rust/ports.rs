@@ -103,7 +103,7 @@ fn over_i2c_with_a_stop() {
     assert_eq!((found, bus.transactions), (STATE[1..].to_vec(), 2));
 }
 
-fn over_envelopes() {
+fn over_framed_links() {
     type Receiver = FramedClient<ubx::Node, stream::Line<{ ubx::LONGEST }, { ubx::SEQUENCES }>, 2>;
     let (mut port, mut line) = (Serial::default(), [0; ubx::LONGEST]);
     let mut client = Receiver::new(&ubx::LINK).unwrap();
@@ -215,7 +215,7 @@ fn over_i2c() {
 
 fn main() {
     over_uart();
-    over_envelopes();
+    over_framed_links();
     over_i2c();
     over_i2c_with_a_stop();
 }

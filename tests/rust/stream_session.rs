@@ -1,4 +1,4 @@
-//! A session over envelopes: replies that are lost, what comes unasked, a port that fails; any surprise is a panic.
+//! A session over a framed link: replies that are lost, what comes unasked, a port that fails; any surprise is a panic.
 
 use icd::receiver::{NavigationClock, Node, PollClock, SetMessageRate, LINK, LONGEST, SEQUENCES};
 use icd::wire::{stream, Direction, Failure, Outcome};

@@ -1,4 +1,4 @@
-"""Clients over envelopes in Rust: each event is read as the message that it brings, and
+"""Clients over framed links in Rust: each event is read as the message that it brings, and
 as no other.
 """
 

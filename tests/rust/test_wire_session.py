@@ -44,7 +44,7 @@ def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
-def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(
+def test_sessions_over_framed_links_ask_again_listen_and_outlive_their_port(
     name, tmp_path
 ):
     tools = Toolchain(name)

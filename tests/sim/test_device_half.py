@@ -13,7 +13,6 @@ from icdgen_runtime._errors import RangeError
 from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.device import response_to
-from icdgen_runtime.wire.envelope import NumberPlace
 from icdgen_runtime.wire.events import (
     Arrived,
     Done,
@@ -23,6 +22,7 @@ from icdgen_runtime.wire.events import (
     Reply,
     Stray,
 )
+from icdgen_runtime.wire.packet_formats import NumberPlace
 from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder
 

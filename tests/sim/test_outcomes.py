@@ -20,7 +20,7 @@ from icdgen.sim import run
 from tests.conformance.icds import LINKS
 from tests.conftest import ROOT
 from tests.sim.device import simulator
-from tests.sim.test_envelopes import ICD, Port, icdgen, talking
+from tests.sim.test_framed_line import ICD, Port, icdgen, talking
 
 WHEEL = ROOT / "examples" / "links" / "wheel.yaml"
 ACK, NAK, BUSY, EVENTS = 0x06, 0x15, 0x16, 0x83

@@ -9,7 +9,7 @@ import pytest
 from icdgen_runtime.wire.failures import FailedError
 from icdgen_runtime.wire.procedures import Procedure
 
-from tests.sim.test_envelopes import talking
+from tests.sim.test_framed_line import talking
 
 WRITE = 2
 SETTINGS = {"node": "loader", "every": 0}

@@ -18,20 +18,20 @@ from icdgen_runtime.wire.stream import (
     stream_encode_request,
 )
 
-from icdgen.backends.html import envelopes, recognition, wire
+from icdgen.backends.html import packet_formats, recognition, wire
 from icdgen.backends.html.relations import Relations
 from icdgen.errors import UserError
 from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.recognize import recognize
-from icdgen.recognize.envelopes import DIRECTIONS
+from icdgen.recognize.framed import DIRECTIONS
 from icdgen.runtime_objects.links import link_of
 from icdgen.site import make, write
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
 from tests.site.relay import RELAY
 from tests.site.test_browser import opened
-from tests.site.test_envelopes import LINKS
+from tests.site.test_framed import LINKS
 from tests.site.test_pasted import node
 from tests.site.test_recognize import on_the_command_line, on_the_page
 from tests.site.test_responses import plain
@@ -123,13 +123,15 @@ def decoded(icd, direction: str, line: bytes) -> list[object]:
 def test_the_page_decodes_every_packet_as_the_python_runtime_does(name, tmp_path):
     icd = icd_of(ICDS[name], tmp_path)
     stream = facts.of(icd, icd.nodes[0]).stream
-    form = json.loads(json.dumps(envelopes.script_facts(stream, with_responses=True)))
+    form = json.loads(
+        json.dumps(packet_formats.script_facts(stream, with_responses=True))
+    )
     kinds = set()
     for direction in DIRECTIONS:
         if not stream.packets_of(direction):
             continue
         lines = lines_of(icd, direction, 150)
-        script = json.dumps(str(SCRIPTS / "envelopes.js"))
+        script = json.dumps(str(SCRIPTS / "framed.js"))
         shown = node(
             f"""([form, direction, lines]) => lines.map((line) => {{
                 const {{ events, lost }} = require({script}).decode(form, direction, Uint8Array.from(Buffer.from(line, "hex")));

@@ -36,14 +36,14 @@ def files(icd):
 
 
 @pytest.fixture(scope="module")
-def enveloped():
+def framed():
     return wire.vectors_of(icd_of([LINKS]))
 
 
-def test_the_file_follows_the_published_schema(files, enveloped):
+def test_the_file_follows_the_published_schema(files, framed):
     validator = jsonschema_rs.validator_for(SCHEMA)
     validator.validate(files)
-    validator.validate(enveloped)
+    validator.validate(framed)
     broken = json.loads(json.dumps(files))
     case = next(
         c for c in broken["nodes"][0]["cases"] if c["request"]["op"] == "uart_events"
@@ -53,9 +53,9 @@ def test_the_file_follows_the_published_schema(files, enveloped):
 
 
 def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failure(
-    files, enveloped
+    files, framed
 ):
-    nodes = (*files["nodes"], *enveloped["nodes"])
+    nodes = (*files["nodes"], *framed["nodes"])
     seen = Counter(
         (c["request"]["op"], c["answer"]["ok"]) for n in nodes for c in n["cases"]
     )

@@ -100,7 +100,7 @@ class MavLink2:
         stem = Path(file).stem
         network = Network(
             node_name(file), f"MAVLink {stem}", {"byte_order": "little", "bit_order": "lsb0", "id_bits": self.id_bits},
-            protocol=self.envelope(),
+            protocol=self.protocol(),
         )  # fmt: skip
         # The mapping inside of the section `protocol`, which the messages fill below.
         seeds = network.seeds = network.protocol["link"]["checksums"]["x25"]["seeds"]  # type: ignore[index]
@@ -184,7 +184,7 @@ class MavLink2:
             item.pop("may_end_early", None)
         return _crc_extra(name, base), {**item, "fields": fields} if fields else item
 
-    def envelope(self) -> Item:
+    def protocol(self) -> Item:
         """Return the section `protocol`.
 
         Commands have the ids of a ground station (255, 190), telemetry of an autopilot

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.protocol.envelope import Stream
+from icdgen.protocol.packet_formats import Stream
 
 
 def pair_bytes(form: Stream | None) -> int:

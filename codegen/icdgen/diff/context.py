@@ -19,7 +19,7 @@ from icdgen.diff.pairs import (
 )
 from icdgen.icd.lines import lines
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.protocol.envelope import DIRECTIONS
+from icdgen.protocol.packet_formats import DIRECTIONS
 
 
 class Context:
@@ -29,7 +29,7 @@ class Context:
         self.match = match
         # `cache` by identity: pairs compare by identity (`eq=False`).
         self.moves = cache(moves)  # moved fields of a message
-        self.changed_packet_formats = cache(self._other_envelopes)
+        self.changed_packet_formats = cache(self._other_framed)
 
     @cached_property
     def generated(self) -> Generated:
@@ -62,7 +62,7 @@ class Context:
         """Return whether messages of the node have a packet format in both ICDs."""
         return node.both and all(map(has_packet_format, self.sides(node)))
 
-    def _other_envelopes(self, node: NodePair) -> frozenset[str]:
+    def _other_framed(self, node: NodePair) -> frozenset[str]:
         """Return the directions whose packet format changed, for nodes that have one in
         both ICDs.
         """

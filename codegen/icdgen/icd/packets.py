@@ -1,7 +1,7 @@
 """Packet formats of a framed link, as the ICD declares them: ``packets`` of a `link`,
 or its ``header`` and ``trailer`` alone.
 
-`icdgen.icd.rules.packets` checks them; `icdgen.protocol.enveloping` makes tables of
+`icdgen.icd.rules.packets` checks them; `icdgen.protocol.framed_links` makes tables of
 them.
 """
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
-from icdgen_runtime.wire.envelope import Direction
+from icdgen_runtime.wire.packet_formats import Direction
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message, Node

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from icdgen_runtime.wire.envelope import Direction, Stream
+from icdgen_runtime.wire.packet_formats import Direction, Stream
 from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
 from icdgen import codec
@@ -20,7 +20,7 @@ from icdgen.icd.variants import ids_of
 from icdgen.link.line_statistics import FAULTS
 from icdgen.logfile.rows import Done
 from icdgen.protocol import facts
-from icdgen.protocol.envelope import DATAGRAM
+from icdgen.protocol.packet_formats import DATAGRAM
 from icdgen.runtime_objects.links import link_of
 
 _PIECE = 1 << 18  # bytes of a read

@@ -12,7 +12,7 @@ from icdgen.frozen import NamedTuple
 from icdgen.logfile.columns import Column, columns_of, unique
 from icdgen.logfile.recording import Key, ReceivedMessage, Recording, Tally, key
 from icdgen.logfile.rows import Done, Value, reader
-from icdgen.protocol.envelope import GIVEN
+from icdgen.protocol.packet_formats import GIVEN
 
 MESSAGE = "message"  # column with the name of the message
 

@@ -13,7 +13,7 @@ from icdgen.frozen import dataclass
 from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.bus_exchanges import BusExchanges, bus_exchanges
-from icdgen.protocol.envelope import Stream
+from icdgen.protocol.packet_formats import Stream
 from icdgen.protocol.procedures import Procedure, VerifyChecksum
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (

@@ -35,8 +35,8 @@ from icdgen.icd.responses import ACK, field_of, number_of
 from icdgen.icd.variants import ids_of
 from icdgen.once import cached_property
 from icdgen.protocol.declared import read
-from icdgen.protocol.envelope import Stream
-from icdgen.protocol.enveloping import bytes_of, stream_of
+from icdgen.protocol.framed_links import bytes_of, stream_of
+from icdgen.protocol.packet_formats import Stream
 from icdgen.protocol.procedure_steps import ProcedureReader
 from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.sections import (

@@ -33,8 +33,8 @@ from icdgen.icd.responses import (
     responses_in,
     status_of,
 )
-from icdgen.protocol.envelope import EnvelopeField, PacketFormat
 from icdgen.protocol.exchange import Echo, Exchange, NumberPlace, Response
+from icdgen.protocol.packet_formats import PacketField, PacketFormat
 
 
 class Number(NamedTuple):
@@ -120,7 +120,7 @@ class Sources(NamedTuple):
         ]
 
 
-def _place_in_packet(form: PacketFormat, part: EnvelopeField) -> NumberPlace:
+def _place_in_packet(form: PacketFormat, part: PacketField) -> NumberPlace:
     """Return the place of a field in a packet without a message."""
     # The data have a fixed length.
     start = form.header_bytes + form.reserved if part.in_trailer else 0

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from icdgen_runtime.wire.envelope import (
+from icdgen_runtime.wire.packet_formats import (
     Direction,
-    EnvelopeField,
+    PacketField,
     PacketForm,
     Response,
     Stream,
@@ -29,7 +29,7 @@ from icdgen_runtime.wire.stuffing import unstuffer
 from icdgen.describe.ids import id_text
 from icdgen.describe.numbers import byte_count
 from icdgen.frozen import NamedTuple
-from icdgen.protocol.envelope import COBS, DATAGRAM, ESCAPE, HDLC, LENGTH, SLIP
+from icdgen.protocol.packet_formats import COBS, DATAGRAM, ESCAPE, HDLC, LENGTH, SLIP
 from icdgen.recognize.reading import Endpoint
 from icdgen.values.errors import BadLength, NotFound
 
@@ -472,7 +472,7 @@ def _id(form: PacketForm, packet: bytes, is_whole: bool) -> int | None:
     return _id_of(form, packet, size)
 
 
-def _bytes_text(field: EnvelopeField, value: int) -> str:
+def _bytes_text(field: PacketField, value: int) -> str:
     """Return a value as transmitted bytes, or as a number if other fields share its
     bytes.
     """

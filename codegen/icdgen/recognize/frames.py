@@ -7,13 +7,13 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
-from icdgen_runtime.wire.envelope import Stream
+from icdgen_runtime.wire.packet_formats import Stream
 from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
-from icdgen.recognize import bus, envelopes, faults, match
-from icdgen.recognize.envelopes import DIRECTIONS
+from icdgen.recognize import bus, faults, framed, match
+from icdgen.recognize.framed import DIRECTIONS
 from icdgen.recognize.pasted import Pasted, read
 from icdgen.recognize.reading import Endpoint, Reading, all_endpoints, endpoint_of
 from icdgen.recognize.selected import selected_message
@@ -108,13 +108,13 @@ def _framed(
     bytes.
     """
     if selection.can_have_length(data):
-        if enveloped := _enveloped_with_checksum(endpoints, data, selection):
-            return enveloped
-        if (fault := envelopes.begun(endpoints, data)) and fault.is_certain:
+        if readings := _framed_with_checksum(endpoints, data, selection):
+            return readings
+        if (fault := framed.begun(endpoints, data)) and fault.is_certain:
             raise fault.error
         return []
-    if enveloped := envelopes.readings(endpoints, data, selection):
-        return enveloped
+    if readings := framed.readings(endpoints, data, selection):
+        return readings
     for framing in dict.fromkeys(
         endpoint.link.framing for endpoint in endpoints if endpoint.link.framing
     ):
@@ -170,7 +170,7 @@ def _check_not_cut(endpoints: Sequence[Endpoint], data: bytes) -> None:
             )
 
 
-def _enveloped_with_checksum(
+def _framed_with_checksum(
     endpoints: Sequence[Endpoint], data: bytes, selection: Selection
 ) -> list[Reading]:
     """Return messages with header and trailer whose checksum is right.
@@ -181,7 +181,7 @@ def _enveloped_with_checksum(
     with suppress(Ambiguous, BadLength):
         return [
             reading
-            for reading in envelopes.readings(endpoints, data, selection)
+            for reading in framed.readings(endpoints, data, selection)
             if reading.checked and selection.is_of(reading)
         ]
     return []
@@ -240,7 +240,7 @@ def _message_of_bytes(
     """
     if not data and not selection.messages:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
-    fault = envelopes.begun(endpoints, data)
+    fault = framed.begun(endpoints, data)
     if selection.messages:
         reading = selected_message(icd, endpoints[0], selection.messages, data)
         return (
@@ -275,7 +275,7 @@ def _no_packet_error(
     """
     nodes, syncs = (
         match.nodes_of(endpoints),
-        dict.fromkeys(map(envelopes.sync_of, endpoints)),
+        dict.fromkeys(map(framed.sync_of, endpoints)),
     )
     begin = (
         f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""

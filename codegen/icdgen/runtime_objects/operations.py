@@ -22,7 +22,7 @@ from icdgen_runtime.wire.times import DosTime, dos_time_pack, dos_time_unpack
 from icdgen_runtime.wire.uart import UartDecoder, uart_kind
 from icdgen_runtime.wire.uart import uart_encode as line_of
 
-from icdgen.protocol.envelope import DIRECTIONS, GIVEN
+from icdgen.protocol.packet_formats import DIRECTIONS, GIVEN
 from icdgen.runtime_objects.refusals import Refusal, naming_the_field
 from icdgen.runtime_objects.request_keys import (
     Request,

@@ -14,7 +14,7 @@ from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.link import Bus, Settings
 
 from icdgen.protocol.declared import U32, facts_of
-from icdgen.protocol.envelope import DIRECTIONS
+from icdgen.protocol.packet_formats import DIRECTIONS
 from icdgen.protocol.sections import Settings as SettingsSection
 from icdgen.runtime_objects.operations import AnyLink, can_packet
 from icdgen.runtime_objects.refusals import Refusal, details_of

@@ -17,9 +17,9 @@ from icdgen.protocol import facts
 from icdgen.sim import control, serve
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
-from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.files import read_file, saver
+from icdgen.sim.framed_line import FramedLine
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
@@ -114,7 +114,7 @@ def build(
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
     line: DeviceLine = (
-        EnvelopeLine(computer, line_faults, chosen)
+        FramedLine(computer, line_faults, chosen)
         if computer.program.facts.stream
         else Line(computer, line_faults)
     )

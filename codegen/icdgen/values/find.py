@@ -13,7 +13,7 @@ from icdgen.describe.ids import id_text
 from icdgen.icd.frames import FrameField, PathStep, alias_of_steps, name_of_steps
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.protocol import facts
-from icdgen.protocol.envelope import Stream
+from icdgen.protocol.packet_formats import Stream
 from icdgen.suggest import close_words, question
 from icdgen.values.errors import Ambiguous, NotFound
 

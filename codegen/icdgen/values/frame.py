@@ -20,7 +20,7 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import AnyScalar
 from icdgen.protocol import facts
-from icdgen.protocol.envelope import Stream
+from icdgen.protocol.packet_formats import Stream
 
 
 @dataclass(frozen=True, slots=True)

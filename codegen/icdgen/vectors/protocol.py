@@ -19,8 +19,8 @@ from icdgen.runtime_objects.links import link_of
 from icdgen.vectors.wire import (
     asking,
     clients,
-    envelopes,
     files,
+    framed,
     i2c,
     logs,
     packets,
@@ -87,7 +87,7 @@ def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
     link = link_of(icd, node_facts)
     if node_facts.stream:
-        yield from envelopes.requests(link, node_facts.stream, source)
+        yield from framed.requests(link, node_facts.stream, source)
         yield from asking.scripts(link, node_facts)
         yield from procedures.scripts(link, node_facts)
         yield from streams.checksums(node_facts, source)

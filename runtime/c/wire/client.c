@@ -2,7 +2,7 @@
 #define ICDGEN_WIRE_CLIENT_C
 
 #include "client.h"
-#include "envelope.h"
+#include "packet_fields.h"
 #include "events.c"
 
 /* A client and its event callback. */

@@ -68,7 +68,7 @@ typedef struct {
     uint8_t source;          /**< CAN: address of the sender. */
     uint8_t destination;     /**< MESSAGE on CAN. */
     icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
-    icd_envelope_values_t values; /**< Framed links: header and trailer values of a message. */
+    icd_header_values_t values; /**< Framed links: header and trailer values of a message. */
 } icd_event_t;
 
 /** Callback for events. `context` is the pointer that was passed together with the callback. */

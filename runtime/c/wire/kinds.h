@@ -12,7 +12,7 @@
 /* Of icd_packet_content_t. */
 #define ICDGEN_CONTENTS 0x0Fu
 
-/* Of icd_envelope_role_t. */
+/* Of icd_field_role_t. */
 #define ICDGEN_ROLES 0x1FFFu
 
 /* Flags of messages in packets. */

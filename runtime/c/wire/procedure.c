@@ -2,7 +2,7 @@
 #define ICDGEN_WIRE_PROCEDURE_C
 
 #include "procedure.h"
-#include "envelope.h"
+#include "packet_fields.h"
 #include "link.c"
 #include "events.c"
 #include "crc.c"

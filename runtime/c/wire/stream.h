@@ -11,9 +11,9 @@
 
 /**
  * Return the values of the ICD for this direction. Fields without a value in the ICD are 0. If packet formats have
- * different values, the value is ICD_ENVELOPE_DEFAULT; for fields of 32 bits, it is that of the first format.
+ * different values, the value is ICD_HEADER_DEFAULT; for fields of 32 bits, it is that of the first format.
  */
-ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction);
+ICDGEN_API icd_header_values_t icd_header_values(const icd_link_t *link, icd_direction_t direction);
 
 /**
  * Encode a message with header, trailer and delimiters. `values`: fields that the sender chooses, or NULL for the
@@ -27,7 +27,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     uint32_t id,
     const uint8_t *data,
     size_t length,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -40,7 +40,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
 ICDGEN_API icd_status_t icd_stream_encode_request(
     const icd_link_t *link,
     uint32_t telemetry,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -57,7 +57,7 @@ ICDGEN_API icd_status_t icd_stream_encode_packet(
     icd_direction_t direction,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -66,7 +66,7 @@ ICDGEN_API icd_status_t icd_stream_encode_packet(
 typedef struct {
     const icd_link_t *link;
     icd_direction_t direction;
-    icd_envelope_values_t values; /**< Initially those of the ICD. The sequence is the first number. */
+    icd_header_values_t values; /**< Initially those of the ICD. The sequence is the first number. */
     uint32_t *sequences;
     size_t sequence_count;
 } icd_stream_sender_t;
@@ -109,7 +109,7 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     icd_stream_sender_t *sender,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);

@@ -1,7 +1,7 @@
 #ifndef ICDGEN_WIRE_STREAM_DECODE_C
 #define ICDGEN_WIRE_STREAM_DECODE_C
 
-#include "envelope.h"
+#include "packet_fields.h"
 #include "events.c"
 #include "stream_encode.c"
 
@@ -122,7 +122,7 @@ static inline icdgen_incoming_t icdgen_incoming(
 static inline void icdgen_stream_count(
     icd_stream_decoder_t *decoder,
     const icdgen_incoming_t *incoming,
-    const icd_envelope_field_t *field,
+    const icd_packet_field_t *field,
     const icd_event_t *message,
     const icdgen_listener_t *listener)
 {
@@ -135,9 +135,9 @@ static inline void icdgen_stream_count(
     if (key >= decoder->sequence_count) {
         return;
     }
-    const uint32_t number = message->values.of[ICD_ENVELOPE_SEQUENCE];
+    const uint32_t number = message->values.of[ICD_FIELD_SEQUENCE];
     const uint32_t last = decoder->sequences[key];
-    const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
+    const uint32_t missing = (number - last - 1u) & icdgen_field_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
         icd_event_t event;
@@ -158,11 +158,11 @@ static inline bool icdgen_stream_constants(
     const uint8_t *trailer)
 {
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
+        const icd_packet_field_t *const field = &packet->fields[i];
         const uint8_t *const bytes = field->in_trailer ? trailer : frame;
         const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && came &&
-            icdgen_envelope_get(field, bytes) != field->values[direction]) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CONSTANT) && came &&
+            icdgen_field_get(field, bytes) != field->values[direction]) {
             return false;
         }
     }
@@ -197,9 +197,9 @@ static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t 
 {
     size_t next = packet->header_bytes;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
+        const icd_packet_field_t *const field = &packet->fields[i];
         const size_t end = ICDGEN_SIZE(field->at) + field->size;
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT) && !field->in_trailer && end > left && end < next) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CONSTANT) && !field->in_trailer && end > left && end < next) {
             next = end;
         }
     }
@@ -222,7 +222,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     const size_t length = count - around;
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
-    const icd_envelope_field_t *sequence = NULL;
+    const icd_packet_field_t *sequence = NULL;
     int64_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
     uint32_t sum = 0;
     bool is_framed = true;
@@ -231,20 +231,20 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     icdgen_event_init(&event, ICD_EVENT_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
-        const uint32_t value = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CONSTANT)) {
+        const icd_packet_field_t *const field = &packet->fields[i];
+        const uint32_t value = icdgen_field_get(field, field->in_trailer ? trailer : frame);
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CONSTANT)) {
             is_framed = is_framed && value == field->values[decoder->direction];
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
             event.id |= value << field->values[0];
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
-            is_long = is_long && icdgen_envelope_bytes(field, value) == ICDGEN_I64(length);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH)) {
-            wanted = icdgen_envelope_bytes(field, value);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
+            is_long = is_long && icdgen_field_bytes(field, value) == ICDGEN_I64(length);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH)) {
+            wanted = icdgen_field_bytes(field, value);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CHECKSUM)) {
             sum = value;
         } else if (ICDGEN_IS_OF_SENDER(field)) {
-            sequence = ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_SEQUENCE) ? field : sequence;
+            sequence = ICDGEN_HAS_ROLE(field, ICD_FIELD_SEQUENCE) ? field : sequence;
             event.values.of[field->role] = value;
         } else {
             /* there are no other roles */
@@ -260,7 +260,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     if (packet->check != NULL) {
         if (packet->check->is_seeded && incoming.kind == ICD_EVENT_UNKNOWN_ID) {
             verdict = ICDGEN_DOUBTFUL;
-        } else if (icdgen_envelope_check(packet, incoming.row, frame, data, length, trailer) != sum) {
+        } else if (icdgen_field_check(packet, incoming.row, frame, data, length, trailer) != sum) {
             event.kind = ICD_EVENT_CHECKSUM;
             verdict = ICDGEN_DOUBTFUL;
         } else {
@@ -313,12 +313,12 @@ static inline size_t icdgen_stream_front(
         decoder->needed = icdgen_stream_next(packet, left);
         return 0;
     }
-    const icd_envelope_field_t *const field = icdgen_envelope_field(packet, ICD_ENVELOPE_LENGTH);
+    const icd_packet_field_t *const field = icdgen_packet_field(packet, ICD_FIELD_LENGTH);
     int64_t length;
     if (field != NULL) {
-        length = icdgen_envelope_bytes(field, icdgen_envelope_get(field, frame));
+        length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
-        const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
+        const uint32_t id = icdgen_field_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
         if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);

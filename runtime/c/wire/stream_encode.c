@@ -1,9 +1,9 @@
 #ifndef ICDGEN_WIRE_STREAM_ENCODE_C
 #define ICDGEN_WIRE_STREAM_ENCODE_C
 
-#include "envelope.h"
+#include "packet_fields.h"
 
-#define ICDGEN_ENVELOPE_BYTES 64u /* largest header or trailer */
+#define ICDGEN_HEADER_BYTES 64u /* largest header or trailer */
 
 #define ICDGEN_SLIP_END 0xC0u
 #define ICDGEN_SLIP_ESCAPE 0xDBu
@@ -115,23 +115,23 @@ static inline void icdgen_line_write(icdgen_line_t *line, const uint8_t *bytes, 
     }
 }
 
-ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction)
+ICDGEN_API icd_header_values_t icd_header_values(const icd_link_t *link, icd_direction_t direction)
 {
     const icd_stream_form_t *const form = link->stream;
-    icd_envelope_values_t values;
+    icd_header_values_t values;
     uint32_t seen = 0; /* roles, as a mask */
     (void)memset(&values, 0, sizeof values);
     for (size_t i = 0; form != NULL && i < form->packet_count; ++i) {
         const icd_packet_form_t *const packet = &form->packets[i];
         for (size_t j = 0; packet->is_sent[direction] && j < packet->field_count; ++j) {
-            const icd_envelope_field_t *const field = &packet->fields[j];
+            const icd_packet_field_t *const field = &packet->fields[j];
             if (ICDGEN_IS_OF_SENDER(field)) {
                 const uint32_t role = UINT32_C(1) << ICDGEN_U32(field->role);
                 uint32_t *const value = &values.of[field->role];
                 if ((seen & role) == 0u) {
                     *value = field->values[direction];
                 } else if (*value != field->values[direction] && field->bits < 32u) {
-                    *value = ICD_ENVELOPE_DEFAULT;
+                    *value = ICD_HEADER_DEFAULT;
                 } else {
                     /* the packets have the same default */
                 }
@@ -143,9 +143,9 @@ ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd
 }
 
 /* Return whether the sender chose the value of a field. Otherwise, the field has the default of its packet. */
-static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, const icd_envelope_values_t *values)
+static inline bool icdgen_field_is_chosen(const icd_packet_field_t *field, const icd_header_values_t *values)
 {
-    return values != NULL && (values->of[field->role] != ICD_ENVELOPE_DEFAULT || field->bits == 32u);
+    return values != NULL && (values->of[field->role] != ICD_HEADER_DEFAULT || field->bits == 32u);
 }
 
 /* A packet that is to be encoded. */
@@ -163,48 +163,47 @@ typedef struct {
 } icdgen_outgoing_t;
 
 /* Return the part of an id that belongs into a field. If the id is too large, its topmost part does not fit. */
-static inline uint32_t icdgen_envelope_part(
-    const icd_packet_form_t *packet, const icd_envelope_field_t *field, uint32_t id)
+static inline uint32_t icdgen_field_part(const icd_packet_form_t *packet, const icd_packet_field_t *field, uint32_t id)
 {
     const uint32_t shift = field->values[0];
     uint32_t bits = 0;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        bits += ICDGEN_HAS_ROLE(&packet->fields[i], ICD_ENVELOPE_ID) ? packet->fields[i].bits : 0u;
+        bits += ICDGEN_HAS_ROLE(&packet->fields[i], ICD_FIELD_ID) ? packet->fields[i].bits : 0u;
     }
     const uint32_t part = id >> shift;
-    return shift + field->bits < bits ? part & icdgen_envelope_mask(field) : part;
+    return shift + field->bits < bits ? part & icdgen_field_mask(field) : part;
 }
 
 /* Write all fields except the checksum. Return false if a value does not fit. */
-static inline bool icdgen_envelope_fill(
+static inline bool icdgen_field_fill(
     const icdgen_outgoing_t *outgoing,
     size_t length,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *header,
     uint8_t *trailer)
 {
     const icd_packet_form_t *const packet = outgoing->packet;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
+        const icd_packet_field_t *const field = &packet->fields[i];
         uint32_t value = field->values[outgoing->direction];
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_CHECKSUM)) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CHECKSUM)) {
             continue;
         }
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID)) {
-            value = icdgen_envelope_part(packet, field, outgoing->id);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_LENGTH)) {
-            value = icdgen_envelope_counted(field, length);
-        } else if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_RESPONSE_LENGTH) && outgoing->row != NULL) {
-            value = icdgen_envelope_counted(field, outgoing->row->most);
-        } else if (ICDGEN_IS_OF_SENDER(field) && icdgen_envelope_is_chosen(field, values)) {
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
+            value = icdgen_field_part(packet, field, outgoing->id);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
+            value = icdgen_field_counted(field, length);
+        } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH) && outgoing->row != NULL) {
+            value = icdgen_field_counted(field, outgoing->row->most);
+        } else if (ICDGEN_IS_OF_SENDER(field) && icdgen_field_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
             /* the value of the ICD */
         }
-        if (value > icdgen_envelope_mask(field)) {
+        if (value > icdgen_field_mask(field)) {
             return false;
         }
-        icdgen_envelope_put(field, field->in_trailer ? trailer : header, value);
+        icdgen_field_put(field, field->in_trailer ? trailer : header, value);
     }
     return true;
 }
@@ -292,7 +291,7 @@ static inline icd_status_t icdgen_outgoing_packet(
 
 static inline icd_status_t icdgen_outgoing_encode(
     const icdgen_outgoing_t *outgoing,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -301,15 +300,15 @@ static inline icd_status_t icdgen_outgoing_encode(
     const uint8_t *const data = outgoing->data;
     const bool cuts_zeros = outgoing->is_message && ICDGEN_HAS_FLAG(outgoing->row, ICD_STREAM_CUTS_ZEROS);
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
-    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
-    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (!icdgen_envelope_fill(outgoing, length, values, header, trailer)) {
+    uint8_t header[ICDGEN_HEADER_BYTES] = {0};
+    uint8_t trailer[ICDGEN_HEADER_BYTES] = {0};
+    if (!icdgen_field_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
-    const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);
+    const icd_packet_field_t *const check = icdgen_packet_field(packet, ICD_FIELD_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
-        const uint32_t sum = icdgen_envelope_check(packet, outgoing->row, header, data, length, trailer);
-        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
+        const uint32_t sum = icdgen_field_check(packet, outgoing->row, header, data, length, trailer);
+        icdgen_field_put(check, check->in_trailer ? trailer : header, sum);
     }
     if (outgoing->exchange != NULL) {
         const icd_exchange_t *const exchange = outgoing->exchange;
@@ -334,7 +333,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     uint32_t id,
     const uint8_t *data,
     size_t length,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -347,7 +346,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
 ICDGEN_API icd_status_t icd_stream_encode_request(
     const icd_link_t *link,
     uint32_t telemetry,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -362,7 +361,7 @@ ICDGEN_API icd_status_t icd_stream_encode_packet(
     icd_direction_t direction,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
@@ -382,7 +381,7 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     (void)memset(sender, 0, sizeof *sender);
     sender->link = link;
     sender->direction = direction;
-    sender->values = icd_envelope_values(link, direction);
+    sender->values = icd_header_values(link, direction);
     sender->sequences = sequences;
     sender->sequence_count = sequence_count;
     for (size_t i = 0; i < sequence_count; ++i) {
@@ -395,34 +394,34 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
 static inline icd_status_t icdgen_outgoing_send(
     const icdgen_outgoing_t *outgoing,
     icd_stream_sender_t *sender,
-    const icd_envelope_values_t *chosen,
+    const icd_header_values_t *chosen,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
 {
     const bool per_id = outgoing->form->per_id;
-    const icd_envelope_field_t *const field = icdgen_envelope_field(outgoing->packet, ICD_ENVELOPE_SEQUENCE);
+    const icd_packet_field_t *const field = icdgen_packet_field(outgoing->packet, ICD_FIELD_SEQUENCE);
     size_t counter = 0;
     if (per_id && outgoing->is_message) {
         counter = ICDGEN_SIZE(outgoing->row - outgoing->form->rows[outgoing->direction]);
     }
     /* With a sequence for each id, only messages have a counter. */
     const bool is_counted = field != NULL && counter < sender->sequence_count && (outgoing->is_message || !per_id);
-    icd_envelope_values_t values = *chosen;
+    icd_header_values_t values = *chosen;
     if (is_counted) {
-        uint32_t number = sender->values.of[ICD_ENVELOPE_SEQUENCE];
+        uint32_t number = sender->values.of[ICD_FIELD_SEQUENCE];
         if (sender->sequences[counter] != ICDGEN_NO_SEQUENCE) {
-            number = (sender->sequences[counter] + 1u) & icdgen_envelope_mask(field);
-        } else if (number == ICD_ENVELOPE_DEFAULT) {
+            number = (sender->sequences[counter] + 1u) & icdgen_field_mask(field);
+        } else if (number == ICD_HEADER_DEFAULT) {
             number = field->values[sender->direction];
         } else {
             /* the first number of the sender */
         }
-        values.of[ICD_ENVELOPE_SEQUENCE] = number;
+        values.of[ICD_FIELD_SEQUENCE] = number;
     }
     const icd_status_t status = icdgen_outgoing_encode(outgoing, &values, buffer, capacity, written);
     if (status == ICD_OK && is_counted) {
-        sender->sequences[counter] = values.of[ICD_ENVELOPE_SEQUENCE];
+        sender->sequences[counter] = values.of[ICD_FIELD_SEQUENCE];
     }
     return status;
 }
@@ -455,13 +454,13 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     icd_stream_sender_t *sender,
     size_t packet,
     uint32_t id,
-    const icd_envelope_values_t *values,
+    const icd_header_values_t *values,
     uint8_t *buffer,
     size_t capacity,
     size_t *written)
 {
     icdgen_outgoing_t outgoing;
-    const icd_envelope_values_t *const chosen = values != NULL ? values : &sender->values;
+    const icd_header_values_t *const chosen = values != NULL ? values : &sender->values;
     const icd_status_t status = icdgen_outgoing_packet(&outgoing, sender->link, sender->direction, packet, id);
     return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, chosen, buffer, capacity, written);
 }

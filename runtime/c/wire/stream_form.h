@@ -26,39 +26,39 @@ typedef struct {
     bool ignores_other; /**< Within a packet: whether an escape byte and any other byte are skipped. */
 } icd_escaping_t;
 
-/** Role of a header or trailer field. The sender chooses the values of the first ICD_ENVELOPE_VALUES roles. */
+/** Role of a header or trailer field. The sender chooses the values of the first ICD_HEADER_VALUES roles. */
 typedef enum {
-    ICD_ENVELOPE_SEQUENCE = 0,
-    ICD_ENVELOPE_SOURCE = 1,
-    ICD_ENVELOPE_DESTINATION = 2,
-    ICD_ENVELOPE_TYPE = 3,
-    ICD_ENVELOPE_FLAGS = 4,
-    ICD_ENVELOPE_TIME = 5,
-    ICD_ENVELOPE_STATUS = 6,
-    ICD_ENVELOPE_REASON = 7,
-    ICD_ENVELOPE_CONSTANT = 8,
-    ICD_ENVELOPE_ID = 9,
-    ICD_ENVELOPE_LENGTH = 10,
-    ICD_ENVELOPE_CHECKSUM = 11,
-    ICD_ENVELOPE_RESPONSE_LENGTH = 12
-} icd_envelope_role_t;
+    ICD_FIELD_SEQUENCE = 0,
+    ICD_FIELD_SOURCE = 1,
+    ICD_FIELD_DESTINATION = 2,
+    ICD_FIELD_TYPE = 3,
+    ICD_FIELD_FLAGS = 4,
+    ICD_FIELD_TIME = 5,
+    ICD_FIELD_STATUS = 6,
+    ICD_FIELD_REASON = 7,
+    ICD_FIELD_CONSTANT = 8,
+    ICD_FIELD_ID = 9,
+    ICD_FIELD_LENGTH = 10,
+    ICD_FIELD_CHECKSUM = 11,
+    ICD_FIELD_RESPONSE_LENGTH = 12
+} icd_field_role_t;
 
-#define ICD_ENVELOPE_VALUES 8 /**< Number of roles whose values the sender chooses. */
+#define ICD_HEADER_VALUES 8 /**< Number of roles whose values the sender chooses. */
 
-/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
+/** Values of the header and trailer fields that the sender chooses, indexed by icd_field_role_t. */
 typedef struct {
-    uint32_t of[ICD_ENVELOPE_VALUES];
-} icd_envelope_values_t;
+    uint32_t of[ICD_HEADER_VALUES];
+} icd_header_values_t;
 
 /** A value that stands for the default of the packet format, in fields of less than 32 bits. */
-#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
+#define ICD_HEADER_DEFAULT UINT32_C(0xFFFFFFFF)
 
 /**
  * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
  * `bits` bits.
  */
 typedef struct {
-    icd_envelope_role_t role;
+    icd_field_role_t role;
     bool in_trailer;
     uint8_t at;
     uint8_t size;
@@ -70,7 +70,7 @@ typedef struct {
      * length, what is added to the number of data bytes, modulo 2^32, and the number of bytes that it counts as one.
      */
     uint32_t values[2];
-} icd_envelope_field_t;
+} icd_packet_field_t;
 
 /** The checksum of a packet format. */
 typedef struct {
@@ -91,7 +91,7 @@ typedef enum {
 /** A packet format: header, data and trailer. */
 typedef struct {
     uint32_t ids[2]; /**< Without an id field: id of its only telecommand and telemetry; otherwise 0. */
-    const icd_envelope_field_t *fields;
+    const icd_packet_field_t *fields;
     const icd_check_form_t *check;
     uint8_t field_count;
     uint8_t header_bytes;

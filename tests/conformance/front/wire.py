@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from icdgen.protocol.envelope import DIRECTIONS, GIVEN
+from icdgen.protocol.packet_formats import DIRECTIONS, GIVEN
 from icdgen.protocol.sections import CAN_KINDS
 from icdgen.runtime_objects.refusals import Refusal
 from icdgen.runtime_objects.request_keys import (

@@ -64,9 +64,9 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
         ),
         _kinds(
             "ROLES",
-            "ICD_ENVELOPE",
+            "ICD_FIELD",
             (field.role for packet in packets for field in packet.fields),
-            "icd_envelope_role_t",
+            "icd_field_role_t",
         ),
         Kinds(
             "STREAM_FLAGS",

@@ -29,13 +29,13 @@ from icdgen.describe.links import (
 from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import BUSES, CAN, UART
 from icdgen.icd.responses import ID_BYTES
-from icdgen.protocol.envelope import (
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.packet_formats import (
     CRC,
     DIRECTIONS,
     Escaping,
     Stream,
 )
-from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.sections import CAN_KINDS
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -477,7 +477,7 @@ class _Tables(TableSet):
         packet = form.packets[number]
         suffix = f"_{number}" if len(form.packets) > 1 else ""
         fields = self.array(
-            f"envelope{suffix}", "icd_envelope_field_t", map(field_row, packet.fields)
+            f"fields{suffix}", "icd_packet_field_t", map(field_row, packet.fields)
         )
         check = "NULL"
         if packet.check:

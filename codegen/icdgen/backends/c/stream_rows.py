@@ -5,16 +5,16 @@ from __future__ import annotations
 from icdgen.backends.c.facts import Row, boolean
 from icdgen.backends.c.text import plain
 from icdgen.icd.responses import AGAIN, KINDS
-from icdgen.protocol.envelope import (
+from icdgen.protocol.exchange import NumberPlace, Response
+from icdgen.protocol.packet_formats import (
     NOTHING,
     REQUESTED,
     WORD,
-    EnvelopeField,
+    PacketField,
     PacketFormat,
     Stream,
     StreamRow,
 )
-from icdgen.protocol.exchange import NumberPlace, Response
 
 _VERDICTS = (*KINDS, AGAIN)  # in the order of icd_verdict_t
 
@@ -50,7 +50,7 @@ def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
     ]
 
 
-def field_row(field: EnvelopeField) -> Row:
+def field_row(field: PacketField) -> Row:
     """Return the row of a field of packets."""
     pair = field.values
     if field.role == "id":
@@ -62,7 +62,7 @@ def field_row(field: EnvelopeField) -> Row:
     values = ", ".join(f"{value:#x}u" for value in pair)
     numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
     return Row(
-        f"{{ICD_ENVELOPE_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
+        f"{{ICD_FIELD_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
     )
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from icdgen.backends.html import envelopes
+from icdgen.backends.html import packet_formats
 from icdgen.backends.html.links import free_name, slug
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
 from icdgen.icd.packets import BOTH, DEVICE, HOST, Packet, Packets, declared_packets
 from icdgen.icd.responses import declared_responses, responses_in
-from icdgen.protocol.envelope import (
+from icdgen.protocol.packet_formats import (
     NOTHING,
     REQUEST,
     REQUESTED,
@@ -43,7 +43,7 @@ class PacketView(NamedTuple):
     summary: str
     contents: list[Content]
     boxes: list[tuple[str, str, float, str]]
-    places: list[envelopes.Place]
+    places: list[packet_formats.Place]
 
 
 def packet_views(relations: Relations, node: Node, stream: Stream) -> list[PacketView]:
@@ -64,8 +64,8 @@ def packet_views(relations: Relations, node: Node, stream: Stream) -> list[Packe
                 if packet.name
                 else []
             ),
-            envelopes.boxes(packet, form),
-            envelopes.places(packet, enum_urls),
+            packet_formats.boxes(packet, form),
+            packet_formats.places(packet, enum_urls),
         )
         for packet, form in zip(packets.all, stream.packets, strict=True)
     ]

@@ -10,7 +10,7 @@ from typing import Any
 from icdgen.backends.html import (
     all_facts,
     checksums,
-    envelopes,
+    packet_formats,
     packets,
     responses,
     sequences,
@@ -22,8 +22,8 @@ from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.model import Node, buses_of
 from icdgen.protocol import facts
-from icdgen.protocol.envelope import LENGTH
 from icdgen.protocol.facts import Facts
+from icdgen.protocol.packet_formats import LENGTH
 from icdgen.protocol.sections import CanPart
 
 _WIDTH = 720
@@ -62,7 +62,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "checks": checksums.of_node(node_facts, section),
         "calculator": texts.script_json(
             [
-                {"name": each.name, **envelopes.checksum_facts(each)}
+                {"name": each.name, **packet_formats.checksum_facts(each)}
                 for each in node_facts.checksums.values()
             ]
         ),
@@ -155,7 +155,7 @@ def _framed(relations: Relations, node: Node, node_facts: Facts) -> dict[str, ob
         return {}
     views = packets.packet_views(relations, node, node_facts.stream)
     return {
-        "ends": envelopes.end_of(node_facts.stream),
+        "ends": packet_formats.end_of(node_facts.stream),
         "packets": [(view, _row(view.boxes)) for view in views],
         "is_named": any(view.name for view in views),
         "is_measured": node_facts.stream.delimited_by != LENGTH

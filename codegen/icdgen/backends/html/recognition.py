@@ -8,7 +8,7 @@ import json
 from typing import Any
 
 from icdgen import frame_bits
-from icdgen.backends.html import envelopes, wire
+from icdgen.backends.html import packet_formats, wire
 from icdgen.backends.html.relations import Relations
 from icdgen.frame_bits import constant_bytes
 from icdgen.icd import wire_ids
@@ -115,7 +115,7 @@ def _speaker(
     }
     speaker_data |= wire.framing_facts(node_facts)
     if node_facts.stream:
-        stream = envelopes.script_facts(node_facts.stream, with_responses=True)
+        stream = packet_formats.script_facts(node_facts.stream, with_responses=True)
         speaker_data["stream"] = stream
         if "responses" in stream:  # they need not be about a message
             speaker_data["protocol"] = relations.links.protocol(node.name)

@@ -53,7 +53,7 @@ _LOADED = (
         "packets.js",
         "pasted.js",
         "stream.js",
-        "envelopes.js",
+        "framed.js",
         "given.js",
         "recognize.js",
     ),

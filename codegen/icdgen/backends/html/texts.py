@@ -11,7 +11,7 @@ from icdgen.describe.numbers import exact_text, factor_text
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.places import NodePlace
-from icdgen.protocol.envelope import Stream
+from icdgen.protocol.packet_formats import Stream
 
 MINUS = "\N{MINUS SIGN}"
 BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}

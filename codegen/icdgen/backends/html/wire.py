@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from icdgen_runtime.wire.can import CanMessage, can_split
-from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.errors import TooLongError, UnsupportedError
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.packet_formats import Direction
 from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 from icdgen_runtime.wire.uart import uart_encode
 
-from icdgen.backends.html import envelopes
+from icdgen.backends.html import packet_formats
 from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.model import Message, buses_of
@@ -99,7 +99,7 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         facts["lengths"] = [message.layout.shortest, message.layout.lengths.step]
     facts |= framing_facts(wire.facts)
     if wire.facts.stream:
-        facts["stream"] = envelopes.script_facts(wire.facts.stream, message)
+        facts["stream"] = packet_formats.script_facts(wire.facts.stream, message)
     if wire.facts.can:
         facts["can"] = can_facts(wire.facts.can)
     return facts
@@ -151,7 +151,7 @@ def crc_facts(facts: Facts) -> dict[str, object]:
     """
     form = facts.checksum
     assert form is not None
-    crc_data = envelopes.checksum_facts(form.algorithm) | {"bytes": form.bytes}
+    crc_data = packet_formats.checksum_facts(form.algorithm) | {"bytes": form.bytes}
     flags = {"covers_id": form.covers_id, "little": facts.little and form.bytes > 1}
     return crc_data | {key: True for key, value in flags.items() if value}
 
@@ -205,18 +205,18 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
         if id is None:
             continue
         if direction == "telemetry" and (
-            parts := envelopes.request(form, wire.link, id)
+            parts := packet_formats.request(form, wire.link, id)
         ):
             requested = stream_encode_request(wire.link, id)
             lines += _packet_lines("Request", parts, requested)
-        parts = envelopes.packet(form, wire.link, id, direction, data)
+        parts = packet_formats.packet(form, wire.link, id, direction, data)
         sent = stream_encode(wire.link, id, data, direction)
         lines += _packet_lines(direction.capitalize(), parts, sent)
-    return Bus("Packet", f"A packet ends {envelopes.end_of(form)}.", lines)
+    return Bus("Packet", f"A packet ends {packet_formats.end_of(form)}.", lines)
 
 
 def _packet_lines(
-    label: str, parts: list[envelopes.Part], sent: bytes
+    label: str, parts: list[packet_formats.Part], sent: bytes
 ) -> Iterator[Line]:
     """Yield a packet by its parts; also as it is sent, if byte stuffing changed it."""
     yield Line(label, [Chunk(part.kind, _hex(part.data), part.title) for part in parts])

@@ -22,18 +22,18 @@ from icdgen.backends.rust.text import mask, string
 from icdgen.icd.buses import BUSES
 from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.envelope import (
+from icdgen.protocol.exchange import Exchange, NumberPlace, Poll, Response
+from icdgen.protocol.packet_formats import (
     CRC,
     DIRECTIONS,
     NOTHING,
     WORD,
     Check,
-    EnvelopeField,
+    PacketField,
     PacketFormat,
     Stream,
     StreamRow,
 )
-from icdgen.protocol.exchange import Exchange, NumberPlace, Poll, Response
 from icdgen.protocol.sections import ChecksumAlgorithm, Crc
 
 _CONTENTS = {NOTHING: "Nothing"}
@@ -163,15 +163,15 @@ def _crc(crc: Crc) -> Brackets:
     )
 
 
-def _field(field: EnvelopeField) -> Brackets:
+def _field(field: PacketField) -> Brackets:
     values = Brackets(
         "[", tuple(Item(mask(value, WORD)) for value in field.values), "]", True
     )
     return flat(
-        "EnvelopeField",
+        "PacketField",
         **{
             **members(field),
-            "role": f"link::EnvelopeRole::{variant(field.role)}",
+            "role": f"link::FieldRole::{variant(field.role)}",
             "values": values,
         },
     )

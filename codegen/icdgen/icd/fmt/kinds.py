@@ -11,7 +11,7 @@ from icdgen.icd import schema
 
 # Kinds that are always written on one line, at any length: they are rows of tables in
 # the manual.
-ROWS = frozenset({"field", "derived", "member", "loggable", "unit", "envelope_field"})
+ROWS = frozenset({"field", "derived", "member", "loggable", "unit", "packet_field"})
 # Kinds that are always written with one key per line.
 BLOCKS = frozenset(
     {

@@ -16,7 +16,7 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node, buses_of
 from icdgen.icd.packets import DEVICE, HOST, ID_ROLE, Packet, Packets, value_of
 from icdgen.icd.responses import ACK, BUSY, NAK, number_of
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.envelopes import DATA, Link, ids_of, links, links_on_buses
+from icdgen.icd.rules.framed_links import DATA, Link, ids_of, links, links_on_buses
 from icdgen.icd.rules.responses import (
     Declared,
     compared,

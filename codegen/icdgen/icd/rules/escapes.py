@@ -9,7 +9,7 @@ from icdgen.icd.located import Map
 from icdgen.icd.packets import id_shifts, value_of
 from icdgen.icd.pieces import bits_of
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.envelopes import (
+from icdgen.icd.rules.framed_links import (
     DIRECTIONS,
     FIXED,
     Link,

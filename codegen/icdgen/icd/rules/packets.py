@@ -12,7 +12,7 @@ from icdgen.icd.packets import DEVICE, HOST, Packet, is_requested, value_of
 from icdgen.icd.pieces import bits_of
 from icdgen.icd.responses import declared_responses
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.envelopes import (
+from icdgen.icd.rules.framed_links import (
     DIRECTIONS,
     FIXED,
     Link,

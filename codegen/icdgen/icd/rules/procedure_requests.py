@@ -11,7 +11,7 @@ from icdgen.icd.model import TELECOMMAND
 from icdgen.icd.packets import is_requested
 from icdgen.icd.responses import REPLY, declared_responses
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.envelopes import Link, ids_of, links
+from icdgen.icd.rules.framed_links import Link, ids_of, links
 from icdgen.icd.rules.procedures import procedures_in, steps_in
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import named

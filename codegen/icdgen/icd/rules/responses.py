@@ -34,7 +34,7 @@ from icdgen.icd.responses import (
     reason_of,
 )
 from icdgen.icd.rules.context import PATH_OF_BUSES, Context
-from icdgen.icd.rules.envelopes import Link, ids_of, links
+from icdgen.icd.rules.framed_links import Link, ids_of, links
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path

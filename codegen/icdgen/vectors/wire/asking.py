@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from icdgen_runtime.wire.envelope import NumberPlace as WirePlace
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.packet_formats import NumberPlace as WirePlace
 from icdgen_runtime.wire.stream import (
     stream_encode,
     stream_encode_packet,
@@ -18,9 +18,9 @@ from icdgen_runtime.wire.stream import (
 )
 
 from icdgen.icd.responses import ID_BYTES, NEEDED, PROGRESS
-from icdgen.protocol.envelope import REQUESTED, Stream, StreamRow
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.packet_formats import REQUESTED, Stream, StreamRow
 from icdgen.protocol.sections import Settings
 from icdgen.vectors.wire import Requests, Row, Script
 

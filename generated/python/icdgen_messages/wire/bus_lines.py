@@ -10,12 +10,12 @@ from .._errors import UnknownIdError
 from .._hints import Buffer
 from .awaited import NO_EXCHANGE, Arrival, Awaited, Plan, Request, awaited_of
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
-from .envelope import BusExchanges
 from .errors import ChecksumError, UnsupportedError, need
 from .events import Arrived, Event, LineError, Log, Stray
 from .i2c import i2c_reply, i2c_write
 from .link import Bus, CanKind, Link
 from .logs import LogMessage
+from .packet_formats import BusExchanges
 from .uart import UartDecoder, uart_encode, uart_kind
 
 ACKNOWLEDGE, REFUSAL, REQUEST_REFUSAL = range(3)

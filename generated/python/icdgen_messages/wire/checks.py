@@ -9,9 +9,9 @@ from typing import Union
 
 from .._hints import Buffer
 from .crc import Crc
-from .envelope import CheckForm, ChecksumAlgorithm
 from .errors import need
 from .link import Link
+from .packet_formats import CheckForm, ChecksumAlgorithm
 
 
 def checksum(link: Link, name: str, data: Buffer) -> int:

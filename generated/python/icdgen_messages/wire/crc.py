@@ -7,7 +7,7 @@ from binascii import crc_hqx
 from functools import cache
 
 from .._hints import Buffer
-from .envelope import CrcForm
+from .packet_formats import CrcForm
 
 
 class Crc:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Optional, Union
 
-from .envelope import NumberPlace
+from .packet_formats import NumberPlace
 
 BLOCK_OFFSET, BLOCK_LENGTH, BLOCK_IS_EMPTY, PACKET_NUMBER, PACKET_OFFSET = range(5)
 FIRST_INPUT = 5

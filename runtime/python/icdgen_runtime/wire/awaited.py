@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, Optional
 
 from .._base import Message
-from .envelope import Direction, Exchange, Response, StreamRow, Verdict
 from .events import Event, MessageClass
 from .link import Number
+from .packet_formats import Direction, Exchange, Response, StreamRow, Verdict
 
 MOST_AWAITED = 8
 """Largest number of requests whose responses are awaited or may still arrive late, and of

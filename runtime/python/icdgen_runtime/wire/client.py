@@ -11,7 +11,6 @@ from .._hints import Buffer, N
 from .awaited import MOST_AWAITED, Arrival, Awaited, LateResponses, Request, Slot
 from .bus_lines import CanLine, UartLine
 from .can import CanPacket
-from .envelope import Direction, Response
 from .errors import BusyError, UnsupportedError
 from .events import Busy, Done, Event, Late, Progress, Refused, Reply, Sent, Timeout
 from .i2c import I2cTransfer
@@ -26,6 +25,7 @@ from .message_ids import (
     requested_id,
     sent_id,
 )
+from .packet_formats import Direction, Response
 from .stream_line import StreamLine
 
 

@@ -10,7 +10,10 @@ from typing import NamedTuple, Optional, Union
 from .._base import Message
 from .._errors import RangeError
 from .._hints import Buffer
-from .envelope import (
+from .errors import need
+from .link import Link
+from .message_ids import message_id
+from .packet_formats import (
     CHOSEN_ROLES,
     Exchange,
     NumberPlace,
@@ -19,9 +22,6 @@ from .envelope import (
     Stream,
     Verdict,
 )
-from .errors import need
-from .link import Link
-from .message_ids import message_id
 from .stream import values_of
 
 _ID_BYTES = 4  # of the id in front of the data, in `Exchange.sources`

@@ -9,21 +9,21 @@ from typing import Generic, Literal, NamedTuple, Optional, Union
 
 from .._hints import N
 from .._lazy import Messages
-from .envelope import BusExchanges as BusExchanges  # noqa: PLC0414
-from .envelope import CheckForm as CheckForm  # noqa: PLC0414
-from .envelope import ChecksumAlgorithm as ChecksumAlgorithm  # noqa: PLC0414
-from .envelope import CrcForm as CrcForm  # noqa: PLC0414
-from .envelope import Echo as Echo  # noqa: PLC0414
-from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
-from .envelope import Escaping as Escaping  # noqa: PLC0414
-from .envelope import Exchange as Exchange  # noqa: PLC0414
-from .envelope import NumberPlace as NumberPlace  # noqa: PLC0414
-from .envelope import PacketForm as PacketForm  # noqa: PLC0414
-from .envelope import Response as Response  # noqa: PLC0414
-from .envelope import ResponsePoll as ResponsePoll  # noqa: PLC0414
-from .envelope import Stream as Stream  # noqa: PLC0414
-from .envelope import StreamRow as StreamRow  # noqa: PLC0414
-from .envelope import TelemetryRequest as TelemetryRequest  # noqa: PLC0414
+from .packet_formats import BusExchanges as BusExchanges  # noqa: PLC0414
+from .packet_formats import CheckForm as CheckForm  # noqa: PLC0414
+from .packet_formats import ChecksumAlgorithm as ChecksumAlgorithm  # noqa: PLC0414
+from .packet_formats import CrcForm as CrcForm  # noqa: PLC0414
+from .packet_formats import Echo as Echo  # noqa: PLC0414
+from .packet_formats import Escaping as Escaping  # noqa: PLC0414
+from .packet_formats import Exchange as Exchange  # noqa: PLC0414
+from .packet_formats import NumberPlace as NumberPlace  # noqa: PLC0414
+from .packet_formats import PacketField as PacketField  # noqa: PLC0414
+from .packet_formats import PacketForm as PacketForm  # noqa: PLC0414
+from .packet_formats import Response as Response  # noqa: PLC0414
+from .packet_formats import ResponsePoll as ResponsePoll  # noqa: PLC0414
+from .packet_formats import Stream as Stream  # noqa: PLC0414
+from .packet_formats import StreamRow as StreamRow  # noqa: PLC0414
+from .packet_formats import TelemetryRequest as TelemetryRequest  # noqa: PLC0414
 from .procedure_forms import Blocks as Blocks  # noqa: PLC0414
 from .procedure_forms import Collect as Collect  # noqa: PLC0414
 from .procedure_forms import EndIfZeros as EndIfZeros  # noqa: PLC0414

@@ -7,8 +7,8 @@ from typing import Any, Protocol, TypeVar, cast
 from .._base import Message
 from .._errors import UnknownIdError
 from .._hints import N
-from .envelope import Direction
 from .link import Link
+from .packet_formats import Direction
 
 M = TypeVar("M", bound=Message)
 M2 = TypeVar("M2", bound=Message)

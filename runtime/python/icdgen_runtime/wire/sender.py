@@ -8,9 +8,9 @@ from typing import Optional, Union
 from .._base import Message
 from .._errors import RangeError
 from .._hints import Buffer
-from .envelope import Direction
 from .errors import UnsupportedError, need
 from .link import Link
+from .packet_formats import Direction
 from .stream import (
     packet_without_message,
     stream_encode,
@@ -48,7 +48,7 @@ class Sender:
         for role, value in self._values.items():
             field = fields.get(role)
             if field is None:
-                raise UnsupportedError(f"the envelope has no field `{role}` to choose")
+                raise UnsupportedError(f"the header has no field `{role}` to choose")
             if not 0 <= value < 1 << field.bits:
                 raise RangeError(role, f"0 to {(1 << field.bits) - 1}", value)
         self._next: dict[Optional[int], int] = {}

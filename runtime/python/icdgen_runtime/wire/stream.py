@@ -9,17 +9,17 @@ from .._base import Message
 from .._errors import LengthError, RangeError, UnknownIdError
 from .._hints import Buffer
 from .checks import check
-from .envelope import (
+from .errors import UnsupportedError, need
+from .link import Link
+from .message_ids import message_id
+from .packet_formats import (
     CHOSEN_ROLES,
     Direction,
-    EnvelopeField,
+    PacketField,
     PacketForm,
     Stream,
     StreamRow,
 )
-from .errors import UnsupportedError, need
-from .link import Link
-from .message_ids import message_id
 from .stuffing import stuffed, unstuffer
 
 M = TypeVar("M", bound=Message)
@@ -207,7 +207,7 @@ def _id_bits(packet: PacketForm) -> int:
     return sum(field.bits for field in packet.fields if field.role == "id")
 
 
-def _put(field: EnvelopeField, into: bytearray, value: int) -> None:
+def _put(field: PacketField, into: bytearray, value: int) -> None:
     if not 0 <= value < 1 << field.bits:
         raise RangeError(field.role, f"0 to {(1 << field.bits) - 1}", value)
     order: Literal["little", "big"] = "little" if field.little else "big"
@@ -216,7 +216,7 @@ def _put(field: EnvelopeField, into: bytearray, value: int) -> None:
     into[span] = number.to_bytes(field.size, order)
 
 
-def _get(packet: PacketForm, field: EnvelopeField, frame: Buffer, size: int) -> int:
+def _get(packet: PacketForm, field: PacketField, frame: Buffer, size: int) -> int:
     at = field.at + (size - packet.trailer_bytes if field.in_trailer else 0)
     order: Literal["little", "big"] = "little" if field.little else "big"
     number = int.from_bytes(frame[at : at + field.size], order)
@@ -252,11 +252,11 @@ class ReceivedPacket(NamedTuple):
 
     number: int  # index in `Stream.packets`
     form: PacketForm
-    constants: list[tuple[EnvelopeField, int]]
-    values: list[EnvelopeField]
-    lengths: list[EnvelopeField]
-    sequence: Optional[EnvelopeField]
-    checksum: Optional[EnvelopeField]
+    constants: list[tuple[PacketField, int]]
+    values: list[PacketField]
+    lengths: list[PacketField]
+    sequence: Optional[PacketField]
+    checksum: Optional[PacketField]
     rows: dict[int, StreamRow]  # by id
     requested: dict[int, StreamRow]  # telemetry that it requests, by id
     only: int  # id of the message of a packet without id

@@ -8,10 +8,10 @@ from typing import Optional, Union
 from .._errors import UnknownIdError
 from .._hints import Buffer
 from .awaited import NO_EXCHANGE, Arrival, Awaited, Plan, Request, awaited_of
-from .envelope import Response, StreamRow
 from .errors import UnsupportedError, need
 from .events import Arrived, Event, Gap, LineError, Stray
 from .link import Link
+from .packet_formats import Response, StreamRow
 from .sender import Sender
 from .stream import StreamDecoder, StreamEvent
 

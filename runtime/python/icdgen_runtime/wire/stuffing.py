@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Optional, Union
 
-from .envelope import Delimiter, Escaping, Stream
+from .packet_formats import Delimiter, Escaping, Stream
 
 _SLIP_ESCAPED = {0xDC: 0xC0, 0xDD: 0xDB}
 _HDLC_FLIP = 0x20

@@ -13,8 +13,8 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::places::{Identification, Piece, Place};
 pub use self::stream::{
-    BusExchanges, CheckForm, CheckKind, ChecksumAlgorithm, Content, Delimiter, Echo, EnvelopeField,
-    EnvelopeRole, Escaping, Exchange, NumberPlace, PacketForm, Poll, RequestForm, Response,
+    BusExchanges, CheckForm, CheckKind, ChecksumAlgorithm, Content, Delimiter, Echo, Escaping,
+    Exchange, FieldRole, NumberPlace, PacketField, PacketForm, Poll, RequestForm, Response,
     ResponseKind, Stream, StreamRow, Verdict,
 };
 

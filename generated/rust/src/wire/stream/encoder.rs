@@ -5,7 +5,7 @@
 use super::check;
 use crate::wire::bits::head;
 use crate::wire::link::{
-    Content, Delimiter, EnvelopeRole, Escaping, Link, PacketForm, Stream, StreamRow,
+    Content, Delimiter, Escaping, FieldRole, Link, PacketForm, Stream, StreamRow,
 };
 use crate::wire::{Direction, Error};
 
@@ -19,10 +19,10 @@ pub(super) const HDLC_FLIP: u8 = 0x20;
 /// A block of COBS that has no zero behind it.
 pub(super) const COBS_WHOLE: u8 = 0xff;
 /// Bytes of a header or trailer, at most.
-const ENVELOPE_BYTES: usize = 64;
+const HEADER_BYTES: usize = 64;
 
 /// A header, followed by zeros.
-pub(in crate::wire) type Header = [u8; ENVELOPE_BYTES];
+pub(in crate::wire) type Header = [u8; HEADER_BYTES];
 
 /// Values of the header and trailer fields that the sender chooses.
 ///
@@ -89,16 +89,16 @@ impl Values {
         Ok(())
     }
 
-    pub(super) fn place(&mut self, role: EnvelopeRole) -> Option<&mut Option<u32>> {
+    pub(super) fn place(&mut self, role: FieldRole) -> Option<&mut Option<u32>> {
         match role {
-            EnvelopeRole::Sequence => Some(&mut self.sequence),
-            EnvelopeRole::Source => Some(&mut self.source),
-            EnvelopeRole::Destination => Some(&mut self.destination),
-            EnvelopeRole::Type => Some(&mut self.kind),
-            EnvelopeRole::Flags => Some(&mut self.flags),
-            EnvelopeRole::Time => Some(&mut self.time),
-            EnvelopeRole::Status => Some(&mut self.status),
-            EnvelopeRole::Reason => Some(&mut self.reason),
+            FieldRole::Sequence => Some(&mut self.sequence),
+            FieldRole::Source => Some(&mut self.source),
+            FieldRole::Destination => Some(&mut self.destination),
+            FieldRole::Type => Some(&mut self.kind),
+            FieldRole::Flags => Some(&mut self.flags),
+            FieldRole::Time => Some(&mut self.time),
+            FieldRole::Status => Some(&mut self.status),
+            FieldRole::Reason => Some(&mut self.reason),
             _ => None,
         }
     }
@@ -276,14 +276,14 @@ impl Message<'_> {
         out: &mut [u8],
     ) -> Result<(usize, Header), Error> {
         let (packet, data) = (self.packet, self.data);
-        let (mut header, mut trailer) = ([0; ENVELOPE_BYTES], [0; ENVELOPE_BYTES]);
+        let (mut header, mut trailer) = ([0; HEADER_BYTES], [0; HEADER_BYTES]);
         let mut values = *values;
         for field in packet.fields {
             let value = match field.role {
-                EnvelopeRole::Checksum => continue,
-                EnvelopeRole::Id => i64::from(packet.part(field, self.id)),
-                EnvelopeRole::Length => field.counted(data.len()),
-                EnvelopeRole::ResponseLength => self.row.map_or_else(
+                FieldRole::Checksum => continue,
+                FieldRole::Id => i64::from(packet.part(field, self.id)),
+                FieldRole::Length => field.counted(data.len()),
+                FieldRole::ResponseLength => self.row.map_or_else(
                     || i64::from(field.value(self.direction)),
                     |row| field.counted(row.most),
                 ),
@@ -302,7 +302,7 @@ impl Message<'_> {
             };
             field.put(into, value);
         }
-        if let (Some(field), Some(check)) = (packet.field(EnvelopeRole::Checksum), &packet.check) {
+        if let (Some(field), Some(check)) = (packet.field(FieldRole::Checksum), &packet.check) {
             let sum = check::whole(packet, check, self.row, [&header, data, &trailer]);
             let into = if field.in_trailer {
                 &mut trailer
@@ -330,21 +330,21 @@ fn without_zeros(data: &[u8]) -> &[u8] {
     left
 }
 
-const fn name(role: EnvelopeRole) -> &'static str {
+const fn name(role: FieldRole) -> &'static str {
     match role {
-        EnvelopeRole::Sequence => "sequence",
-        EnvelopeRole::Source => "source",
-        EnvelopeRole::Destination => "destination",
-        EnvelopeRole::Type => "type",
-        EnvelopeRole::Flags => "flags",
-        EnvelopeRole::Time => "time",
-        EnvelopeRole::Status => "status",
-        EnvelopeRole::Reason => "reason",
-        EnvelopeRole::Constant => "constant",
-        EnvelopeRole::Id => "id",
-        EnvelopeRole::Length => "length",
-        EnvelopeRole::ResponseLength => "response_length",
-        EnvelopeRole::Checksum => "checksum",
+        FieldRole::Sequence => "sequence",
+        FieldRole::Source => "source",
+        FieldRole::Destination => "destination",
+        FieldRole::Type => "type",
+        FieldRole::Flags => "flags",
+        FieldRole::Time => "time",
+        FieldRole::Status => "status",
+        FieldRole::Reason => "reason",
+        FieldRole::Constant => "constant",
+        FieldRole::Id => "id",
+        FieldRole::Length => "length",
+        FieldRole::ResponseLength => "response_length",
+        FieldRole::Checksum => "checksum",
     }
 }
 

@@ -4,7 +4,7 @@
 
 use super::check;
 use super::encoder::Values;
-use crate::wire::link::{Content, EnvelopeField, EnvelopeRole, PacketForm, Stream, StreamRow};
+use crate::wire::link::{Content, FieldRole, PacketField, PacketForm, Stream, StreamRow};
 use crate::wire::Direction;
 
 /// An event of the decoder: a message, or a dropped message.
@@ -111,8 +111,8 @@ impl Judge {
         came.all(|field| self.is_right(field, frame))
     }
 
-    fn is_right(&self, field: &EnvelopeField, frame: &[u8]) -> bool {
-        field.role != EnvelopeRole::Constant
+    fn is_right(&self, field: &PacketField, frame: &[u8]) -> bool {
+        field.role != FieldRole::Constant
             || field.get(self.packet, frame) == field.value(self.direction)
     }
 
@@ -123,14 +123,14 @@ impl Judge {
     }
 
     /// Return the number of data bytes that a field says; None if it is invalid.
-    fn stated_length(&self, field: &EnvelopeField, frame: &[u8]) -> Option<usize> {
+    fn stated_length(&self, field: &PacketField, frame: &[u8]) -> Option<usize> {
         field.bytes_of(field.get(self.packet, frame))
     }
 
     /// Return the number of data bytes by the first length field; otherwise the id of the unknown message, or
     /// None if the length field is invalid.
     pub(super) fn length(&self, frame: &[u8]) -> Result<usize, Option<u32>> {
-        if let Some(field) = self.packet.field(EnvelopeRole::Length) {
+        if let Some(field) = self.packet.field(FieldRole::Length) {
             return self.stated_length(field, frame).ok_or(None);
         }
         let id = self.id(frame);
@@ -156,7 +156,7 @@ impl Judge {
     fn length_is_right(&self, frame: &[u8]) -> bool {
         let length = frame.len().checked_sub(self.packet.around());
         let fields = self.packet.fields.iter();
-        let mut lengths = fields.filter(|field| field.role == EnvelopeRole::Length);
+        let mut lengths = fields.filter(|field| field.role == FieldRole::Length);
         lengths.all(|field| self.stated_length(field, frame) == length)
     }
 
@@ -224,7 +224,7 @@ impl Judge {
         let id = self.id(frame);
         let message = self.message(id);
         let row = message.map_or_else(|| self.requested(id), |(_, row)| Some(row));
-        if let (Some(field), Some(check)) = (packet.field(EnvelopeRole::Checksum), &packet.check) {
+        if let (Some(field), Some(check)) = (packet.field(FieldRole::Checksum), &packet.check) {
             if check.is_seeded && row.is_none() && packet.tells_message() {
                 on_event(Event::UnknownId { id });
                 return Verdict::Doubtful;
@@ -273,7 +273,7 @@ impl Judge {
 
     /// Return whether a request says the length of the telemetry, if it says one.
     fn awaits(&self, row: &StreamRow, frame: &[u8]) -> bool {
-        let field = self.packet.field(EnvelopeRole::ResponseLength);
+        let field = self.packet.field(FieldRole::ResponseLength);
         field.map_or(true, |field| {
             self.stated_length(field, frame) == Some(row.most)
         })
@@ -301,7 +301,7 @@ impl Judge {
         // Only messages have a counter for each id.
         let key = if self.form.per_id { place } else { Some(0) };
         let counter = key.and_then(|key| sequences.get_mut(key));
-        let field = self.packet.field(EnvelopeRole::Sequence);
+        let field = self.packet.field(FieldRole::Sequence);
         if let (Some(field), Some(counter), Some(number)) = (field, counter, values.sequence) {
             if let Some(last) = counter.replace(number) {
                 let missing = number.wrapping_sub(last).wrapping_sub(1) & field.mask();

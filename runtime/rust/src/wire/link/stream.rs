@@ -48,7 +48,7 @@ impl Escaping {
 
 /// Role of a header or trailer field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnvelopeRole {
+pub enum FieldRole {
     /// Counts messages.
     Sequence,
     /// Who sends.
@@ -80,9 +80,9 @@ pub enum EnvelopeRole {
 /// A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by
 /// `shift` and masked to `bits` bits.
 #[derive(Clone, Copy, Debug)]
-pub struct EnvelopeField {
+pub struct PacketField {
     /// Role of the field.
-    pub role: EnvelopeRole,
+    pub role: FieldRole,
     /// Whether it stands in the trailer.
     pub in_trailer: bool,
     /// Its first byte.
@@ -309,7 +309,7 @@ pub struct PacketForm {
     /// Size of the trailer in bytes.
     pub trailer_bytes: usize,
     /// The fields.
-    pub fields: &'static [EnvelopeField],
+    pub fields: &'static [PacketField],
     /// The checksum.
     pub check: Option<CheckForm>,
     /// What it carries.

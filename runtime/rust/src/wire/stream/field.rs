@@ -2,11 +2,11 @@
 
 use crate::wire::bits::{head, number, part_mut, put_number};
 use crate::wire::link::{
-    Content, EnvelopeField, EnvelopeRole, NumberPlace, PacketForm, Stream, StreamRow,
+    Content, FieldRole, NumberPlace, PacketField, PacketForm, Stream, StreamRow,
 };
 use crate::wire::Direction;
 
-impl EnvelopeField {
+impl PacketField {
     /// The greatest value.
     pub(super) const fn mask(&self) -> u32 {
         u32::MAX.wrapping_shr(32_u32.wrapping_sub(self.bits))
@@ -134,7 +134,7 @@ impl PacketForm {
     }
 
     /// Return the first field of a role.
-    pub(super) fn field(&self, role: EnvelopeRole) -> Option<&'static EnvelopeField> {
+    pub(super) fn field(&self, role: FieldRole) -> Option<&'static PacketField> {
         self.fields.iter().find(|field| field.role == role)
     }
 
@@ -145,9 +145,9 @@ impl PacketForm {
 
     /// Return the part of an id that belongs into a field. If the id is too large, its topmost part
     /// does not fit.
-    pub(super) fn part(&self, field: &EnvelopeField, id: u32) -> u32 {
+    pub(super) fn part(&self, field: &PacketField, id: u32) -> u32 {
         let parts = self.fields.iter();
-        let parts = parts.filter(|part| part.role == EnvelopeRole::Id);
+        let parts = parts.filter(|part| part.role == FieldRole::Id);
         let bits = parts.fold(0_u32, |bits, part| bits.wrapping_add(part.bits));
         let part = id.wrapping_shr(field.id_shift);
         if field.id_shift.wrapping_add(field.bits) < bits {
@@ -160,7 +160,7 @@ impl PacketForm {
     /// Return the id in a frame; None if the packet has none.
     pub(super) fn id(&self, frame: &[u8]) -> Option<u32> {
         let parts = self.fields.iter();
-        let parts = parts.filter(|field| field.role == EnvelopeRole::Id);
+        let parts = parts.filter(|field| field.role == FieldRole::Id);
         let parts = parts.map(|part| part.get(self, frame).wrapping_shl(part.id_shift));
         parts.reduce(|id, part| id | part)
     }

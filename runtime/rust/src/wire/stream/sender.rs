@@ -1,7 +1,7 @@
 //! Sender that does not wait for replies.
 
 use super::encoder::{encoded, encoded_packet, encoded_request, Header, Values};
-use crate::wire::link::{EnvelopeRole, Link};
+use crate::wire::link::{FieldRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
 
@@ -170,7 +170,7 @@ impl<T, const S: usize> Sender<T, S> {
     ) -> Result<(usize, Header), Error> {
         let form = self.link.stream.as_ref().ok_or(Error::Unsupported)?;
         let packet = form.packets.get(packet);
-        let field = packet.and_then(|packet| packet.field(EnvelopeRole::Sequence));
+        let field = packet.and_then(|packet| packet.field(FieldRole::Sequence));
         // Only messages have a counter for each id.
         let key = if form.per_id { place } else { Some(0) };
         let counter = key.and_then(|key| self.next.get_mut(key));

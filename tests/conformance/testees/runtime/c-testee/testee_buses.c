@@ -128,8 +128,7 @@ static void can_split(void)
     while (!is_word(name, can_kinds[kind])) {
         kind++;
     }
-    status = icd_can_split(
-        &splitter, link, (icd_can_kind_t)kind, id, source, destination, octets.data, octets.length);
+    status = icd_can_split(&splitter, link, (icd_can_kind_t)kind, id, source, destination, octets.data, octets.length);
     if (status == ICD_ERROR_LENGTH) {
         refuse_length("too-long", icd_can_most(link, (icd_can_kind_t)kind), octets.length);
     } else if (answers(status)) {
@@ -179,12 +178,6 @@ static void can_join(void)
 }
 
 const testee_op_t testee_bus_ops[] = {
-    {"uart_encode", uart_encode},
-    {"uart_events", uart_events},
-    {"i2c_read", i2c_read},
-    {"i2c_write", i2c_write},
-    {"i2c_reply", i2c_reply},
-    {"can_split", can_split},
-    {"can_join", can_join},
-    {NULL, NULL},
+    {"uart_encode", uart_encode}, {"uart_events", uart_events}, {"i2c_read", i2c_read}, {"i2c_write", i2c_write},
+    {"i2c_reply", i2c_reply},     {"can_split", can_split},     {"can_join", can_join}, {NULL, NULL},
 };

@@ -230,11 +230,12 @@ void refuse(const char *error)
 
 void refuse_status(icd_status_t status)
 {
-    refuse(status == ICD_ERROR_UNSUPPORTED   ? "unsupported"
-           : status == ICD_ERROR_UNKNOWN_ID  ? "unknown-id"
-           : status == ICD_ERROR_RANGE       ? "range"
-           : status == ICD_ERROR_CHECKSUM    ? "checksum"
-           : status == ICD_ERROR_BUSY        ? "busy"
+    refuse(
+        status == ICD_ERROR_UNSUPPORTED      ? "unsupported"
+            : status == ICD_ERROR_UNKNOWN_ID ? "unknown-id"
+            : status == ICD_ERROR_RANGE      ? "range"
+            : status == ICD_ERROR_CHECKSUM   ? "checksum"
+            : status == ICD_ERROR_BUSY       ? "busy"
                                              : "length");
 }
 

@@ -242,7 +242,8 @@ static void put_message(const subject_t *subject)
     }
     buffer = (uint8_t *)memory(size);
     status = subject->dispatcher->encode(subject->any, buffer, size);
-    if (status == ICD_OK && size != 0u && subject->dispatcher->encode(subject->any, buffer, size - 1u) != ICD_ERROR_LENGTH) {
+    if (status == ICD_OK && size != 0u &&
+        subject->dispatcher->encode(subject->any, buffer, size - 1u) != ICD_ERROR_LENGTH) {
         refuse("capacity");
         return;
     }
@@ -340,9 +341,8 @@ static void encode(void)
         const testee_field_t *field = &subject.message->fields[i];
         const char *word = field->view == NULL ? next_word() : "";
         const bool fits = field->view != NULL || *word == 'n' ? true
-            : *word == 'p'
-            ? take_physical(field, subject.value, word + 1)
-            : take_raw(field, subject.value, word + 1);
+            : *word == 'p'                                    ? take_physical(field, subject.value, word + 1)
+                                                              : take_raw(field, subject.value, word + 1);
         if (!fits) {
             refuse_at(i);
             return;
@@ -365,7 +365,8 @@ static void constants(void)
     if (!find(&subject)) {
         return;
     }
-    if (subject.dispatcher->length(subject.id, subject.which, &expected) != ICD_OK || expected != subject.message->length) {
+    if (subject.dispatcher->length(subject.id, subject.which, &expected) != ICD_OK ||
+        expected != subject.message->length) {
         refuse("dispatcher");
         return;
     }
@@ -455,6 +456,6 @@ static void about_node(void)
 }
 
 const testee_op_t testee_message_ops[] = {
-    {"decode", decode},    {"encode", encode},   {"constants", constants}, {"sweep", sweep},
-    {"enum", enumeration}, {"node", about_node}, {NULL, NULL},
+    {"decode", decode},   {"encode", encode}, {"constants", constants}, {"sweep", sweep}, {"enum", enumeration},
+    {"node", about_node}, {NULL, NULL},
 };

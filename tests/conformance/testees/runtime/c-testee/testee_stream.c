@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-static const char *const roles[ICD_ENVELOPE_VALUES] = {
+static const char *const roles[ICD_HEADER_VALUES] = {
     "sequence", "source", "destination", "type", "flags", "time", "status", "reason",
 };
 
@@ -18,23 +18,23 @@ static unsigned id_bits(const icd_packet_form_t *packet)
 {
     unsigned bits = 0;
     for (size_t i = 0; i < packet->field_count; ++i) {
-        bits += packet->fields[i].role == ICD_ENVELOPE_ID ? packet->fields[i].bits : 0u;
+        bits += packet->fields[i].role == ICD_FIELD_ID ? packet->fields[i].bits : 0u;
     }
     return bits;
 }
 
 /* The field that does not hold its value. */
-static void refuse_range(const icd_packet_form_t *packet, uint32_t id, const icd_envelope_values_t *values)
+static void refuse_range(const icd_packet_form_t *packet, uint32_t id, const icd_header_values_t *values)
 {
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *field = &packet->fields[i];
-        if (field->role == ICD_ENVELOPE_ID && field->values[0] + field->bits == id_bits(packet) &&
+        const icd_packet_field_t *field = &packet->fields[i];
+        if (field->role == ICD_FIELD_ID && field->values[0] + field->bits == id_bits(packet) &&
             ((uint64_t)id >> id_bits(packet)) != 0u) {
             refuse("range");
             put_text("field", "id");
             return;
         }
-        if (field->role < ICD_ENVELOPE_CONSTANT && values->of[field->role] != ICD_ENVELOPE_DEFAULT &&
+        if (field->role < ICD_FIELD_CONSTANT && values->of[field->role] != ICD_HEADER_DEFAULT &&
             ((uint64_t)values->of[field->role] >> field->bits) != 0u) {
             refuse("range");
             put_text("field", roles[field->role]);
@@ -64,17 +64,25 @@ static size_t nearest(const icd_link_t *link, icd_direction_t direction, uint32_
 }
 
 /* Encodes a message, or the packet that requests telemetry. */
-static icd_status_t stream_line(const icd_link_t *link, bool requests, icd_direction_t direction, uint32_t id, octets_t data,
-                           const icd_envelope_values_t *values, uint8_t *line, size_t capacity, size_t *written)
+static icd_status_t stream_line(
+    const icd_link_t *link,
+    bool requests,
+    icd_direction_t direction,
+    uint32_t id,
+    octets_t data,
+    const icd_header_values_t *values,
+    uint8_t *line,
+    size_t capacity,
+    size_t *written)
 {
     return requests ? icd_stream_encode_request(link, id, values, line, capacity, written)
                     : icd_stream_encode(link, direction, id, data.data, data.length, values, line, capacity, written);
 }
 
-static icd_envelope_values_t next_values(const icd_link_t *link, icd_direction_t direction)
+static icd_header_values_t next_values(const icd_link_t *link, icd_direction_t direction)
 {
-    icd_envelope_values_t values = icd_envelope_values(link, direction);
-    for (size_t i = 0; i < ICD_ENVELOPE_VALUES; ++i) {
+    icd_header_values_t values = icd_header_values(link, direction);
+    for (size_t i = 0; i < ICD_HEADER_VALUES; ++i) {
         values.of[i] = next_or(values.of[i]);
     }
     return values;
@@ -91,7 +99,7 @@ static void stream_encode(void)
     const size_t capacity = 2u * data.length + 300u;
     uint8_t *line = memory(capacity);
     size_t written = 0;
-    const icd_envelope_values_t values = next_values(link, direction);
+    const icd_header_values_t values = next_values(link, direction);
     const icd_status_t status = stream_line(link, requests, direction, id, data, &values, line, capacity, &written);
     if (status == ICD_ERROR_RANGE) {
         const size_t packet = requests ? link->stream->request->packet : row_of(link, direction, id)->packet;
@@ -102,9 +110,11 @@ static void stream_encode(void)
         uint8_t *exact = memory(written);
         size_t again = 0;
         put_octets("bytes", line, written);
-        if (stream_line(link, requests, direction, id, data, &values, exact, written, &again) != ICD_OK || again != written ||
-            (written != 0u && stream_line(link, requests, direction, id, data, &values, exact, written - 1u, &again) !=
-                                  ICD_ERROR_LENGTH)) {
+        if (stream_line(link, requests, direction, id, data, &values, exact, written, &again) != ICD_OK ||
+            again != written ||
+            (written != 0u &&
+             stream_line(link, requests, direction, id, data, &values, exact, written - 1u, &again) !=
+                 ICD_ERROR_LENGTH)) {
             refuse("room"); /* it takes just as many bytes as it says */
         }
     }
@@ -116,9 +126,10 @@ static void stream_encode_packet(void)
     const icd_direction_t direction = next_direction();
     const uint32_t packet = next_number();
     const uint32_t id = next_number();
-    const icd_envelope_values_t values = next_values(link, direction);
+    const icd_header_values_t values = next_values(link, direction);
     size_t written = 0;
-    const size_t capacity = 300u + (packet < link->stream->packet_count ? 2u * link->stream->packets[packet].reserved : 0u);
+    const size_t capacity =
+        300u + (packet < link->stream->packet_count ? 2u * link->stream->packets[packet].reserved : 0u);
     uint8_t *line = memory(capacity);
     const icd_status_t status =
         icd_stream_encode_packet(link, direction, packet, id, &values, line, capacity, &written);
@@ -175,8 +186,8 @@ static void on_stream_event(void *context, const icd_event_t *event)
     if (is_message || kind == ICD_EVENT_REQUEST || kind == ICD_EVENT_PACKET) {
         const icd_packet_form_t *packet = &link->stream->packets[event->packet];
         for (size_t i = 0; i < packet->field_count; ++i) {
-            const icd_envelope_role_t role = packet->fields[i].role;
-            if (role < ICD_ENVELOPE_CONSTANT) {
+            const icd_field_role_t role = packet->fields[i].role;
+            if (role < ICD_FIELD_CONSTANT) {
                 put_number(roles[role], event->values.of[role]);
             }
         }
@@ -253,8 +264,11 @@ static void start_stream(icd_client_t *client, uint32_t now, icd_direction_t dir
         put_number("actual", request.length);
     } else if (status != ICD_OK) {
         put_row("error");
-        put_word("error", status == ICD_ERROR_BUSY ? "busy"
-                     : status == ICD_ERROR_UNSUPPORTED ? "unsupported" : "unknown-id");
+        put_word(
+            "error",
+            status == ICD_ERROR_BUSY              ? "busy"
+                : status == ICD_ERROR_UNSUPPORTED ? "unsupported"
+                                                  : "unknown-id");
     }
 }
 

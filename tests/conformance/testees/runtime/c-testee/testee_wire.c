@@ -16,10 +16,14 @@ icd_bus_t next_bus(void)
 const char *event_name(icd_event_kind_t kind)
 {
     static const char *const names[] = {
-        "message", "gap",  "checksum", "length",     "unknown_id", "overrun", "framing", "unexpected_start",
-        "protocol_error",  "empty",    "duplicate",  "incomplete", "malformed", "busy",  "unknown_type",
-        "unchecked",       "request",  "packet",     "done",       "sent",    "refused", "busy",
-        "timeout",         "progress", "reply",      "arrived",    "log",     "late",    "stray",
+        "message",        "gap",     "checksum",     "length",
+        "unknown_id",     "overrun", "framing",      "unexpected_start",
+        "protocol_error", "empty",   "duplicate",    "incomplete",
+        "malformed",      "busy",    "unknown_type", "unchecked",
+        "request",        "packet",  "done",         "sent",
+        "refused",        "busy",    "timeout",      "progress",
+        "reply",          "arrived", "log",          "late",
+        "stray",
     };
     return names[kind];
 }
@@ -67,5 +71,8 @@ static void identify(void)
 }
 
 const testee_op_t testee_wire_ops[] = {
-    {"checksum", checksum}, {"link_data", link_data}, {"identify", identify}, {NULL, NULL},
+    {"checksum", checksum},
+    {"link_data", link_data},
+    {"identify", identify},
+    {NULL, NULL},
 };

@@ -20,13 +20,13 @@ from . import _testee_scripts
 from ._testee_scripts import packet
 from .can import CanEvent, CanJoiner, CanMessage, can_split
 from .checks import checksum
-from .envelope import CHOSEN_ROLES, Direction
 from .errors import ChecksumError, TooLongError, UnsupportedError
 from .files import IndexEntry, read_index, write_index
 from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
 from .link import CanKind, Link
 from .logs import LogFrame, LogMessage, LogReader, LogWriter
+from .packet_formats import CHOSEN_ROLES, Direction
 from .stream import (
     StreamDecoder,
     StreamEvent,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Literal
 
-from icdgen_runtime.wire.envelope import Direction, Exchange, Response, Stream
+from icdgen_runtime.wire.packet_formats import Direction, Exchange, Response, Stream
 from icdgen_runtime.wire.stream import ReceivedPacket, StreamDecoder, StreamEvent
 
 from icdgen.describe.ids import id_text

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
-from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.packet_formats import Direction
 from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 
 from icdgen.describe.ids import pair_bytes
@@ -17,7 +17,8 @@ from icdgen.describe.numbers import bit_range
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Message
 from icdgen.icd.packets import Packet, id_shifts
-from icdgen.protocol.envelope import (
+from icdgen.protocol.exchange import NumberPlace, Response
+from icdgen.protocol.packet_formats import (
     COBS,
     CRC,
     DATA,
@@ -30,11 +31,10 @@ from icdgen.protocol.envelope import (
     REQUEST,
     SLIP,
     Check,
-    EnvelopeField,
+    PacketField,
     PacketFormat,
     Stream,
 )
-from icdgen.protocol.exchange import NumberPlace, Response
 from icdgen.protocol.sections import ChecksumAlgorithm
 from icdgen.wording import count
 
@@ -160,7 +160,7 @@ def _packet(packet: PacketFormat) -> dict[str, object]:
     return packet_data
 
 
-def _field(field: EnvelopeField) -> dict[str, object]:
+def _field(field: PacketField) -> dict[str, object]:
     # Left out if they have no effect: the index of frames is loaded by every page.
     defaults = {"id_shift": 0, "unit": 1, "plus": 0}
     own = {name: getattr(field, name) for name in defaults}

@@ -1,4 +1,4 @@
-"""What the simulator and the logs say of an ICD whose messages travel in envelopes."""
+"""What the simulator and the logs say of an ICD on a framed link."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from random import Random
 
 from icdgen_runtime._errors import IcdError
-from icdgen_runtime.wire.envelope import Direction
+from icdgen_runtime.wire.packet_formats import Direction
 from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen import codec
@@ -20,12 +20,12 @@ from icdgen.icd.variants import ids_of
 from icdgen.logfile import text
 from icdgen.logfile.log import open_log
 from icdgen.protocol import facts
-from icdgen.recognize.envelopes import DIRECTIONS
+from icdgen.recognize.framed import DIRECTIONS
 from icdgen.runtime_objects.links import link_of
 from icdgen.sim.computer import Computer
 from icdgen.sim.control import fields_of, raw_value_of
-from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.faults import Faults
+from icdgen.sim.framed_line import FramedLine
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
 
@@ -89,7 +89,7 @@ def simulator(
     """What it sends after its values were set, and after it was sent what was made for
     the example.
     """
-    line = EnvelopeLine(
+    line = FramedLine(
         Computer(icd, node, Settings(strict=True), Storage()),
         Faults(Random(0), [], 0),
         {},
@@ -116,6 +116,6 @@ def simulator(
     return said
 
 
-def _sent(line: EnvelopeLine, now: int) -> list[bytes]:
+def _sent(line: FramedLine, now: int) -> list[bytes]:
     line.log(now)
     return line.pieces(now + 1000)

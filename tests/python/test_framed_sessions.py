@@ -1,4 +1,4 @@
-"""Several requests under way in sessions over envelopes, over a port that answers as
+"""Several requests under way in sessions over framed links, over a port that answers as
 the test says.
 """
 

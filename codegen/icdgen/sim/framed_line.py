@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from icdgen_runtime.wire.device import PacketData, response_of, response_to
-from icdgen_runtime.wire.envelope import Response, Stream, Verdict
+from icdgen_runtime.wire.packet_formats import Response, Stream, Verdict
 from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder
 
@@ -18,8 +18,8 @@ from icdgen.icd.buses import UART
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.variants import ids_of
 from icdgen.procedures.counterpart import Refused
-from icdgen.protocol.envelope import DATAGRAM
 from icdgen.protocol.facts import need
+from icdgen.protocol.packet_formats import DATAGRAM
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
@@ -49,7 +49,7 @@ class _Period:
     next: int
 
 
-class EnvelopeLine(DeviceLine):
+class FramedLine(DeviceLine):
     """A line whose messages have header and trailer.
 
     ``chosen`` are the values of the frame fields that the sender chooses.

@@ -67,7 +67,7 @@ def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_
     )
 
 
-def test_what_the_sender_chose_of_the_envelope_is_said():
+def test_what_the_sender_chose_of_the_header_is_said():
     (found,) = recognize(
         ICD, sent("autopilot", "telemetry", 30, bytes(28), source=7, sequence=9).hex()
     )

@@ -1,4 +1,4 @@
-"""Links with envelopes, simulated and talked over: what comes unasked, replies, gaps,
+"""Framed links, simulated and talked over: what comes unasked, replies, gaps,
 and what is wrong with what comes.
 """
 
@@ -156,12 +156,12 @@ def test_what_we_send_is_counted_and_has_the_addresses_that_were_chosen():
         ({"id": 1}, UnsupportedError),
     ],
 )
-def test_values_that_the_envelope_cannot_have_are_refused(values, error):
+def test_values_that_the_header_cannot_have_are_refused(values, error):
     with pytest.raises(error):
         talking("autopilot", values=values)
 
 
-def test_an_envelope_leaves_no_choice_of_a_checksum():
+def test_a_framed_link_leaves_no_choice_of_a_checksum():
     port = Port("receiver")
     with pytest.raises(UnsupportedError, match="no choice"):
         Session(
@@ -313,7 +313,7 @@ def test_packets_that_delimit_messages_need_a_way_that_keeps_them_apart():
     )
 
 
-def test_a_value_of_no_field_of_the_envelope_is_refused():
+def test_a_value_of_no_field_of_the_header_is_refused():
     wrong = icdgen(
         "send",
         "receiver",

@@ -9,17 +9,17 @@ from random import Random
 from typing import Any
 
 from icdgen_runtime._errors import RangeError
-from icdgen_runtime.wire.envelope import Direction
-from icdgen_runtime.wire.envelope import StreamRow as WireRow
 from icdgen_runtime.wire.errors import need
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.packet_formats import Direction
+from icdgen_runtime.wire.packet_formats import StreamRow as WireRow
 from icdgen_runtime.wire.stream import (
     stream_encode,
     stream_encode_packet,
     stream_encode_request,
 )
 
-from icdgen.protocol.envelope import (
+from icdgen.protocol.packet_formats import (
     DATAGRAM,
     DIRECTIONS,
     GIVEN,

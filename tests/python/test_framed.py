@@ -1,4 +1,4 @@
-"""Messages in envelopes, as classes of the generated package."""
+"""Messages of framed links, as classes of the generated package."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_data_that_are_of_no_message_of_their_id_have_no_class(package, node, st
         node.decode_telemetry(event.id, event.data)
 
 
-def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_in_envelopes(
+def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_on_framed_links(
     node, stream
 ):
     choice = node.Choice(mode=1, level=5)

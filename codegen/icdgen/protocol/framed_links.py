@@ -1,5 +1,5 @@
 """Reader of the `link` section of a checked ICD, into the classes of
-`icdgen.protocol.envelope`.
+`icdgen.protocol.packet_formats`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from icdgen.icd.packets import (
 )
 from icdgen.icd.places import raw_fields_in
 from icdgen.icd.variants import Ids, Variant
-from icdgen.protocol.envelope import (
+from icdgen.protocol.exchange import Exchange
+from icdgen.protocol.packet_formats import (
     DATA,
     ESCAPE,
     MESSAGE,
@@ -29,14 +30,13 @@ from icdgen.protocol.envelope import (
     REQUESTED,
     ROLES,
     Check,
-    EnvelopeField,
     Escaping,
+    PacketField,
     PacketFormat,
     Stream,
     StreamRow,
     TelemetryRequest,
 )
-from icdgen.protocol.exchange import Exchange
 from icdgen.protocol.responding import Sources, exchange_of, request_exchange
 from icdgen.protocol.sections import ChecksumAlgorithm
 
@@ -54,7 +54,7 @@ def bytes_of(bits: Iterable[tuple[int, int]]) -> int:
 
 def field_of(
     node: Node, row: Section, in_trailer: bool, id_shift: int = 0, overhead: int = 0
-) -> EnvelopeField:
+) -> PacketField:
     """Return the field of a row of the header or trailer.
 
     ``id_shift``: bits of the id below those in this field. ``overhead``: bytes of
@@ -72,7 +72,7 @@ def field_of(
     # `counts: message` includes header and trailer.
     counts_all = row.get("counts", DATA) == "message"
     plus = row.get("plus", 0) * unit + (overhead if counts_all else 0)
-    return EnvelopeField(
+    return PacketField(
         role,
         in_trailer,
         first,

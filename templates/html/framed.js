@@ -1,6 +1,6 @@
 "use strict";
 /* Bytes in the packets that an ICD describes -> the messages in them, and what was dropped, as generated decoders find them. */
-const icdgenEnvelopes = ((frames) => {
+const icdgenFramed = ((frames) => {
   const DIRECTIONS = ["telecommand", "telemetry"];
   const ENDS = { slip: [0xc0, 0xdb], hdlc: [0x7e, 0x7d], cobs: [0x00, -1] };
   const SLIP_MEANT = { 0xdc: 0xc0, 0xdd: 0xdb };
@@ -522,4 +522,4 @@ const icdgenEnvelopes = ((frames) => {
 
   return { DIRECTIONS, directionsOf, decode, isMarked, removed, around, statement, hasSync, syncTexts, faultOf, faultOfBeginning, likeliest, idText };
 })(typeof icdgenFrames === "undefined" ? require("./frames.js") : icdgenFrames);
-if (typeof module !== "undefined") module.exports = icdgenEnvelopes;
+if (typeof module !== "undefined") module.exports = icdgenFramed;

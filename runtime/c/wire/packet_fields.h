@@ -1,5 +1,5 @@
-#ifndef ICDGEN_WIRE_ENVELOPE_H
-#define ICDGEN_WIRE_ENVELOPE_H
+#ifndef ICDGEN_WIRE_PACKET_FIELDS_H
+#define ICDGEN_WIRE_PACKET_FIELDS_H
 
 #include "stream.h"
 #include "checksum.h"
@@ -15,11 +15,11 @@
 
 /* Whether the sender chooses the value of a field. */
 #define ICDGEN_IS_OF_SENDER(field)                                                                                     \
-    ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_ENVELOPE_VALUES) - 1u)) != 0u && (field)->role < ICD_ENVELOPE_CONSTANT)
+    ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_HEADER_VALUES) - 1u)) != 0u && (field)->role < ICD_FIELD_CONSTANT)
 
 /* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
-static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
+static inline uint32_t icdgen_field_mask(const icd_packet_field_t *field)
 {
     return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
 }
@@ -31,8 +31,7 @@ static inline size_t icdgen_packet_around(const icd_packet_form_t *packet)
 }
 
 /* Return the field with this role; NULL if there is none. */
-static inline const icd_envelope_field_t *icdgen_envelope_field(
-    const icd_packet_form_t *packet, icd_envelope_role_t role)
+static inline const icd_packet_field_t *icdgen_packet_field(const icd_packet_form_t *packet, icd_field_role_t role)
 {
     for (size_t i = 0; i < packet->field_count; ++i) {
         if (packet->fields[i].role == role) {
@@ -43,42 +42,42 @@ static inline const icd_envelope_field_t *icdgen_envelope_field(
 }
 
 /* Return the value of a field. `bytes` is the header or the trailer that contains the field. */
-static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, const uint8_t *bytes)
+static inline uint32_t icdgen_field_get(const icd_packet_field_t *field, const uint8_t *bytes)
 {
     uint32_t number = 0;
     for (size_t i = 0; i < field->size; ++i) {
         number = (number << 8) | bytes[field->at + (field->little ? field->size - 1u - i : i)];
     }
-    return (number >> field->shift) & icdgen_envelope_mask(field);
+    return (number >> field->shift) & icdgen_field_mask(field);
 }
 
 /* Return the id of a packet whose id is in the header. */
-static inline uint32_t icdgen_envelope_id(
+static inline uint32_t icdgen_field_id(
     const icd_packet_form_t *packet, icd_direction_t direction, const uint8_t *header)
 {
     uint32_t id = packet->ids[direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
-        const icd_envelope_field_t *const field = &packet->fields[i];
-        if (ICDGEN_HAS_ROLE(field, ICD_ENVELOPE_ID) && !field->in_trailer) {
-            id |= icdgen_envelope_get(field, header) << field->values[0];
+        const icd_packet_field_t *const field = &packet->fields[i];
+        if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID) && !field->in_trailer) {
+            id |= icdgen_field_get(field, header) << field->values[0];
         }
     }
     return id;
 }
 
 /* Return the number of data bytes that a length field says. */
-static inline int64_t icdgen_envelope_bytes(const icd_envelope_field_t *field, uint32_t value)
+static inline int64_t icdgen_field_bytes(const icd_packet_field_t *field, uint32_t value)
 {
     return (ICDGEN_I64(value) * ICDGEN_I64(field->values[1])) - ICDGEN_I64(ICDGEN_I32(field->values[0]));
 }
 
 /* Return the value of a length field for a number of data bytes. */
-static inline uint32_t icdgen_envelope_counted(const icd_envelope_field_t *field, size_t length)
+static inline uint32_t icdgen_field_counted(const icd_packet_field_t *field, size_t length)
 {
     return (ICDGEN_U32(length) + field->values[0]) / field->values[1];
 }
 
-static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
+static inline void icdgen_field_put(const icd_packet_field_t *field, uint8_t *bytes, uint32_t value)
 {
     uint32_t rest = value << field->shift;
     for (size_t i = 0; i < field->size; ++i) {
@@ -113,7 +112,7 @@ static inline uint32_t icdgen_stream_number(
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.
  */
-static inline uint32_t icdgen_envelope_check(
+static inline uint32_t icdgen_field_check(
     const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
     const uint8_t *header,
@@ -161,4 +160,4 @@ static inline const icd_stream_row_t *icdgen_stream_row(
     return NULL;
 }
 
-#endif /* ICDGEN_WIRE_ENVELOPE_H */
+#endif /* ICDGEN_WIRE_PACKET_FIELDS_H */

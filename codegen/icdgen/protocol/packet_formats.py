@@ -38,7 +38,7 @@ WORD = 32  # bits of the decoder's arithmetic
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class EnvelopeField:
+class PacketField:
     """Field of the header or trailer.
 
     The ``size`` bytes at byte ``at`` form a number, which is shifted right by ``shift``
@@ -120,10 +120,10 @@ class PacketFormat:
     header_bytes: int
     trailer_bytes: int
     reserved: int  # bytes of data without meaning, in packets without a message
-    fields: tuple[EnvelopeField, ...]
+    fields: tuple[PacketField, ...]
     check: Check | None
 
-    def of(self, role: str) -> EnvelopeField | None:
+    def of(self, role: str) -> PacketField | None:
         """Return the first field of a role; None without such a field."""
         return next((field for field in self.fields if field.role == role), None)
 
@@ -211,11 +211,11 @@ class Stream:
         """Return the packets of a direction."""
         return tuple(each for each in self.packets if direction in each.directions)
 
-    def chosen(self, direction: str) -> dict[str, EnvelopeField]:
+    def chosen(self, direction: str) -> dict[str, PacketField]:
         """Return the fields of a direction whose values the sender chooses, by role: of
         several packets, the field of the first.
         """
-        fields: dict[str, EnvelopeField] = {}
+        fields: dict[str, PacketField] = {}
         for packet in self.packets_of(direction):
             for field in packet.fields:
                 if field.role in GIVEN:

@@ -1,4 +1,4 @@
-"""Pages take messages out of their envelopes as the command line does, and say what
+"""Pages take messages out of their packets as the command line does, and say what
 these look like.
 """
 
@@ -16,12 +16,12 @@ from icdgen.errors import UserError
 from icdgen.icd.fmt import format_text
 from icdgen.loading import load
 from icdgen.recognize import recognize
-from icdgen.recognize.envelopes import sync_of
+from icdgen.recognize.framed import sync_of
 from icdgen.recognize.reading import endpoint_of
 from icdgen.site import make, write
 from icdgen.vectors.make import make as golden
 from tests.conftest import ROOT
-from tests.features.enveloped import recorded
+from tests.features.framed import recorded
 from tests.features.outputs import icd_of as motor_of
 from tests.recognize.test_asked import LIMIT, load_pack, sent
 from tests.recognize.test_cut_frames import MOTOR, POWER, SPEED, packets, prefixes
@@ -170,7 +170,7 @@ def test_the_page_reads_packets_of_both_directions_and_reports_the_others(tmp_pa
     ]
 
 
-def test_the_page_of_a_message_takes_its_envelope_off():
+def test_the_page_of_a_message_takes_its_header_off():
     icd = icd_of("ubx")
     relations = Relations(icd)
     message = next(one for one in icd.nodes[0].messages if one.name == "End of Epoch")
@@ -204,7 +204,7 @@ def test_the_page_of_a_message_takes_its_envelope_off():
     assert "wrong checksum" in str(found[2]) and "another message's" in str(found[3])
 
 
-def test_the_page_takes_the_envelope_off_where_its_bytes_could_be_data_of_the_message_too(
+def test_the_page_takes_the_header_off_where_its_bytes_could_be_data_of_the_message_too(
     tmp_path,
 ):
     icd = load_pack(tmp_path)
