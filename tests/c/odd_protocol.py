@@ -23,7 +23,7 @@ def _changed(node: Node) -> Node:
             "escape": 0x10, "start": 2, "end": 3, "data": 0x11, "other": "ignore",
             "escaped_in": ["data"],
         }  # fmt: skip
-        buses["can"]["extended"] |= {
+        buses["can"]["segments"] |= {
             "fill": 0xA5,
             "packets_left_in_last": 1,
             "max_packets": 255,
@@ -43,7 +43,7 @@ def _changed(node: Node) -> Node:
             part["bits"] = 4
     link = protocol.get("link", {})
     for packet in link.get("packets", {}).values():
-        for field in packet["trailer"]:
+        for field in packet.get("trailer", ()):
             field["covers"]["from"] = "id"
             crc = link["checksums"][field["checksum"]]
             crc |= {"reflect_in": True, "reflect_out": True}

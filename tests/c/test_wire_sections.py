@@ -15,7 +15,7 @@ from tests.c import harness
 
 PARTS = {
     "link.ids": [],
-    "link.reasons": ["errors"],
+    "link.commands": [],
     "link.client": [],
     "identification": ["identification"],
     "statistics": [],
@@ -26,9 +26,10 @@ PARTS = {
         "framing",
         "acknowledge",
         "unsolicited",
+        "errors",
         "exchanges[ICD_BUS_UART]",
     ],
-    "link.buses.i2c": ["exchanges[ICD_BUS_I2C]"],
+    "link.buses.i2c": ["errors", "exchanges[ICD_BUS_I2C]"],
     "link.buses.can": ["can", "exchanges[ICD_BUS_CAN]"],
     "procedures": [],
     "link.checksums": [],
@@ -42,7 +43,7 @@ PARTS = {
 }
 """The pointers of a link that each section of a protocol gives."""
 
-MEMBERS = sorted(member for members in PARTS.values() for member in members)
+MEMBERS = sorted({member for members in PARTS.values() for member in members})
 
 
 def sections_of(protocol: dict, path: str = "") -> dict:
@@ -85,6 +86,8 @@ def icd() -> Icd:
     sections = sections_of(whole)
     # Sections by those that need them
     needed = {key: {"link.checksums"} for key in ("procedures", "link.packets")}
+    for bus in ("uart", "can"):
+        needed[f"link.buses.{bus}"] = {"link.packets", "link.checksums"}
     for section in sections:
         title = section.replace(".", "_")
         protocols[f"without_{title}"] = protocol_of_sections(
@@ -260,5 +263,5 @@ def parts(protocol: dict) -> list[str]:
     sections = sections_of(protocol).keys() - (
         logs if "log_mask" not in protocol else set()
     )
-    found = sorted(member for section in sections for member in PARTS[section])
+    found = sorted({member for section in sections for member in PARTS[section]})
     return [*found, *(["at an address"] if "i2c" in buses_of(protocol) else [])]
