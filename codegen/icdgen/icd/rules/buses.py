@@ -286,6 +286,11 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
     named = [enum for enum in enums if enum is not None]
     names = [member.name for enum in named for member in enum.members]
     seen: dict[int, str] = {}
+    for declared, enum in zip(responses, enums, strict=True):
+        success = declared.row.get("success")
+        for value in success if isinstance(success, Seq) else ():
+            if (number := number_of(value, enum)) is not None:
+                seen[number] = "success"
     for cause, value in reasons.items():
         if cause == "assumptions" or not isinstance(value, int | str):
             continue
