@@ -131,7 +131,6 @@ class _LinkBuilder:
         optional = {
             "framing": self.part(facts.framing),
             "acknowledge": self.part(facts.acknowledge),
-            "polled": self.commented_rest(self.polled(), "link.buses.i2c.commands.ack"),
             "i2c_address": facts.i2c_address,
             # True is the default of the runtime.
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
@@ -159,7 +158,10 @@ class _LinkBuilder:
             or None,
             "unsolicited": facts.unsolicited or None,
             "bus_exchanges": {
-                bus: _bus_exchanges(each) for bus, each in facts.bus_exchanges.items()
+                bus: self.commented_rest(
+                    _bus_exchanges(each), f"link.buses.{bus}.commands.ack"
+                )
+                for bus, each in facts.bus_exchanges.items()
             }
             or None,
             "assumptions": self.assumptions() or None,
@@ -195,17 +197,6 @@ class _LinkBuilder:
             if value is not None:
                 values[fact.name] = _explained(value, self.assumed.why_fact(part, fact))
         return values
-
-    def polled(self) -> Call | None:
-        """Return the call for the acknowledge that a client polls on I2C."""
-        report = self.description.polled
-        if report is None:
-            return None
-        return _call(
-            "Polled",
-            telemetry=report.message.telemetry_id,
-            **{role: field.name for role, field in report.places},
-        )
 
     def can(self) -> object:
         """Return the call for the link over CAN."""

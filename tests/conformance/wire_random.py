@@ -201,8 +201,9 @@ def _heard(
         return {"id": found.id, "bytes": found.data.hex()}
     if source.random() < 0.15:
         return None
-    polled = link.polled
-    assert polled
+    command = link.bus_exchanges["i2c"].command
+    assert command and command.poll
+    polled = command.poll
     if kind == "telecommand" and source.random() < 0.6:
         about = bytes([id, source.choice([1, 1, 0]), code, 7])
         id, data = polled.telemetry, about[: link.frames[polled.telemetry]]

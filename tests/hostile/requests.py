@@ -127,12 +127,18 @@ def _packets(link: Link[Any], id: int, source: Random) -> list[Any]:
 
 def _read(link: Link[Any], count: int, source: Random) -> bytes | None:
     """Return the bytes that a transaction reads; None if it failed."""
-    form = link.polled
+    command = link.bus_exchanges["i2c"].command
     if source.random() < 0.2:
         return None
-    if form and count == link.frames[form.telemetry] and source.random() < 0.9:
-        frame = link.TELEMETRY[form.telemetry]()
-        setattr(frame, form.processed, source.random() < 0.2)
-        setattr(frame, form.id, source.randrange(1, 128))
-        return frame.to_bytes()
+    poll = command.poll if command else None
+    if (
+        command
+        and poll
+        and count == link.frames[poll.telemetry]
+        and source.random() < 0.9
+    ):
+        frame = bytearray(count)
+        frame[poll.until.at] = (source.random() < 0.2) << poll.until.shift
+        frame[command.responses[0].echoes[0].place.at] = source.randrange(1, 128)
+        return bytes(frame)
     return bytes(count)

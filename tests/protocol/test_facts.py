@@ -7,6 +7,9 @@ from __future__ import annotations
 from dataclasses import asdict
 
 import pytest
+from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.client import Client
+from icdgen_runtime.wire.events import Done
 from icdgen_runtime.wire.uart import uart_kind
 
 from icdgen.loading import load
@@ -185,3 +188,49 @@ def test_an_assumption_is_named_after_the_message_of_its_step(step, name):
     section = {"steps": [{**step, "assumptions": {"bits": "Nothing is said."}}]}
     (assumption,) = assumptions_of(section, ("procedures", "list"))
     assert assumption.section == f"procedures.list.{name}"
+
+
+WITHOUT_DETAIL = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+protocol:
+  link:
+    commands: {reasons: {length: Length}}
+    buses:
+      i2c:
+        write: {address_7bit: 0x20}
+        commands:
+          ack: {message: Outcome, echo: Last, until: Done, status: Code, success: [Fine, Slow]}
+enums:
+  - {name: Codes, members: [{value: 0, name: Fine}, {value: 1, name: Slow}, {value: 2, name: Length}]}
+messages:
+  - {name: Stop, id: 7, kind: telecommand, length: 0}
+  - name: Outcome
+    id: 130
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0,  bits: 8, name: Last, type: uint}
+      - {at: 8,  bits: 1, name: Done, type: bool}
+      - {at: 16, bits: 8, name: Code, type: enum, enum: Codes}
+"""
+
+
+def test_several_values_of_a_status_can_confirm_and_a_refusal_needs_no_detail(tmp_path):
+    (tmp_path / "demo.yaml").write_text(WITHOUT_DETAIL)
+    loaded = load([tmp_path])
+    assert loaded.findings == []
+    known = facts.of(loaded.icd, loaded.icd.node("demo"))
+    assert known.errors == {"none": 0, "length": 2}
+    (response,) = known.bus_exchanges["i2c"].command.responses
+    assert response.meanings == ((0, "ack"), (1, "ack"))
+    assert response.reasons == ((2, "length"),)
+    assert response.detail is None
+    client = Client(links.link(loaded.icd, "demo"), "i2c")
+    client.start(0, Request("telecommand", 7))
+    assert client.transfers()
+    assert client.transferred(1, b"") == []
+    assert client.tick(1 + known.client.poll_interval) == [] and client.transfers()
+    outcome = b"\x07\x01\x01"
+    (done,) = client.transferred(30, outcome)
+    assert isinstance(done, Done) and (done.id, done.data) == (7, outcome)

@@ -144,10 +144,12 @@ def silent(device: Session, message: type[Message]) -> None:
 
     If it is lost nobody notices.
     """
-    last = LINK.TELEMETRY[LINK.polled.telemetry]
+    polled = LINK.bus_exchanges["i2c"].command
+    last = LINK.TELEMETRY[polled.poll.telemetry]
+    (echo,) = polled.responses[0].echoes
     for _ in range(TRIES):
         device.send(message())
-        if getattr(device.get(last), LINK.polled.id) in message.IDS:
+        if echo.place.of(device.get(last).to_bytes()) in message.IDS:
             return
     raise Failed(f"{message.NAME} does not arrive")
 

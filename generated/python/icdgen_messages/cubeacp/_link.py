@@ -255,13 +255,6 @@ LINK: link.Link[_Node] = link.Link(
         id_at=0,
         error_at=1,
     ),
-    polled=link.Polled(
-        telemetry=240,
-        id="last_tc_id",
-        processed="processed_flag",
-        error="tc_error_status",
-        parameter="tc_parameter_error_index",
-    ),
     i2c_address=87,
     can=link.Can(
         node_address=1,

@@ -129,16 +129,6 @@ class Acknowledge(NamedTuple):
     """Offset of the error code."""
 
 
-class Polled(NamedTuple):
-    """The frame with the result of a telecommand, and its attributes by role."""
-
-    telemetry: int
-    id: str
-    processed: str
-    error: str
-    parameter: str
-
-
 class Checksum(NamedTuple):
     """The optional checksum of telecommands and frames."""
 
@@ -306,7 +296,6 @@ class Facts(NamedTuple):
     TELEMETRY: Messages
     framing: Optional[Framing] = None
     acknowledge: Optional[Acknowledge] = None
-    polled: Optional[Polled] = None
     i2c_address: Optional[int] = None
     i2c_repeated_start: bool = True
     """Whether a read may follow its write without a stop."""
