@@ -3425,6 +3425,7 @@ ICDGEN_API icd_status_t icd_client_stream(
     if (status == ICD_OK) {
         client->stream = line;
         client->line = &functions;
+        client->checks_telecommands = true; /* if a refusal can say that the checksum was wrong, there is one */
     }
     return status;
 }

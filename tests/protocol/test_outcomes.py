@@ -21,6 +21,7 @@ _client = import_module("icdgen_runtime.wire.client")
 _stream = import_module("icdgen_runtime.wire.stream")
 Sender = import_module("icdgen_runtime.wire.sender").Sender
 _events = import_module("icdgen_runtime.wire.events")
+response_to = import_module("icdgen_runtime.wire.device").response_to
 Client, Request = _client.Client, _client.Request
 StreamDecoder, stream_encode = _stream.StreamDecoder, _stream.stream_encode
 OUTCOMES, Late, Stray, Timeout = (
@@ -191,3 +192,40 @@ def test_a_reply_named_by_the_caller_keeps_the_echo_and_status_of_the_icd():
     arm = Arm()
     assert arm.send(0, arm.READ_LOAD, reply=arm.LOAD)
     assert arm.receive(10, arm.LOAD, bytes([arm.FAILED, 0, 0])) == ["Refused"]
+
+
+DAMAGED = bytes((NAK, 0x05, 5))  # `Save` with the reason `Bad CRC`
+
+
+def test_a_telecommand_that_the_device_received_damaged_is_sent_again_at_once(link):
+    client = Client(link)
+    client.start(0, Request("telecommand", 0x05))
+    sent = client.output()
+    refusal = stream_encode(link, DAMAGED[0], DAMAGED[1:], "telemetry")
+    assert client.received(10, refusal) == []
+    client.tick(10)
+    assert client.output() == sent
+    confirmed = stream_encode(link, ACK, b"\5", "telemetry")
+    (done,) = client.received(20, confirmed)
+    assert isinstance(done, _events.Done) and done.attempts == 2
+
+
+def test_a_telecommand_that_is_always_damaged_is_refused_in_the_end(link):
+    client = Client(link)
+    client.start(0, Request("telecommand", 0x05))
+    refusal = stream_encode(link, DAMAGED[0], DAMAGED[1:], "telemetry")
+    events = []
+    for attempt in range(1 + link.settings.retries):
+        assert client.output()
+        events += client.received(10 * (attempt + 1), refusal)
+        client.tick(10 * (attempt + 1))
+    (refused,) = events
+    assert isinstance(refused, _events.Refused)
+    assert (refused.attempts, refused.reason) == (3, "Bad CRC")
+    assert client.output() == b""
+
+
+def test_a_device_can_refuse_with_a_wrong_checksum(link):
+    response = response_to(link, 0x05, verdict="nak", reason=5)
+    assert response.data == DAMAGED[1:]
+    assert response_to(link, 0x05, verdict="nak", reason=4).data == b"\5\4"

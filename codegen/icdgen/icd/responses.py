@@ -25,8 +25,8 @@ telemetry; it was refused; the device is busy; it is still being executed.
 """
 
 AGAIN = "again"
-"""Statement of a response on UART and I2C: the telecommand was damaged on the line, and
-may be sent again at once.
+"""Statement of a refusal with the reason ``checksum``: the telecommand was damaged on the
+line, and may be sent again at once.
 """
 
 NEEDED = (ACK, REPLY)  # a telecommand is done when each of these has arrived

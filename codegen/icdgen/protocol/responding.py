@@ -15,6 +15,7 @@ from icdgen.icd.model import TELECOMMAND, Message, Node
 from icdgen.icd.packets import ID_ROLE, Packets
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
+    AGAIN,
     HEADER,
     ID,
     ID_BYTES,
@@ -138,7 +139,10 @@ def exchange_of(
     (packet,) = sources.packets.of(message.name, TELECOMMAND)[:1]
     number = sources.packets.all.index(packet)
     source_of = partial(_source, sources.node, message)
-    exchange = _exchange(sources, rows, source_of, timeout, number)
+    reasons = commands.get("reasons", {})
+    exchange = _exchange(
+        sources, rows, source_of, timeout, number, reasons.get("checksum")
+    )
     return exchange if exchange.responses else None
 
 
@@ -163,11 +167,13 @@ def _exchange(
     source_of: Callable[[str], NumberPlace | None],
     timeout: int,
     sent_in: int,
+    damaged: object = None,
 ) -> Exchange:
     """Return an exchange.
 
     ``rows``: responses by kind. ``source_of`` returns the place of what a response
-    repeats. ``sent_in``: index of the packet that is sent.
+    repeats. ``sent_in``: index of the packet that is sent. ``damaged``: the reason of a
+    device that found a wrong checksum, after which a telecommand is sent again at once.
     """
     # Whether it is a place in the header, and the place.
     every: list[tuple[bool, NumberPlace]] = []
@@ -199,6 +205,12 @@ def _exchange(
                 echoes.append(Echo(place, every.index((in_header, source))))
         status = sources.number(row, status_of(kind, row))
         reason = sources.number(row, reason_of(row))
+        again = reason.raw(damaged) if reason and damaged is not None else None
+        if again is not None and kind == NAK:
+            status = reason
+        meanings = dict(_meanings(kind, row, status)) if status else {}
+        if again is not None and status == reason:
+            meanings.setdefault(again, AGAIN)
         responses.append(
             Response(
                 None if packet is not None else sources.telemetry[row["message"]][0],
@@ -206,7 +218,7 @@ def _exchange(
                 NAK if status else kind,
                 tuple(echoes),
                 status and status.place,
-                tuple(_meanings(kind, row, status)) if status else (),
+                tuple(meanings.items()),
                 reason and reason.place,
                 reason.names if reason else (),
                 packet,

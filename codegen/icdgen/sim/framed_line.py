@@ -331,7 +331,8 @@ def _refuses_with(response: Response, number: int) -> bool:
     if place is None or not 0 <= number < 1 << place.bits:
         return False
     is_status = place == response.status
-    return not is_status or dict(response.meanings).get(number, "nak") == "nak"
+    verdict = dict(response.meanings).get(number, "nak")
+    return not is_status or verdict in ("nak", "again")
 
 
 def _reason(response: Response, text: str) -> int | None:

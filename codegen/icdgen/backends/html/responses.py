@@ -44,7 +44,7 @@ _CAUSES = {
     "unknown_id": "no such telecommand",
     "length": "wrong length",
     "value": "a value is not allowed",
-    "checksum": "wrong checksum",
+    "checksum": "wrong checksum: it is sent again at once",
     "busy": "another telecommand is being executed",
 }
 _MOST_NAMES = 6  # telecommands that the page of a response lists

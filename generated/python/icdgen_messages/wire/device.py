@@ -109,7 +109,9 @@ def response_to(
     if reason is not None and response.reason:
         response.reason.put(reason, filled)
         is_kept = response.reason.of(bytes(filled)) == reason
-        if not is_kept or response.verdict_of(bytes(filled)) != verdict:
+        says = response.verdict_of(bytes(filled))
+        # A refusal can say that the telecommand was damaged.
+        if not is_kept or ("nak" if says == "again" else says) != verdict:
             raise RangeError("reason", f"a reason of the verdict {verdict}", reason)
     if response.packet is not None:
         id_of_packet, values = values_of(form.packets[response.packet], bytes(filled))
@@ -161,8 +163,8 @@ def _response(exchange: Exchange, verdict: Verdict) -> Optional[Response]:
     A response that only refuses precedes one whose status can also refuse.
     """
     for response in exchange.responses:
-        meanings = [meaning for _, meaning in response.meanings]
-        if verdict in (meanings if response.status else [response.verdict]):
+        meanings = {meaning for _, meaning in response.meanings} - {"again"}
+        if verdict in (meanings if meanings else {response.verdict}):
             return response
     for response in exchange.responses:
         place = response.status

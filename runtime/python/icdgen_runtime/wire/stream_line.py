@@ -23,7 +23,7 @@ class StreamLine:
     """
 
     has_results = False
-    checks_telecommands = False
+    checks_telecommands = True
 
     def __init__(self, link: Link, values: Optional[Mapping[str, int]]) -> None:
         self._link = link

@@ -86,7 +86,8 @@ impl<const N: usize, const S: usize> Transport for Line<N, S> {
             sent,
             lengths,
             repeats: row.repeats,
-            is_checked: false,
+            // If a refusal can say that the checksum was wrong, there is one.
+            is_checked: true,
             awaited,
         })
     }
