@@ -77,13 +77,13 @@ def test_every_assumption_stands_in_the_link_of_every_language(language):
 def test_an_assumption_is_told_once():
     facts = described()["cubeacp"].facts
     assumed = Assumptions(facts)
-    assert assumed.why("link.buses.can.extended", "fill") and not assumed.why(
-        "link.buses.can.extended", "fill"
+    assert assumed.why("link.buses.can.segments", "fill") and not assumed.why(
+        "link.buses.can.segments", "fill"
     )
-    assert [key for key, _ in assumed.of_section("link.buses.can.extended")] == [
+    assert [key for key, _ in assumed.of_section("link.buses.can.segments")] == [
         "packet_timeout_ms"
     ]
-    assert not assumed.of_section("link.buses.can.extended")
+    assert not assumed.of_section("link.buses.can.segments")
     assert len(assumed.others()) == len(facts.assumptions) - 2 and not assumed.others()
 
 

@@ -276,7 +276,7 @@ def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
 @pytest.mark.parametrize(
     ("fault", "error", "said"),
     [
-        ("nack=100%", "RefusedError", "Clear Errors (id 12) was refused: parameter"),
+        ("nack=100%", "RefusedError", "Clear Errors (id 12) was refused: value"),
         (
             "drop=100%",
             "ReplyTimeoutError",

@@ -65,7 +65,7 @@ def test_both_directions_have_their_checksum_without_being_told_to():
         Port(changed=lambda message: seen.append(message) or message),
         Request("telecommand", HEATER, b"\1"),
     )
-    assert outcome == Done(HEATER, 1) and heard == []
+    assert outcome == Done(HEATER, 1, b"\0") and heard == []
     assert seen == [i2c_write(LINK, HEATER, b"\1", True)] and len(seen[0]) == 4
     outcome, heard = asked(Port(), Request("telemetry", VOLTAGES))
     assert isinstance(outcome, Done) and len(outcome.data) == 16 and heard == []
