@@ -22,6 +22,7 @@ _IN_HEXADECIMAL = ("address_7bit", "check", "printed_constant")
 _OF_CHECKSUMS = ("kind", "check", *(fact.key for fact in facts_of(Crc)))
 # Not shown as facts: the place in the manual, reasons (in a table of their own), prose.
 _NOT_SHOWN = ("source", "assumptions", "summary")
+_PACKETS = ("link", "packets")
 
 
 class Row(NamedTuple):
@@ -101,7 +102,9 @@ def with_others(
         if place in read or place.startswith(seeds):
             continue
         # A list of mappings becomes a row for each entry.
-        if isinstance(value, list) and value and isinstance(value[0], Mapping):
+        if path == _PACKETS:
+            rows = [Row(key, _packet_text(value))]
+        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
             path, rows = (*path, key), [_entry(entry) for entry in value]
         else:
             url = urls.get(value, "") if isinstance(value, str) else ""
@@ -126,7 +129,10 @@ def _keys_with_values(
         inside = schema.inside(form, key)
         if key in _NOT_SHOWN:
             continue
-        if isinstance(value, Mapping):
+        # A packet is one row, as an entry of a list.
+        if isinstance(value, Mapping) and path == _PACKETS:
+            yield path, key, inside, value
+        elif isinstance(value, Mapping):
             yield from _keys_with_values(inside, value, (*path, key))
         else:
             yield path, key, inside, value
@@ -146,6 +152,28 @@ def _about(form: dict[str, Any], key: str) -> str:
 def _value_text(form: dict[str, Any], key: str, value: object) -> str:
     is_code = key in _IN_HEXADECIMAL or "byte" in form.get("$ref", "")
     return f"0x{value:02X}" if is_code and type(value) is int else as_text(value)
+
+
+def _packet_text(packet: Mapping[str, Any]) -> str:
+    """Return a packet in words, such as ``from device, buses uart, header: id of 8
+    bits``.
+    """
+    parts = []
+    for key, value in packet.items():
+        if key in ("header", "trailer"):
+            parts.append(f"{key}: {', '.join(map(_field_text, value))}")
+        elif key not in _NOT_SHOWN:
+            parts.append(f"{key.replace('_', ' ')} {as_text(value)}")
+    return "; ".join(parts)
+
+
+def _field_text(row: Mapping[str, Any]) -> str:
+    """Return a field of a header or trailer, such as ``constant 119 of 8 bits``, or
+    ``Status of 8 bits (Result)`` with its enumeration.
+    """
+    value = f" {as_text(row['value'])}" if "value" in row else ""
+    enum = f" ({row['enum']})" if "enum" in row else ""
+    return f"{row.get('name', row['role'])}{value} of {row['bits']} bits{enum}"
 
 
 def _entry(row: Mapping[str, Any]) -> Row:
