@@ -524,7 +524,7 @@ static inline uint32_t icdgen_field_get(const icd_packet_field_t *field, const u
 }
 
 /* Return the id of a packet whose id is in the header. */
-static inline uint32_t icdgen_field_id(
+static inline uint32_t icdgen_packet_id(
     const icd_packet_form_t *packet, icd_direction_t direction, const uint8_t *header)
 {
     uint32_t id = packet->ids[direction];
@@ -584,7 +584,7 @@ static inline uint32_t icdgen_stream_number(
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.
  */
-static inline uint32_t icdgen_field_check(
+static inline uint32_t icdgen_packet_checksum(
     const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
     const uint8_t *header,
@@ -792,7 +792,7 @@ typedef struct {
 } icdgen_outgoing_t;
 
 /* Return the part of an id that belongs into a field. If the id is too large, its topmost part does not fit. */
-static inline uint32_t icdgen_field_part(const icd_packet_form_t *packet, const icd_packet_field_t *field, uint32_t id)
+static inline uint32_t icdgen_id_part(const icd_packet_form_t *packet, const icd_packet_field_t *field, uint32_t id)
 {
     const uint32_t shift = field->values[0];
     uint32_t bits = 0;
@@ -804,7 +804,7 @@ static inline uint32_t icdgen_field_part(const icd_packet_form_t *packet, const 
 }
 
 /* Write all fields except the checksum. Return false if a value does not fit. */
-static inline bool icdgen_field_fill(
+static inline bool icdgen_packet_fill(
     const icdgen_outgoing_t *outgoing,
     size_t length,
     const icd_header_values_t *values,
@@ -819,7 +819,7 @@ static inline bool icdgen_field_fill(
             continue;
         }
         if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
-            value = icdgen_field_part(packet, field, outgoing->id);
+            value = icdgen_id_part(packet, field, outgoing->id);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
             value = icdgen_field_counted(field, length);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH) && outgoing->row != NULL) {
@@ -931,12 +931,12 @@ static inline icd_status_t icdgen_outgoing_encode(
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_HEADER_BYTES] = {0};
     uint8_t trailer[ICDGEN_HEADER_BYTES] = {0};
-    if (!icdgen_field_fill(outgoing, length, values, header, trailer)) {
+    if (!icdgen_packet_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
     const icd_packet_field_t *const check = icdgen_packet_field(packet, ICD_FIELD_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
-        const uint32_t sum = icdgen_field_check(packet, outgoing->row, header, data, length, trailer);
+        const uint32_t sum = icdgen_packet_checksum(packet, outgoing->row, header, data, length, trailer);
         icdgen_field_put(check, check->in_trailer ? trailer : header, sum);
     }
     if (outgoing->exchange != NULL) {
@@ -1349,7 +1349,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     if (packet->check != NULL) {
         if (packet->check->is_seeded && incoming.kind == ICD_EVENT_UNKNOWN_ID) {
             verdict = ICDGEN_DOUBTFUL;
-        } else if (icdgen_field_check(packet, incoming.row, frame, data, length, trailer) != sum) {
+        } else if (icdgen_packet_checksum(packet, incoming.row, frame, data, length, trailer) != sum) {
             event.kind = ICD_EVENT_CHECKSUM;
             verdict = ICDGEN_DOUBTFUL;
         } else {
@@ -1407,7 +1407,7 @@ static inline size_t icdgen_stream_front(
     if (field != NULL) {
         length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
-        const uint32_t id = icdgen_field_id(packet, decoder->direction, frame);
+        const uint32_t id = icdgen_packet_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
         if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);

@@ -254,20 +254,6 @@ class LinkDescription:
         return index if index and set(INDEX_PARTS) <= set(index.fields) else None
 
     @property
-    def polled(self) -> ReportDescription | None:
-        """Frame with the result of the last telecommand.
-
-        Its roles are id, processed, error and parameter.
-        """
-        polled = self.facts.polled
-        if polled is None:
-            return None
-        fields = {"id": polled.id, "processed": polled.processed, "error": polled.error}
-        if polled.parameter is not None:
-            fields["parameter"] = polled.parameter
-        return self.report(Report(polled.message, fields))
-
-    @property
     def identification(self) -> ReportDescription | None:
         """Frame that identifies the node."""
         return (
@@ -314,7 +300,7 @@ class LinkDescription:
         """Messages that the wire layer requests by itself, whichever messages a program
         uses.
         """
-        reports = (self.polled, self.identification)
+        reports = (self.facts.polled, self.facts.identification)
         return [report.message for report in reports if report]
 
     @cached_property

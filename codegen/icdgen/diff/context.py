@@ -29,7 +29,7 @@ class Context:
         self.match = match
         # `cache` by identity: pairs compare by identity (`eq=False`).
         self.moves = cache(moves)  # moved fields of a message
-        self.changed_packet_formats = cache(self._other_framed)
+        self.changed_packet_formats = cache(self._directions_with_changed_packets)
 
     @cached_property
     def generated(self) -> Generated:
@@ -62,7 +62,7 @@ class Context:
         """Return whether messages of the node have a packet format in both ICDs."""
         return node.both and all(map(has_packet_format, self.sides(node)))
 
-    def _other_framed(self, node: NodePair) -> frozenset[str]:
+    def _directions_with_changed_packets(self, node: NodePair) -> frozenset[str]:
         """Return the directions whose packet format changed, for nodes that have one in
         both ICDs.
         """

@@ -7,11 +7,11 @@ and ``requests`` of a `link` without ``framing``, and those of each of its ``bus
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY
 from icdgen.icd.packets import Packet, Packets, declared_packets
-from icdgen.icd.responses import Section, responses_in
+from icdgen.icd.responses import ACK, NAK, Section, responses_in
 
 UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 
@@ -83,11 +83,11 @@ def can_packets(link: BusLink) -> dict[str, Packet]:
     """
     packets = {
         "telecommand": link.carrying(TELECOMMAND),
-        "acknowledge": link.responding(link.commands.get("ack")),
-        "refusal": link.responding(link.commands.get("nak")),
+        "acknowledge": link.responding(link.commands.get(ACK)),
+        "refusal": link.responding(link.commands.get(NAK)),
         "request": link.packets.by_name(link.packets.requesting),
         "reply": link.carrying(TELEMETRY),
-        "request_refusal": link.responding(link.requests.get("nak")),
+        "request_refusal": link.responding(link.requests.get(NAK)),
     }
     return {kind: packet for kind, packet in packets.items() if packet is not None}
 

@@ -220,9 +220,9 @@ class _Loader:
         lines = Lines(self.texts.get(tree.place.file, ""))
         findings, broken = schema.check(tree, document, lines)
         violations = {finding.place: finding for finding in findings}
-        for finding in ambiguous:
+        if ambiguous:  # which is rare, and the module is large
             from icdgen.icd import remedies
-
+        for finding in ambiguous:
             violation = violations.get(finding.place)
             text = (
                 remedies.of_type("string", lines.marked(finding.place))

@@ -128,6 +128,7 @@ class Reader:
         return {bus: bus_link(link, bus) for bus in BUSES if self.bus(bus)}
 
     def acknowledge(self) -> Acknowledge | None:
+        """Return the acknowledge on the UART; None without one."""
         bus = self.buses.get(UART)
         packet = bus.responding(bus.commands.get(ACK)) if bus else None
         if bus is None or packet is None:
@@ -144,6 +145,7 @@ class Reader:
         )
 
     def polled(self) -> Polled | None:
+        """Return the telemetry that is polled on I2C; None without it."""
         bus = self.buses.get(I2C)
         row = bus.commands.get(ACK, {}) if bus else {}
         message = self.messages.get(row.get("message", ""))
@@ -165,15 +167,14 @@ class Reader:
         """
         responses = [self.acknowledge(), self.polled()]
         success = next((each.success for each in responses if each), ())
-        # Rule ICD177 checks the reasons.
-        given = self.section("link", "commands", "reasons")
-        numbers = {
-            key: number_of(value, self.error_enum())
-            for key, value in given.items()
-            if key != "assumptions"
-        }
-        codes = {key: code for key, code in numbers.items() if code is not None}
-        return {"none": success[0], **codes} if success else {}
+        if not success:
+            return {}
+        codes, enum = {"none": success[0]}, self.error_enum()
+        for cause, value in self.section("link", "commands", "reasons").items():
+            code = None if cause == "assumptions" else number_of(value, enum)
+            if code is not None:  # otherwise rule ICD105 reports it
+                codes[cause] = code
+        return codes
 
     def error_enum(self) -> Enum | None:
         """Return the enumeration of the error codes on UART and I2C; None without one."""
@@ -226,6 +227,7 @@ class Reader:
         )
 
     def can(self) -> Can | None:
+        """Return the packets on CAN; None without an identifier or packets."""
         given, bus = self.bus(CAN), self.buses.get(CAN)
         packets = can_packets(bus) if bus else {}
         if bus is None or "identifier" not in given or not packets:

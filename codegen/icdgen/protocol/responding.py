@@ -167,13 +167,13 @@ def _exchange(
     source_of: Callable[[str], NumberPlace | None],
     timeout: int,
     sent_in: int,
-    damaged: object = None,
+    reason_of_damage: object = None,
 ) -> Exchange:
     """Return an exchange.
 
     ``rows``: responses by kind. ``source_of`` returns the place of what a response
-    repeats. ``sent_in``: index of the packet that is sent. ``damaged``: the reason of a
-    device that found a wrong checksum, after which a telecommand is sent again at once.
+    repeats. ``sent_in``: index of the packet that is sent. ``reason_of_damage``:
+    that of a wrong checksum, after which a telecommand is sent again at once.
     """
     # Whether it is a place in the header, and the place.
     every: list[tuple[bool, NumberPlace]] = []
@@ -205,12 +205,16 @@ def _exchange(
                 echoes.append(Echo(place, every.index((in_header, source))))
         status = sources.number(row, status_of(kind, row))
         reason = sources.number(row, reason_of(row))
-        again = reason.raw(damaged) if reason and damaged is not None else None
-        if again is not None and kind == NAK:
+        damage = (
+            reason.raw(reason_of_damage)
+            if reason and reason_of_damage is not None
+            else None
+        )
+        if damage is not None and kind == NAK:
             status = reason
         meanings = dict(_meanings(kind, row, status)) if status else {}
-        if again is not None and status == reason:
-            meanings.setdefault(again, AGAIN)
+        if damage is not None and status == reason:
+            meanings.setdefault(damage, AGAIN)
         responses.append(
             Response(
                 None if packet is not None else sources.telemetry[row["message"]][0],

@@ -37,7 +37,6 @@ CAN_KINDS = (
     "reply",
     "request_refusal",
 )
-_POLL = "time between two polls of "
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -52,7 +52,7 @@ static inline uint32_t icdgen_field_get(const icd_packet_field_t *field, const u
 }
 
 /* Return the id of a packet whose id is in the header. */
-static inline uint32_t icdgen_field_id(
+static inline uint32_t icdgen_packet_id(
     const icd_packet_form_t *packet, icd_direction_t direction, const uint8_t *header)
 {
     uint32_t id = packet->ids[direction];
@@ -112,7 +112,7 @@ static inline uint32_t icdgen_stream_number(
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.
  */
-static inline uint32_t icdgen_field_check(
+static inline uint32_t icdgen_packet_checksum(
     const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
     const uint8_t *header,

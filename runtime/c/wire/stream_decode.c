@@ -260,7 +260,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     if (packet->check != NULL) {
         if (packet->check->is_seeded && incoming.kind == ICD_EVENT_UNKNOWN_ID) {
             verdict = ICDGEN_DOUBTFUL;
-        } else if (icdgen_field_check(packet, incoming.row, frame, data, length, trailer) != sum) {
+        } else if (icdgen_packet_checksum(packet, incoming.row, frame, data, length, trailer) != sum) {
             event.kind = ICD_EVENT_CHECKSUM;
             verdict = ICDGEN_DOUBTFUL;
         } else {
@@ -318,7 +318,7 @@ static inline size_t icdgen_stream_front(
     if (field != NULL) {
         length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
-        const uint32_t id = icdgen_field_id(packet, decoder->direction, frame);
+        const uint32_t id = icdgen_packet_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
         if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);

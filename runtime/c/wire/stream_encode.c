@@ -163,7 +163,7 @@ typedef struct {
 } icdgen_outgoing_t;
 
 /* Return the part of an id that belongs into a field. If the id is too large, its topmost part does not fit. */
-static inline uint32_t icdgen_field_part(const icd_packet_form_t *packet, const icd_packet_field_t *field, uint32_t id)
+static inline uint32_t icdgen_id_part(const icd_packet_form_t *packet, const icd_packet_field_t *field, uint32_t id)
 {
     const uint32_t shift = field->values[0];
     uint32_t bits = 0;
@@ -175,7 +175,7 @@ static inline uint32_t icdgen_field_part(const icd_packet_form_t *packet, const 
 }
 
 /* Write all fields except the checksum. Return false if a value does not fit. */
-static inline bool icdgen_field_fill(
+static inline bool icdgen_packet_fill(
     const icdgen_outgoing_t *outgoing,
     size_t length,
     const icd_header_values_t *values,
@@ -190,7 +190,7 @@ static inline bool icdgen_field_fill(
             continue;
         }
         if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
-            value = icdgen_field_part(packet, field, outgoing->id);
+            value = icdgen_id_part(packet, field, outgoing->id);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
             value = icdgen_field_counted(field, length);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH) && outgoing->row != NULL) {
@@ -302,12 +302,12 @@ static inline icd_status_t icdgen_outgoing_encode(
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_HEADER_BYTES] = {0};
     uint8_t trailer[ICDGEN_HEADER_BYTES] = {0};
-    if (!icdgen_field_fill(outgoing, length, values, header, trailer)) {
+    if (!icdgen_packet_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
     const icd_packet_field_t *const check = icdgen_packet_field(packet, ICD_FIELD_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
-        const uint32_t sum = icdgen_field_check(packet, outgoing->row, header, data, length, trailer);
+        const uint32_t sum = icdgen_packet_checksum(packet, outgoing->row, header, data, length, trailer);
         icdgen_field_put(check, check->in_trailer ? trailer : header, sum);
     }
     if (outgoing->exchange != NULL) {

@@ -17,6 +17,7 @@ from icdgen.icd.fmt.trees import (
     entry_of,
     mapping,
     move,
+    number,
     part_of,
     value_of,
     word,
@@ -135,9 +136,9 @@ def _packet(name: str, checksum: Branch, use: object, sender: str) -> Branch:
     first = "id" if isinstance(covers_id, Text) and covers_id.value else "data"
     size, optional = value_of(use, "extra_bytes"), value_of(use, "optional")
     width = value_of(checksum, "width")
-    bits = width if isinstance(width, Text) else Text(8, "8")
+    bits = width if isinstance(width, Text) else number(8)
     if isinstance(size, Text) and isinstance(size.value, int):
-        bits = Text(8 * size.value, str(8 * size.value))
+        bits = number(8 * size.value)
     field: dict[str, Text | Branch] = {
         "bits": bits,
         "role": word("checksum"),

@@ -4,16 +4,20 @@ error codes took the form of framed links: packets, commands and requests.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.icd.fmt.scalars import name
 from icdgen.icd.fmt.trees import (
     entries_of,
     entry_of,
+    item_named,
+    items_of,
     mapping,
     move,
+    number,
     part_of,
+    sequence,
     value_of,
     word,
 )
@@ -21,6 +25,7 @@ from icdgen.icd.fmt.trees import (
 _CAUSES = {"unknown_id": "unknown_id", "length": "length", "parameter": "value", "checksum": "checksum"}  # fmt: skip
 _POLLED = {"source": "source", "message": "message", "id": "echo", "until": "until",
     "error": "status", "parameter": "detail", "assumptions": "assumptions"}  # fmt: skip
+_ROLES: dict[object, str] = {"id": "id", "error": "status"}
 # Keys of `telecommand` and `telemetry` of CAN -> who sends the packet, and the key of the
 # packet of which it is a part
 _TYPES = {
@@ -57,18 +62,15 @@ def convert_buses(link: Branch, root: Branch) -> bool:
     if not any(before):
         return False
     # Where the field with the code has no enumeration, its values are numbers.
-    rows = value_of(value_of(uart, "acknowledge"), "data")
-    is_named = any(
-        entry_of(row.value, "enum")
-        for row in (rows.children if isinstance(rows, Branch) else ())
-    )
-    number, member = _convert_reasons(link, root, is_named)
+    rows = items_of(value_of(value_of(uart, "acknowledge"), "data"))
+    is_named = any(entry_of(row.value, "enum") for row in rows)
+    success, named_success = _convert_reasons(link, root, is_named)
     packets = Branch(True, False, 0)
     if isinstance(uart, Branch):
-        _convert_acknowledge(uart, packets, member)
+        _convert_acknowledge(uart, packets, named_success)
         _convert_unsolicited(uart, packets, root)
     if isinstance(i2c, Branch) and (polled := value_of(i2c, "acknowledge")):
-        _convert_polled(i2c, polled, number)
+        _convert_polled(i2c, polled, success)
     if isinstance(can, Branch):
         _convert_can(can, packets)
     if packets.children:
@@ -85,9 +87,9 @@ def _convert_reasons(link: Branch, root: Branch, is_named: bool) -> tuple[Text, 
     Return what confirms a telecommand: as a number, and like the error codes.
     """
     reasons = entry_of(link, "reasons")
-    none = number = Text(0, "0")
+    success = named_success = number(0)
     if reasons is None or not isinstance(reasons.value, Branch):
-        return number, none
+        return success, named_success
     section = reasons.value
     names = _members(root, value_of(section, "enum")) if is_named else {}
     causes: dict[str, Text | Branch] = {}
@@ -97,40 +99,29 @@ def _convert_reasons(link: Branch, root: Branch, is_named: bool) -> tuple[Text, 
             member = names.get(given.value)
             code = given if member is None else word(member)
             if key == "none":
-                number, none = given, code
+                success, named_success = given, code
             elif key in _CAUSES:
                 causes[_CAUSES[key]] = code
     commands = Branch(True, False, 0)
     move(section, {"source": "source"}, commands)
     if causes:
         commands.children.append(Child(word("reasons"), mapping(causes)))
-    comments = section.comments()
-    reasons.before += comments
+    reasons.before += section.comments()
     reasons.key, reasons.value = word("commands"), commands
     if not commands.children:
         link.children.remove(reasons)
-    return number, none
+    return success, named_success
 
 
 def _members(root: Branch, enum: object) -> dict[int, str]:
     """Return the names of an enumeration of the file by their values."""
-    wanted = enum.value if isinstance(enum, Text) else None
-    enums = value_of(root, "enums")
-    for item in enums.children if isinstance(enums, Branch) else ():
-        given = value_of(item.value, "name")
-        if isinstance(given, Text) and given.value == wanted:
-            members = value_of(item.value, "members")
-            rows = members.children if isinstance(members, Branch) else []
-            return dict(_numbered(rows))
-    return {}
-
-
-def _numbered(rows: list[Child]) -> Iterator[tuple[int, str]]:
-    for row in rows:
-        number, named = (value_of(row.value, key) for key in ("value", "name"))
-        if isinstance(number, Text) and isinstance(named, Text):
-            if isinstance(number.value, int):
-                yield number.value, str(named.value)
+    names = {}
+    for row in items_of(value_of(item_named(value_of(root, "enums"), enum), "members")):
+        value, member = (value_of(row.value, key) for key in ("value", "name"))
+        if isinstance(value, Text) and isinstance(member, Text):
+            if isinstance(value.value, int):
+                names[value.value] = str(member.value)
+    return names
 
 
 def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
@@ -141,13 +132,15 @@ def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
     section = acknowledge.value
     packet = Branch(True, False, 0)
     move(section, {"source": "source"}, packet)
-    packet.children += mapping({"from": word("device"), "buses": _list(word("uart"))}).children  # fmt: skip
+    sender: dict[str, Text | Branch] = {"from": word("device")}
+    sender["buses"] = sequence(word("uart"))
+    packet.children += mapping(sender).children
     data = entry_of(section, "data")
     if data is not None and isinstance(data.value, Branch):
         section.children.remove(data)
         data.key = word("header")
         end = 0
-        for item in data.value.children:
+        for item in items_of(data.value):
             if isinstance(item.value, Branch):
                 end = _convert_row(item.value, end)
         packet.children.append(data)
@@ -160,7 +153,7 @@ def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
     response |= {
         "echo": word("id"),
         "status": word("status"),
-        "success": _list(success),
+        "success": sequence(success),
     }
     commands = mapping({"ack": mapping(response)}, False)
     acknowledge.before += section.comments()
@@ -175,56 +168,50 @@ def _convert_row(row: Branch, end: int) -> int:
     at, size = (value_of(row, key) for key in ("byte", "bytes"))
     first = at.value if isinstance(at, Text) and isinstance(at.value, int) else end
     count = size.value if isinstance(size, Text) and isinstance(size.value, int) else 1
-    is_time = entry_of(row, "format") is not None
     role = value_of(row, "role")
-    roles = {"id": "id", "error": "status"}
-    named = role.value if isinstance(role, Text) else ""
-    present = roles.get(str(named), "time" if is_time else "flags")
-    kept = [child for child in row.children if name(child.key) in ("name", "enum", "summary")]  # fmt: skip
+    present = _ROLES.get(role.value) if isinstance(role, Text) else None
+    if present is None:
+        present = "time" if entry_of(row, "format") else "flags"
     field: dict[str, Text | Branch] = {}
     if first != end:
-        field["at"] = Text(8 * first, str(8 * first))
-    field |= {"bits": Text(8 * count, str(8 * count)), "role": word(present)}
-    row.children = mapping(field).children + kept
+        field["at"] = number(8 * first)
+    field |= {"bits": number(8 * count), "role": word(present)}
+    kept = [entry_of(row, key) for key in ("name", "enum", "summary")]
+    row.children = mapping(field).children + [child for child in kept if child]
     return first + count
 
 
 def _convert_unsolicited(uart: Branch, packets: Branch, root: Branch) -> None:
     """Make packets of the telemetry that a node sends unasked on the UART."""
     section = entry_of(uart, "unsolicited")
-    unsolicited = section.value if section else None
-    rows = unsolicited.children if isinstance(unsolicited, Branch) else []
+    rows = items_of(section.value) if section else []
     ids = [_id_of(root, value_of(row.value, "id_of")) for row in rows]
     # An ICD that names a message of another file stays as it is.
     if section is None or not rows or None in ids:
         return
     for row, id in zip(rows, ids, strict=True):
         message = value_of(row.value, "message")
-        constant = {"bits": Text(8, "8"), "role": word("constant"), "value": id or word("0")}  # fmt: skip
+        head = {"bits": number(8), "role": word("constant"), "value": id or number(0)}
         packet: dict[str, Text | Branch] = {
             "from": word("device"),
-            "buses": _list(word("uart")),
-            "header": _list(mapping(constant)),
-            "messages": _list(message if isinstance(message, Text) else word("")),
+            "buses": sequence(word("uart")),
+            "header": sequence(mapping(head)),
+            "messages": sequence(message if isinstance(message, Text) else word("")),
         }
-        number = f" {len(packets.children)}" if len(rows) > 1 else ""
+        suffix = f" {len(packets.children)}" if len(rows) > 1 else ""
         inside = row.value.comments() if isinstance(row.value, Branch) else []
         comments = [*row.before, *inside, *row.trailing]
         packets.children.append(
-            Child(word(f"unasked{number}"), mapping(packet, False), comments)
+            Child(word(f"unasked{suffix}"), mapping(packet, False), comments)
         )
     uart.children.remove(section)
 
 
-def _id_of(root: Branch, named: object) -> Text | None:
+def _id_of(root: Branch, message: object) -> Text | None:
     """Return the id of a message of the file; None without one."""
-    messages = value_of(root, "messages")
-    for item in messages.children if isinstance(messages, Branch) else ():
-        given = value_of(item.value, "name")
-        if isinstance(given, Text) and isinstance(named, Text) and given.value == named.value:  # fmt: skip
-            id = value_of(item.value, "id") or value_of(item.value, "set_id")
-            return id if isinstance(id, Text) else None
-    return None
+    item = item_named(value_of(root, "messages"), message)
+    id = value_of(item, "id") or value_of(item, "set_id")
+    return id if isinstance(id, Text) else None
 
 
 def _convert_polled(i2c: Branch, polled: object, success: Text) -> None:
@@ -233,7 +220,7 @@ def _convert_polled(i2c: Branch, polled: object, success: Text) -> None:
         return
     response = Branch(True, False, 0)
     move(polled, _POLLED, response)
-    response.children.append(Child(word("success"), _list(success)))
+    response.children.append(Child(word("success"), sequence(success)))
     acknowledge = entry_of(i2c, "acknowledge")
     assert acknowledge is not None
     acknowledge.before += polled.comments()
@@ -247,26 +234,28 @@ def _convert_can(can: Branch, packets: Branch) -> None:
     for direction, keys in _TYPES.items():
         section = value_of(can, direction)
         for key, (sender, whole) in keys.items():
-            given, part_of_ = value_of(section, key), value_of(section, whole)
+            given, whole_name = value_of(section, key), value_of(section, whole)
             if isinstance(given, Text):
                 use = uses.setdefault(str(given.value), {"from": word(sender)})
-                if whole and isinstance(part_of_, Text):
-                    use["segment_of"] = part_of_
+                if whole and isinstance(whole_name, Text):
+                    use["segment_of"] = whole_name
     types = entry_of(can, "message_types")
-    rows = value_of(types.value, "values") if types else None
     source = value_of(types.value, "source") if types else None
-    for row in rows.children if isinstance(rows, Branch) else ():
-        number, named = (value_of(row.value, key) for key in ("value", "name"))
-        if not isinstance(number, Text) or not isinstance(named, Text):
+    for row in items_of(value_of(types.value, "values")) if types else ():
+        value, packet_name, summary = (
+            value_of(row.value, key) for key in ("value", "name", "summary")
+        )
+        if not isinstance(value, Text) or not isinstance(packet_name, Text):
             continue
-        use = uses.get(str(named.value), {"from": word("both")})
-        packet = {"from": use.pop("from"), "buses": _list(word("can")), "type": number, **use}  # fmt: skip
+        use = uses.get(str(packet_name.value), {"from": word("both")})
+        packet: dict[str, Text | Branch] = {}
         if isinstance(source, Branch):
-            packet = {"source": source, **packet}
-        summary = value_of(row.value, "summary")
+            packet["source"] = source
+        packet |= {"from": use.pop("from"), "buses": sequence(word("can"))}
+        packet |= {"type": value, **use}
         if isinstance(summary, Text):
             packet["summary"] = summary
-        child = Child(named, mapping(packet), row.before, row.trailing)
+        child = Child(packet_name, mapping(packet), row.before, row.trailing)
         packets.children.append(child)
     if types:
         can.children.remove(types)
@@ -298,7 +287,3 @@ def _responses(section: object, direction: str) -> Branch:
             given = mapping({"packet": packet}) if is_response else packet
             responses.children.append(Child(word(present), given))
     return responses
-
-
-def _list(*items: Text | Branch) -> Branch:
-    return Branch(False, True, 0, [Child(NOTHING, item) for item in items])

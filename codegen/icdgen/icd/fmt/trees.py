@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from icdgen.icd.fmt.commented import Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 from icdgen.icd.fmt.scalars import name
 
 
-def word(word: str) -> Text:
-    return Text(word, word)
+def word(text: str) -> Text:
+    """Return a text as a scalar."""
+    return Text(text, text)
+
+
+def number(value: int) -> Text:
+    """Return a number as a scalar."""
+    return Text(value, str(value))
+
+
+def sequence(*items: Text | Branch) -> Branch:
+    """Return a sequence in brackets."""
+    return Branch(False, True, 0, [Child(NOTHING, item) for item in items])
 
 
 def entries_of(value: object) -> list[Child]:
@@ -20,6 +31,22 @@ def entries_of(value: object) -> list[Child]:
 def entry_of(value: object, key: str) -> Child | None:
     """Return the entry of a key; None without one."""
     return next((each for each in entries_of(value) if name(each.key) == key), None)
+
+
+def items_of(value: object) -> list[Child]:
+    """Return the items of a sequence; none of anything else."""
+    return value.children if isinstance(value, Branch) and not value.mapping else []
+
+
+def item_named(value: object, wanted: object) -> object:
+    """Return the item of a sequence with this value of the key `name`; None without one."""
+    if not isinstance(wanted, Text):
+        return None
+    for item in items_of(value):
+        given = value_of(item.value, "name")
+        if isinstance(given, Text) and given.value == wanted.value:
+            return item.value
+    return None
 
 
 def value_of(value: object, key: str) -> object:
@@ -37,6 +64,7 @@ def branches(branch: Branch) -> Iterator[Branch]:
 
 
 def mapping(entries: Mapping[str, Text | Branch], flow: bool = True) -> Branch:
+    """Return a mapping, in braces if ``flow``."""
     children = [Child(word(key), value) for key, value in entries.items()]
     return Branch(True, flow, 0, children)
 

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from icdgen.diagnostics import Related
+from icdgen.frozen import NamedTuple
 from icdgen.icd import checksum
 from icdgen.icd.buses import BUSES, CAN, I2C, UART, bus_link, buses_with
 from icdgen.icd.fault import Fault
@@ -29,6 +29,7 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
+from icdgen.once import cached_by_owner
 from icdgen.wording import count, listing, quote
 
 COMMANDS, REQUESTS = "commands", "requests"
@@ -51,7 +52,7 @@ REASONS = "reasons"
 BYTE = 8
 
 
-class OnBus(NamedTuple):
+class BusResponses(NamedTuple):
     """Responses on a bus that a node declares: those of the bus, or of the link."""
 
     link: Link
@@ -59,7 +60,7 @@ class OnBus(NamedTuple):
     key: str  # `commands` or `requests`
     owner: Map  # the mapping of that key
     is_of_link: bool
-    kinds: tuple[str, ...]  # of the responses that the bus has from here
+    kinds: tuple[str, ...]  # those that have an effect on the bus
     packets: Packets  # of the bus, those of included files too
 
     def is_elsewhere(self, row: Map) -> bool:
@@ -69,7 +70,7 @@ class OnBus(NamedTuple):
         name = row.get("packet")
         return isinstance(name, str) and self.packets.by_name(name) is None
 
-    def responses(self, ctx: Context) -> Iterator[Declared]:
+    def declared(self, ctx: Context) -> Iterator[Declared]:
         """Yield the responses that conform to the schema."""
         section = Map(self.owner.spot)
         section[self.key] = self.owner
@@ -79,36 +80,43 @@ class OnBus(NamedTuple):
                 yield declared
 
 
-def on_buses(ctx: Context) -> Iterator[OnBus]:
-    """Yield the responses that nodes declare for each of their buses."""
+@cached_by_owner
+def responses_on_buses(ctx: Context) -> tuple[BusResponses, ...]:
+    """Return the responses that nodes declare for each of their buses."""
+    return tuple(_responses(ctx))
+
+
+def _responses(ctx: Context) -> Iterator[BusResponses]:
     for link in links_on_buses(ctx):
         protocol = ctx.protocol_of(link.node)
+        own_buses = link.section.get("buses")
         for bus in (bus for bus in BUSES if bus in buses_of(protocol)):
             packets = bus_link(protocol["link"], bus).packets
-            buses = link.section.get("buses")
-            own = buses.get(bus) if isinstance(buses, Map) else None
+            own = own_buses.get(bus) if isinstance(own_buses, Map) else None
             own = own if isinstance(own, Map) else unread()
             for key in (COMMANDS, REQUESTS):
-                kinds = KINDS_ON.get((bus, key), ())
+                of_bus = KINDS_ON.get((bus, key), ())
                 # Responses of the bus precede those of the link.
-                in_effect = buses_of(protocol)[bus].get(key)
-                given = in_effect if isinstance(in_effect, Mapping) else {}
-                others = tuple(kind for kind in kinds if kind not in given)
-                for section, rest in ((own, kinds), (link.section, others)):
+                given = buses_of(protocol)[bus].get(key)
+                given = given if isinstance(given, Mapping) else {}
+                of_link = tuple(kind for kind in of_bus if kind not in given)
+                for section, kinds in ((own, of_bus), (link.section, of_link)):
                     owner = section.get(key)
                     if isinstance(owner, Map):
                         is_of_link = section is link.section
-                        yield OnBus(link, bus, key, owner, is_of_link, rest, packets)
+                        yield BusResponses(
+                            link, bus, key, owner, is_of_link, kinds, packets
+                        )
 
 
 @rule("ICD095", needs_complete=True)
 def packets_of_responses_exist(ctx: Context) -> Iterator[Fault]:
-    for on in on_buses(ctx):
-        if on.key == REQUESTS and on.bus == CAN:
-            yield from _named_packet(on, on.owner, "packet", TELECOMMAND)
-        for declared in on.responses(ctx):
+    for responses in responses_on_buses(ctx):
+        if responses.key == REQUESTS and responses.bus == CAN:
+            yield from _named_packet(responses, responses.owner, TELECOMMAND)
+        for declared in responses.declared(ctx):
             if declared.is_packet:
-                yield from _named_packet(on, declared.row, "packet", TELEMETRY)
+                yield from _named_packet(responses, declared.row, TELEMETRY)
     for link in links_on_buses(ctx):
         named = bus_link(ctx.protocol_of(link.node)["link"], CAN).packets
         for section in _sections(link):
@@ -127,62 +135,60 @@ def packets_of_responses_exist(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(section, "segment_of", text, help)
 
 
-def _named_packet(on: OnBus, owner: Map, key: str, direction: str) -> Iterator[Fault]:
-    """Yield the fault of a key that must name a packet of the bus in a direction."""
-    name = owner.get(key)
+def _named_packet(
+    responses: BusResponses, owner: Map, direction: str
+) -> Iterator[Fault]:
+    """Yield the fault of a key `packet` that must name one of the bus in a direction."""
+    name = owner.get("packet")
     if not isinstance(name, str):
         return
-    packet = on.packets.by_name(name)
+    packet = responses.packets.by_name(name)
     if packet is None:
-        names = [each.name for each in on.packets.all]
-        text = f"there is no packet {quote(name)} on `{on.bus}`"
+        names = [each.name for each in responses.packets.all]
+        text = f"there is no packet {quote(name)} on `{responses.bus}`"
         help = "add it to `packets`"
-        if on.is_of_link:
+        if responses.is_of_link:
             help += ", or write the response in `commands` of the bus that has it"
-        yield Fault.at(owner, key, text, *suggestion(name, names, help))
+        yield Fault.at(owner, "packet", text, *suggestion(name, names, help))
     elif direction not in packet.directions or packet.messages is not None:
         sender = HOST if direction == TELECOMMAND else DEVICE
         text = f"{quote(name)} is no packet of the {sender} without messages"
-        yield Fault.at(owner, key, text, f"name a packet `from: {sender}`")
-    elif on.bus == CAN and "type" not in packet.section:
+        yield Fault.at(owner, "packet", text, f"name a packet `from: {sender}`")
+    elif responses.bus == CAN and "type" not in packet.section:
         text = f"{quote(name)} has no message type, which tells packets on CAN apart"
-        yield Fault.at(owner, key, text, "add `type` to the packet")
+        yield Fault.at(owner, "packet", text, "add `type` to the packet")
 
 
 @rule("ICD105", needs_complete=True)
 def responses_on_buses_are_complete(ctx: Context) -> Iterator[Fault]:
-    for on in on_buses(ctx):
-        for declared in on.responses(ctx):
+    for responses in responses_on_buses(ctx):
+        for declared in responses.declared(ctx):
             row = declared.row
             # A response that is only a name is telemetry.
             given = {*row} or {"message"}
-            missing = [key for key in NEEDED_ON[on.bus] if key not in given]
-            if on.is_elsewhere(row):
+            missing = [key for key in NEEDED_ON[responses.bus] if key not in given]
+            if responses.is_elsewhere(row):
                 continue
             if missing:
                 keys = listing([f"`{key}`" for key in missing])
-                text = f"`{declared.kind}` on `{on.bus}` has no {keys}"
+                text = f"`{declared.kind}` on `{responses.bus}` has no {keys}"
                 help = f"add {'it' if len(missing) == 1 else 'them'}, or write the response in `commands` of the bus that has it"
                 yield Fault.at(declared.owner, declared.kind, text, help)
                 continue
-            if on.bus == UART:
+            if responses.bus == UART:
                 yield from _acknowledge(declared)
             elif isinstance(row.get("echo"), Map):
                 text = "a telemetry frame repeats the id only"
                 yield Fault.at(row, "echo", text, "name the field that repeats the id")
-            yield from _compared_fields(ctx, on, declared)
-        if on.key == REQUESTS and on.bus == CAN and "packet" not in on.owner:
+            yield from _compared_fields(ctx, responses, declared)
+        is_request = responses.key == REQUESTS and responses.bus == CAN
+        # The schema check reports a request of a bus without a packet.
+        if is_request and responses.is_of_link and "packet" not in responses.owner:
             text = "nothing says which packet requests telemetry"
-            owner = on.link.section if on.is_of_link else _bus(on)
-            yield Fault.at_key(owner, on.key, text, "add `packet:` with its name")
+            help = "add `packet:` with its name"
+            yield Fault.at_key(responses.link.section, REQUESTS, text, help)
     for link in links_on_buses(ctx):
         yield from _reasons(ctx, link)
-
-
-def _bus(on: OnBus) -> Map:
-    """Return the mapping of a bus in the file of a node."""
-    section: Map = on.link.section["buses"][on.bus]
-    return section
 
 
 def _acknowledge(declared: Declared) -> Iterator[Fault]:
@@ -200,7 +206,7 @@ def _acknowledge(declared: Declared) -> Iterator[Fault]:
                 text = "an acknowledge on the UART repeats the id only"
                 help = "name the field that repeats the id"
                 yield Fault.at(row, key, text, help)
-            continue  # ICD177
+            continue  # `_compared_fields` reports other names
         if field.get("role") != role:
             text = f"{quote(name)} has the role `{field.get('role')}`, not `{role}`"
             yield Fault.at(row, key, text, "name another field, or correct its role")
@@ -212,41 +218,45 @@ def _acknowledge(declared: Declared) -> Iterator[Fault]:
 @rule("ICD117", needs_complete=True)
 def responses_of_the_link_have_an_effect(ctx: Context) -> Iterator[Fault]:
     seen: set[tuple[int, str]] = set()
-    for on in on_buses(ctx):
-        if not on.is_of_link or (on.key == REQUESTS and on.bus != CAN):
+    for responses in responses_on_buses(ctx):
+        if not responses.is_of_link or (
+            responses.key == REQUESTS and responses.bus != CAN
+        ):
             continue  # The schema check reports keys of a bus.
-        for owner, key in _without_effect(on):
+        for owner, key in _without_effect(responses):
             if (id(owner), key) not in seen:
                 seen.add((id(owner), key))
-                text = f"`{key}` has no effect on `{on.bus}`"
+                text = f"`{key}` has no effect on `{responses.bus}`"
                 help = "remove it, or say it for the bus that has it"
                 yield Fault.at_key(owner, key, text, help)
 
 
-def _without_effect(on: OnBus) -> Iterator[tuple[Map, str]]:
+def _without_effect(responses: BusResponses) -> Iterator[tuple[Map, str]]:
     """Yield the keys of the link that have no effect on a bus, each with its mapping."""
     allowed = (
-        *KINDS_ON[on.bus, on.key],
+        *KINDS_ON[responses.bus, responses.key],
         *ABOUT,
-        "packet" if on.key == REQUESTS else REASONS,
+        "packet" if responses.key == REQUESTS else REASONS,
     )
-    for key in on.owner:
+    for key in responses.owner:
         if key not in allowed:
-            yield on.owner, key
-    reasons = on.owner.get(REASONS)
+            yield responses.owner, key
+    reasons = responses.owner.get(REASONS)
     if isinstance(reasons, Map) and BUSY in reasons:
         yield reasons, BUSY  # No response says so.
-    for kind in on.kinds:
-        row = on.owner.get(kind)
+    for kind in responses.kinds:
+        row = responses.owner.get(kind)
         row = row if isinstance(row, Map) else unread()
-        for key in () if on.is_elsewhere(row) else row:
-            if key not in (*NEEDED_ON[on.bus], *ABOUT):
+        for key in () if responses.is_elsewhere(row) else row:
+            if key not in (*NEEDED_ON[responses.bus], *ABOUT):
                 yield row, key
 
 
-def _compared_fields(ctx: Context, on: OnBus, declared: Declared) -> Iterator[Fault]:
+def _compared_fields(
+    ctx: Context, responses: BusResponses, declared: Declared
+) -> Iterator[Fault]:
     """Yield the faults of the fields of a response that a client compares."""
-    if on.bus == CAN:
+    if responses.bus == CAN:
         return  # The responses have no fields.
     if declared.packet is None and telemetry_of(ctx, declared) is None:
         if not declared.is_packet:
@@ -275,18 +285,18 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
     reasons = commands.get(REASONS) if isinstance(commands, Map) else None
     if not isinstance(reasons, Map):
         return
-    responses = [
+    with_status = [
         declared
-        for on in on_buses(ctx)
-        if on.link.node in ctx.users(link.node)
-        for declared in on.responses(ctx)
+        for responses in responses_on_buses(ctx)
+        if responses.link.node in ctx.users(link.node)
+        for declared in responses.declared(ctx)
         if "status" in declared.row and (declared.packet or telemetry_of(ctx, declared))
     ]
-    enums = [enum_of(ctx, each, each.row["status"]) for each in responses]
+    enums = [enum_of(ctx, each, each.row["status"]) for each in with_status]
     named = [enum for enum in enums if enum is not None]
     names = [member.name for enum in named for member in enum.members]
     seen: dict[int, str] = {}
-    for declared, enum in zip(responses, enums, strict=True):
+    for declared, enum in zip(with_status, enums, strict=True):
         success = declared.row.get("success")
         for value in success if isinstance(success, Seq) else ():
             if (number := number_of(value, enum)) is not None:
@@ -294,7 +304,7 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
     for cause, value in reasons.items():
         if cause == "assumptions" or not isinstance(value, int | str):
             continue
-        if not responses:
+        if not with_status:
             text = "no response on a bus has a status, so it has no reasons"
             yield Fault.at_key(commands or unread(), REASONS, text, "remove it")
             return
@@ -308,14 +318,14 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
             text = f"{number} stands for both `{seen[number]}` and `{cause}`"
             yield Fault.at(reasons, cause, text, "give each its own code")
         else:
-            yield from _width(ctx, responses, reasons, cause, number)
+            yield from _width(ctx, with_status, reasons, cause, number)
 
 
 def _width(
-    ctx: Context, responses: list[Declared], reasons: Map, cause: str, number: int
+    ctx: Context, with_status: list[Declared], reasons: Map, cause: str, number: int
 ) -> Iterator[Fault]:
     """Yield the fault of a reason that is too large for a status."""
-    for declared in responses:
+    for declared in with_status:
         field, _, _ = compared(ctx, declared, declared.row["status"], "status")
         if field and not field.range[0] <= number <= field.range[1]:
             bits = f"{count(field.bits, 'bit')} of {quote(field.name)}"
@@ -411,7 +421,7 @@ def _keys(ctx: Context, link: Link, packet: Packet, section: Map) -> Iterator[Fa
         if key not in allowed:
             text = f"`{key}` has no effect on this packet of a bus"
             yield Fault.at_key(section, key, text, "remove it")
-    if not allowed - {*OF_PACKETS} & section.keys():
+    if section.keys() & allowed <= {*OF_PACKETS}:
         text = "the packet adds nothing to the id and the data"
         yield Fault.at(section, "from", text, "add what it has, or remove the packet")
     if "messages" in section or ("header" in section and not is_response):

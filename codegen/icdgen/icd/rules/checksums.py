@@ -19,8 +19,6 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.wording import quote
 
-CAN = "can"
-
 
 @rule("ICD108", needs_complete=True)
 def ids_and_checksums_form_no_other_telecommand(ctx: Context) -> Iterator[Fault]:

@@ -29,12 +29,6 @@ def sections(node: Node) -> Iterator[Map]:
     yield from _mappings_in(node.source.get("protocol"))
 
 
-def sections_in(source: Map, key: str) -> Iterator[Map]:
-    """Yield a part of the protocol section and every mapping in it, at any depth."""
-    protocol = source.get("protocol")
-    yield from _mappings_in(protocol.get(key) if isinstance(protocol, Map) else None)
-
-
 def _mappings_in(tree: object) -> Iterator[Map]:
     queue: list[object] = [tree]
     while queue:

@@ -205,7 +205,7 @@ def _of_packet(declared: Declared) -> Iterator[Fault]:
 
 
 @rule("ICD177")
-def responses_can_becompared(ctx: Context) -> Iterator[Fault]:
+def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         for declared in declared_in(ctx, link):
             if declared.packet is None and telemetry_of(ctx, declared) is None:
@@ -571,7 +571,7 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
 
 
 @rule("ICD178")
-def telecommands_of_one_id_have_onetelemetry_of(ctx: Context) -> Iterator[Fault]:
+def telecommands_of_one_id_have_one_response(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         first_of_id: dict[int, Message] = {}
         for id, message in ids_of(ctx, link.node, TELECOMMAND):

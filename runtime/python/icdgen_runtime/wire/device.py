@@ -162,8 +162,9 @@ def _response(exchange: Exchange, verdict: Verdict) -> Optional[Response]:
     A response that only refuses precedes one whose status can also refuse.
     """
     for response in exchange.responses:
+        # `again` is a refusal for a certain reason.
         meanings = {meaning for _, meaning in response.meanings} - {"again"}
-        if verdict in (meanings if meanings else {response.verdict}):
+        if verdict in (meanings or {response.verdict}):
             return response
     for response in exchange.responses:
         place = response.status
