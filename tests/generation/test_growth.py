@@ -4,6 +4,7 @@ can have.
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -49,11 +50,14 @@ def calls(work: Callable[[], object]) -> int:
         nonlocal number
         number += event in ("call", "c_call")
 
+    gc.collect()
+    gc.disable()  # a collection calls finalizers, and what hypothesis registers with it
     sys.setprofile(count)
     try:
         work()
     finally:
         sys.setprofile(None)
+        gc.enable()
     return number
 
 
