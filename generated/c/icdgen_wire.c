@@ -484,10 +484,14 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
 #define ICDGEN_CONTAINS(packet, member) ICDGEN_IS((packet)->content, member, ICDGEN_CONTENTS)
 #define ICDGEN_IS_VERDICT(verdict, member) ICDGEN_IS(verdict, member, ICDGEN_VERDICTS)
 #define ICDGEN_HAS_FLAG(row, flag) (((row)->flags & (flag) & ICDGEN_STREAM_FLAGS) != 0u)
+#define ICDGEN_RESPONSES_HAVE(part) ((ICDGEN_RESPONSES & (part)) != 0u)
+#define ICDGEN_HAS_BUS(bus) ((ICDGEN_BUSES & ICDGEN_BIT(bus)) != 0u)
 
 /* Whether the sender chooses the value of a field. */
 #define ICDGEN_IS_OF_SENDER(field)                                                                                     \
     ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_HEADER_VALUES) - 1u)) != 0u && (field)->role < ICD_FIELD_CONSTANT)
+
+#define ICDGEN_LENGTH(value) ICDGEN_CAST(icdgen_length_t, value)
 
 /* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
@@ -512,6 +516,9 @@ static inline const icd_packet_field_t *icdgen_packet_field(const icd_packet_for
     }
     return NULL;
 }
+
+/* The field with this role. A compiler knows that there is none if no packet has one. */
+#define ICDGEN_FIELD(packet, role) ((ICDGEN_ROLES & ICDGEN_BIT(role)) != 0u ? icdgen_packet_field(packet, role) : NULL)
 
 /* Return the value of a field. `bytes` is the header or the trailer that contains the field. */
 static inline uint32_t icdgen_field_get(const icd_packet_field_t *field, const uint8_t *bytes)
@@ -538,9 +545,9 @@ static inline uint32_t icdgen_packet_id(
 }
 
 /* Return the number of data bytes that a length field says. */
-static inline int64_t icdgen_field_bytes(const icd_packet_field_t *field, uint32_t value)
+static inline icdgen_length_t icdgen_field_bytes(const icd_packet_field_t *field, uint32_t value)
 {
-    return (ICDGEN_I64(value) * ICDGEN_I64(field->values[1])) - ICDGEN_I64(ICDGEN_I32(field->values[0]));
+    return (ICDGEN_LENGTH(value) * ICDGEN_LENGTH(field->values[1])) - ICDGEN_I32(field->values[0]);
 }
 
 /* Return the value of a length field for a number of data bytes. */
@@ -934,12 +941,12 @@ static inline icd_status_t icdgen_outgoing_encode(
     if (!icdgen_packet_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
-    const icd_packet_field_t *const check = icdgen_packet_field(packet, ICD_FIELD_CHECKSUM);
+    const icd_packet_field_t *const check = ICDGEN_FIELD(packet, ICD_FIELD_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
         const uint32_t sum = icdgen_packet_checksum(packet, outgoing->row, header, data, length, trailer);
         icdgen_field_put(check, check->in_trailer ? trailer : header, sum);
     }
-    if (outgoing->exchange != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_HEADER_ECHO) && outgoing->exchange != NULL) {
         const icd_exchange_t *const exchange = outgoing->exchange;
         const size_t first = ICDGEN_SIZE(exchange->source_count) - exchange->header_count;
         for (size_t i = first; i < exchange->source_count; ++i) {
@@ -1029,7 +1036,7 @@ static inline icd_status_t icdgen_outgoing_send(
     size_t *written)
 {
     const bool per_id = outgoing->form->per_id;
-    const icd_packet_field_t *const field = icdgen_packet_field(outgoing->packet, ICD_FIELD_SEQUENCE);
+    const icd_packet_field_t *const field = ICDGEN_FIELD(outgoing->packet, ICD_FIELD_SEQUENCE);
     size_t counter = 0;
     if (per_id && outgoing->is_message) {
         counter = ICDGEN_SIZE(outgoing->row - outgoing->form->rows[outgoing->direction]);
@@ -1312,7 +1319,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
     const icd_packet_field_t *sequence = NULL;
-    int64_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
+    icdgen_length_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
     uint32_t sum = 0;
     bool is_framed = true;
     bool is_long = true; /* whether each length is right */
@@ -1327,7 +1334,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
             event.id |= value << field->values[0];
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
-            is_long = is_long && icdgen_field_bytes(field, value) == ICDGEN_I64(length);
+            is_long = is_long && icdgen_field_bytes(field, value) == ICDGEN_LENGTH(length);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH)) {
             wanted = icdgen_field_bytes(field, value);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CHECKSUM)) {
@@ -1358,7 +1365,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     }
     if (verdict == ICDGEN_PROVEN && event.kind != ICD_EVENT_UNKNOWN_ID &&
         (length < incoming.least || length > incoming.most ||
-         (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
+         (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_LENGTH(incoming.row->most)))) {
         event.kind = ICD_EVENT_LENGTH;
     }
     if (event.kind != incoming.kind || event.kind == ICD_EVENT_UNKNOWN_ID) {
@@ -1402,8 +1409,8 @@ static inline size_t icdgen_stream_front(
         decoder->needed = icdgen_stream_next(packet, left);
         return 0;
     }
-    const icd_packet_field_t *const field = icdgen_packet_field(packet, ICD_FIELD_LENGTH);
-    int64_t length;
+    const icd_packet_field_t *const field = ICDGEN_FIELD(packet, ICD_FIELD_LENGTH);
+    icdgen_length_t length;
     if (field != NULL) {
         length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
@@ -1413,11 +1420,11 @@ static inline size_t icdgen_stream_front(
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
             return icdgen_stream_skip(decoder);
         }
-        length = ICDGEN_I64(incoming.most);
+        length = ICDGEN_LENGTH(incoming.most);
     }
-    const int64_t size = length + ICDGEN_I64(icdgen_packet_around(packet));
-    if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
-        const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
+    const icdgen_length_t size = length + ICDGEN_LENGTH(icdgen_packet_around(packet));
+    if (length < 0 || size > ICDGEN_LENGTH(decoder->capacity)) {
+        const bool fits = length >= 0 && size <= ICDGEN_LENGTH(decoder->link->longest);
         icdgen_stream_tell(listener, fits ? ICD_EVENT_OVERRUN : ICD_EVENT_LENGTH);
         return icdgen_stream_skip(decoder);
     }
@@ -2518,7 +2525,8 @@ static inline icd_status_t icdgen_client_init(
         return ICD_ERROR_LENGTH;
     }
     client->slots = slots;
-    client->slot_count = slot_count;
+    client->free = slots;
+    client->end = slots + slot_count;
     for (size_t i = 0; i < slot_count; ++i) {
         (void)memset(&slots[i], 0, sizeof slots[i]);
         slots[i].data = buffer + first + (i * each);
@@ -2578,13 +2586,19 @@ static inline uint32_t icdgen_needed(const icd_awaited_t *awaited)
     return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
 }
 
+/* Return how many numbers of the telecommand a response repeats. */
+static inline size_t icdgen_echo_count(const icd_response_t *response)
+{
+    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO) ? ICDGEN_SIZE(response->echo_count) : 0u;
+}
+
 /* Return whether telemetry or a packet is this response to a request. */
 static inline bool icdgen_matches(
     const icd_awaited_t *awaited, const icd_response_t *response, const icd_event_t *event)
 {
     const uint32_t source = event->is_packet ? event->packet : event->id;
     bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
-    for (size_t i = 0; matches && i < response->echo_count; ++i) {
+    for (size_t i = 0; matches && i < icdgen_echo_count(response); ++i) {
         const icd_echo_t *const echo = &response->echoes[i];
         matches =
             icdgen_stream_number(echo->place, event->id, event->data, event->length) == awaited->sources[echo->source];
@@ -2607,16 +2621,18 @@ static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
 static inline size_t icdgen_message_sources(const icd_awaited_t *awaited)
 {
-    return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
+    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO)
+        ? ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count
+        : 0u;
 }
 
 /* Return whether the responses to two requests have different numbers at the same place. */
 static inline bool icdgen_differs_in_echo(
     const icd_awaited_t *a, const icd_response_t *response_a, const icd_awaited_t *b, const icd_response_t *response_b)
 {
-    for (size_t i = 0; i < response_a->echo_count; ++i) {
+    for (size_t i = 0; i < icdgen_echo_count(response_a); ++i) {
         const icd_echo_t *const echo = &response_a->echoes[i];
-        for (size_t j = 0; j < response_b->echo_count; ++j) {
+        for (size_t j = 0; j < icdgen_echo_count(response_b); ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
             if (echo->place == other->place && echo->source < icdgen_message_sources(a) &&
                 other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
@@ -2627,13 +2643,19 @@ static inline bool icdgen_differs_in_echo(
     return false;
 }
 
+/* I2C: return whether the reply comes with its request, and never late. */
+static inline bool icdgen_is_in_order(const icd_awaited_t *awaited)
+{
+    return ICDGEN_HAS_BUS(ICD_BUS_I2C) && awaited->is_in_order;
+}
+
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b)
 {
-    if (a->is_in_order || b->is_in_order) {
+    if (icdgen_is_in_order(a) || icdgen_is_in_order(b)) {
         return false;
     }
-    if (a->is_nameless && b->is_nameless) {
+    if ((ICDGEN_STREAM_FLAGS & ICD_STREAM_NAMELESS) != 0u && a->is_nameless && b->is_nameless) {
         return true;
     }
     for (size_t i = 0; i < icdgen_response_count(a); ++i) {
@@ -2651,7 +2673,7 @@ static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b
 
 static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
 {
-    if (response->status != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_STATUS) && response->status != NULL) {
         const uint32_t status = icdgen_stream_number(response->status, event->id, event->data, event->length);
         for (size_t i = 0; i < response->meaning_count; ++i) {
             if (response->meanings[i].value == status) {
@@ -2704,56 +2726,56 @@ static inline bool icdgen_can_be_late(const icd_client_t *client, const icd_awai
 {
     const uint32_t left = icdgen_late_end(client, awaited) - client->now;
     uint32_t longest = icdgen_timeout(client, awaited);
-    if (awaited->exchange->poll != NULL && client->settings.poll_timeout > longest) {
+    if (ICDGEN_HAS_BUS(ICD_BUS_I2C) && awaited->exchange->poll != NULL && client->settings.poll_timeout > longest) {
         longest = client->settings.poll_timeout;
     }
-    return left != 0u && left <= longest + client->settings.late;
+    return icdgen_is_owed(awaited) && left != 0u && left <= longest + client->settings.late;
 }
 
-/* Remove an entry of the late responses. Their order has no meaning: no response can be taken for two of them. */
-static inline void icdgen_forget(icd_client_t *client, size_t index)
+/* Forget the late responses that have arrived, or can no longer arrive. */
+static inline void icdgen_forget(icd_client_t *client)
 {
-    client->late_count--;
-    client->late[index] = client->late[client->late_count];
+    uint8_t kept = 0;
+    for (size_t i = 0; i < client->late_count; ++i) {
+        if (icdgen_can_be_late(client, &client->late[i])) {
+            client->late[kept] = client->late[i];
+            kept++;
+        }
+    }
+    client->late_count = kept;
 }
 
 /* Store the time, and drop what has passed. */
 static inline void icdgen_set_time(icd_client_t *client, uint32_t now)
 {
-    size_t i = 0;
     client->now = now;
     client->in_gap = client->in_gap && now - client->sent_at < client->settings.gap;
-    while (i < client->late_count) {
-        if (icdgen_can_be_late(client, &client->late[i])) {
-            i++;
-        } else {
-            icdgen_forget(client, i);
-        }
-    }
+    icdgen_forget(client);
 }
 
 /* End a request, and remember the responses that may still arrive. */
-static inline void icdgen_request_end(icd_client_t *client, size_t index)
+static inline void icdgen_request_end(icd_client_t *client, icd_slot_t *slot)
 {
-    const icd_awaited_t *const awaited = &client->slots[index].awaited;
-    if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
-        client->late[client->late_count] = *awaited;
+    if (icdgen_can_be_late(client, &slot->awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
+        client->late[client->late_count] = slot->awaited;
         client->late_count++;
     }
-    client->started--;
-    for (size_t i = index; i < client->started; ++i) {
-        uint8_t *const data = client->slots[i].data; /* free memory: it moves to the end */
-        client->slots[i] = client->slots[i + 1u];
-        client->slots[i + 1u].data = data;
+    client->free--;
+    icd_slot_t *each = slot;
+    while (each != client->free) {
+        uint8_t *const data = each->data; /* free memory: it moves to the end */
+        *each = each[1];
+        each++;
+        each->data = data;
     }
 }
 
 /* Return the oldest request that is to be sent; NULL if there is none. */
 static inline icd_slot_t *icdgen_queued(const icd_client_t *client)
 {
-    for (size_t i = 0; i < client->started; ++i) {
-        if (client->slots[i].state == ICD_SLOT_QUEUED) {
-            return &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (slot->state == ICD_SLOT_QUEUED) {
+            return slot;
         }
     }
     return NULL;
@@ -2765,18 +2787,30 @@ static inline bool icdgen_has_end(const icd_client_t *client, const icd_slot_t *
     return slot->state != ICD_SLOT_QUEUED && slot->data != client->partial;
 }
 
+/* I2C: return whether a telecommand is written, and its outcome is polled. */
+static inline bool icdgen_is_polled(const icd_slot_t *slot)
+{
+    return ICDGEN_HAS_BUS(ICD_BUS_I2C) && slot->is_polled;
+}
+
+/* Return whether transmissions have a result: those on I2C. */
+static inline bool icdgen_has_results(const icd_client_t *client)
+{
+    return ICDGEN_HAS_BUS(ICD_BUS_I2C) && client->line->has_results;
+}
+
 /* Return whether a response may arrive for a request, and it does not poll. */
 static inline bool icdgen_has_responses(const icd_slot_t *slot)
 {
-    return !slot->is_polled && (slot->awaited.has_reply || slot->awaited.exchange->response_count != 0u);
+    return !icdgen_is_polled(slot) && (slot->awaited.has_reply || slot->awaited.exchange->response_count != 0u);
 }
 
 /* Return how many other requests in progress wait for responses, also those that are to be sent again. */
 static inline size_t icdgen_unfinished(const icd_client_t *client, const icd_slot_t *slot)
 {
     size_t count = 0;
-    for (size_t i = 0; i < client->started; ++i) {
-        count += (&client->slots[i] != slot && client->slots[i].missing != 0u) ? 1u : 0u;
+    for (const icd_slot_t *other = client->slots; other != client->free; ++other) {
+        count += (other != slot && other->missing != 0u) ? 1u : 0u;
     }
     return count;
 }
@@ -2810,9 +2844,9 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 {
     icdgen_earliest_t earliest = {0u, false};
     const icd_slot_t *const queued = icdgen_queued(client);
-    for (size_t i = 0; i < client->started; ++i) {
-        if (icdgen_has_end(client, &client->slots[i])) {
-            icdgen_earliest_add(&earliest, client->slots[i].until);
+    for (const icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (icdgen_has_end(client, slot)) {
+            icdgen_earliest_add(&earliest, slot->until);
         }
     }
     if (queued != NULL) {
@@ -2833,7 +2867,7 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 /* Return whether there is memory for another request. */
 static inline bool icdgen_has_room(const icd_client_t *client)
 {
-    return client->started < client->slot_count && client->slots[client->started].data != client->partial;
+    return client->free != client->end && client->free->data != client->partial;
 }
 
 ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, const icd_request_t *request)
@@ -2852,7 +2886,7 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
         status = ICD_ERROR_BUSY;
     }
     if (status == ICD_OK) {
-        slot.data = client->slots[client->started].data;
+        slot.data = client->free->data;
         status = client->line->store(client, &slot, asks ? NULL : request->data);
     }
     if (status == ICD_OK) {
@@ -2860,8 +2894,8 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
             awaited->sources[i] =
                 icdgen_stream_number(&awaited->exchange->sources[i], slot.sent_id, slot.data, slot.length);
         }
-        client->slots[client->started] = slot;
-        client->started++;
+        *client->free = slot;
+        client->free++;
         icdgen_set_time(client, now);
     }
     return status;
@@ -2898,8 +2932,7 @@ static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot
     if (client->in_gap || !icdgen_has_responses(slot)) {
         return !client->in_gap;
     }
-    for (size_t i = 0; i < client->started; ++i) {
-        const icd_slot_t *const other = &client->slots[i];
+    for (const icd_slot_t *other = client->slots; other != client->free; ++other) {
         if (other == slot) {
             continue;
         }
@@ -2936,7 +2969,7 @@ static inline void icdgen_count_times(icd_client_t *client, icd_slot_t *slot)
     client->in_gap = client->settings.gap != 0u;
     slot->sent_at = client->now;
     slot->until = client->now + (slot->state == ICD_SLOT_WAIT ? icdgen_timeout(client, &slot->awaited) : 0u);
-    if (!slot->is_polled) {
+    if (!icdgen_is_polled(slot)) {
         slot->awaited.latest = slot->until;
     }
 }
@@ -2946,7 +2979,7 @@ static inline void icdgen_begin_attempt(icd_client_t *client, icd_slot_t *slot)
 {
     slot->attempts++;
     slot->missing = ICDGEN_U8(icdgen_needed(&slot->awaited));
-    slot->state = slot->missing != 0u || client->line->has_results ? ICD_SLOT_WAIT : ICD_SLOT_SENT;
+    slot->state = slot->missing != 0u || icdgen_has_results(client) ? ICD_SLOT_WAIT : ICD_SLOT_SENT;
     icdgen_count_times(client, slot);
 }
 
@@ -2954,7 +2987,7 @@ static inline void icdgen_begin_attempt(icd_client_t *client, icd_slot_t *slot)
 static inline void icdgen_owe(icd_slot_t *slot)
 {
     icd_awaited_t *const awaited = &slot->awaited;
-    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS && !awaited->is_in_order; ++i) {
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS && !icdgen_is_in_order(awaited); ++i) {
         awaited->owed[i] = ICDGEN_U16(awaited->owed[i] + ((ICDGEN_U32(slot->missing) >> i) & 1u));
     }
 }
@@ -2969,8 +3002,7 @@ static inline void icdgen_count_sent(icd_client_t *client, icd_slot_t *slot)
 /* The last part of the output of a request is taken. The request may have ended before. */
 static inline void icdgen_output_ends(icd_client_t *client)
 {
-    for (size_t i = 0; i < client->started; ++i) {
-        icd_slot_t *const slot = &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
         if (slot->data == client->partial && slot->state != ICD_SLOT_QUEUED) {
             icdgen_count_times(client, slot);
         }
@@ -2986,9 +3018,8 @@ ICDGEN_API bool icd_client_output(icd_client_t *client, uint8_t *buffer, size_t 
 }
 
 /* Report an event of a request. An outcome ends the request. */
-static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kind, size_t index, icd_event_t *event)
+static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kind, icd_slot_t *slot, icd_event_t *event)
 {
-    const icd_slot_t *const slot = &call->client->slots[index];
     event->kind = kind;
     event->has_id = true;
     event->id = slot->id;
@@ -2996,32 +3027,31 @@ static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kin
     event->direction = slot->direction;
     event->attempts = slot->attempts;
     if (kind != ICD_EVENT_PROGRESS && kind != ICD_EVENT_REPLY) {
-        icdgen_request_end(call->client, index);
+        icdgen_request_end(call->client, slot);
     }
     call->on_event(call->context, event);
 }
 
 /* End a request without a response. */
-static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, size_t index)
+static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, icd_slot_t *slot)
 {
     icd_event_t event;
     icdgen_event_init(&event, kind);
-    icdgen_report(call, kind, index, &event);
+    icdgen_report(call, kind, slot, &event);
 }
 
 /*
  * Process a missing or unusable response: poll or send again, or end the request. Return whether the request has ended.
  */
-static inline bool icdgen_unanswered(const icdgen_call_t *call, size_t index)
+static inline bool icdgen_unanswered(const icdgen_call_t *call, icd_slot_t *slot)
 {
     const icd_client_t *const client = call->client;
-    icd_slot_t *const slot = &client->slots[index];
-    const bool is_left = slot->is_polled ? !icdgen_reached(client->now, slot->poll_end)
-                                         : slot->repeat && slot->attempts <= client->settings.retries;
-    slot->transaction = 0;
+    const bool is_left = icdgen_is_polled(slot) ? !icdgen_reached(client->now, slot->poll_end)
+                                                : slot->repeat && slot->attempts <= client->settings.retries;
+    slot->transaction = 0; /* I2C */
     if (!is_left) {
-        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
-    } else if (!client->line->has_results) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, slot);
+    } else if (!icdgen_has_results(client)) {
         slot->state = ICD_SLOT_QUEUED;
     } else { /* a failure can be immediate: wait before the next attempt */
         slot->state = ICD_SLOT_PAUSE;
@@ -3034,19 +3064,18 @@ static inline bool icdgen_unanswered(const icdgen_call_t *call, size_t index)
 }
 
 /* Process the end of the time of a state. Return whether the request has ended. */
-static inline bool icdgen_state_ends(const icdgen_call_t *call, size_t index)
+static inline bool icdgen_state_ends(const icdgen_call_t *call, icd_slot_t *slot)
 {
     const icd_client_t *const client = call->client;
-    icd_slot_t *const slot = &client->slots[index];
     if (slot->state == ICD_SLOT_SENT) {
-        icdgen_end_request(call, ICD_EVENT_SENT, index);
+        icdgen_end_request(call, ICD_EVENT_SENT, slot);
         return true;
     }
     if (slot->state == ICD_SLOT_WAIT) {
-        return icdgen_unanswered(call, index);
+        return icdgen_unanswered(call, slot);
     }
-    if (client->line->has_results && icdgen_reached(client->now, slot->poll_end)) {
-        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
+    if (icdgen_has_results(client) && icdgen_reached(client->now, slot->poll_end)) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, slot);
         return true;
     }
     slot->state = ICD_SLOT_QUEUED;
@@ -3056,16 +3085,18 @@ static inline bool icdgen_state_ends(const icdgen_call_t *call, size_t index)
 ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     const icdgen_call_t call = {client, on_event, context};
-    size_t i = 0;
-    if (client->line != NULL && client->line->expire != NULL) {
+    icd_slot_t *slot = client->slots;
+    if (client->line == NULL) {
+        return;
+    }
+    if (ICDGEN_HAS_BUS(ICD_BUS_CAN) && client->line->expire != NULL) {
         client->line->expire(&call, now);
     }
     icdgen_set_time(client, now);
-    while (i < client->started) {
-        const icd_slot_t *const slot = &client->slots[i];
+    while (slot < client->free) { /* a callback may cancel requests */
         const bool is_over = icdgen_has_end(client, slot) && icdgen_reached(now, slot->until);
-        if (!is_over || !icdgen_state_ends(&call, i)) {
-            i++;
+        if (!is_over || !icdgen_state_ends(&call, slot)) {
+            slot++;
         }
     }
 }
@@ -3073,7 +3104,7 @@ ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn
 /* Get the reason of a refusal, or why the device is busy. */
 static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_t *response, icd_event_t *event)
 {
-    if (response->reason != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_REASON) && response->reason != NULL) {
         event->has_code = true;
         event->code = icdgen_stream_number(response->reason, event->id, event->data, event->length);
         for (size_t i = link->error_count; i > 0u; --i) {
@@ -3082,7 +3113,7 @@ static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_
             }
         }
     }
-    if (response->detail != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_DETAIL) && response->detail != NULL) {
         event->has_detail = true;
         event->detail = icdgen_stream_number(response->detail, event->id, event->data, event->length);
     }
@@ -3090,10 +3121,9 @@ static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_
 
 /* Process a response to a request. */
 static inline void icdgen_responded(
-    const icdgen_call_t *call, size_t index, const icd_response_t *response, icd_event_t *event)
+    const icdgen_call_t *call, icd_slot_t *slot, const icd_response_t *response, icd_event_t *event)
 {
     icd_client_t *const client = call->client;
-    icd_slot_t *const slot = &client->slots[index];
     const icd_verdict_t verdict = icdgen_verdict(response, event);
     const bool is_left = slot->attempts <= client->settings.retries;
     icd_event_kind_t kind = ICD_EVENT_PROGRESS;
@@ -3130,7 +3160,7 @@ static inline void icdgen_responded(
         kind = ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
         icdgen_set_reason(client->link, response, event);
     }
-    icdgen_report(call, kind, index, event);
+    icdgen_report(call, kind, slot, event);
 }
 
 /* Return whether telemetry is a response to a request that has ended. */
@@ -3140,9 +3170,7 @@ static inline bool icdgen_is_late(icd_client_t *client, const icd_event_t *event
         const icd_response_t *const response = icdgen_matching(&client->late[i], event);
         if (response != NULL) {
             icdgen_settle(&client->late[i], icdgen_verdict(response, event));
-            if (!icdgen_is_owed(&client->late[i])) {
-                icdgen_forget(client, i);
-            }
+            icdgen_forget(client);
             return true;
         }
     }
@@ -3155,11 +3183,10 @@ static inline void icdgen_client_arrived(const icdgen_call_t *call, icd_event_t 
     icd_client_t *const client = call->client;
     event->link = client->link;
     event->direction = ICD_TELEMETRY;
-    for (size_t i = 0; i < client->started; ++i) {
-        const icd_slot_t *const slot = &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
         const icd_response_t *const response = icdgen_is_awaited(slot) ? icdgen_matching(&slot->awaited, event) : NULL;
         if (response != NULL) {
-            icdgen_responded(call, i, response, event);
+            icdgen_responded(call, slot, response, event);
             return;
         }
     }
@@ -3180,21 +3207,20 @@ ICDGEN_API void icd_client_received(
 ICDGEN_API void icd_client_cancel(icd_client_t *client)
 {
     client->partial = NULL;
-    while (client->started != 0u) {
-        icdgen_request_end(client, 0);
+    while (client->free != client->slots) {
+        icdgen_request_end(client, client->slots);
     }
 }
 
 ICDGEN_API void icd_client_cancel_request(icd_client_t *client, icd_direction_t direction, uint32_t id)
 {
-    size_t i = 0;
-    while (i < client->started) {
-        const icd_slot_t *const slot = &client->slots[i];
+    icd_slot_t *slot = client->slots;
+    while (slot != client->free) {
         if (slot->direction == direction && slot->id == id) {
             client->partial = slot->data == client->partial ? NULL : client->partial;
-            icdgen_request_end(client, i);
+            icdgen_request_end(client, slot);
         } else {
-            i++;
+            slot++;
         }
     }
 }
@@ -3348,8 +3374,7 @@ static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_
     const icd_stream_row_t *row = NULL;
     const icd_stream_row_t *other = NULL;
     bool fits = false;
-    for (size_t i = 0; !fits && i < client->started; ++i) {
-        const icd_slot_t *const slot = &client->slots[i];
+    for (const icd_slot_t *slot = client->slots; !fits && slot != client->free; ++slot) {
         if (icdgen_is_awaited(slot)) {
             fits = icdgen_names(form, &slot->awaited, length, &row, &other);
         }
@@ -3744,9 +3769,9 @@ ICDGEN_API icd_status_t icd_client_can(
 /* Return the request whose attempt has begun and whose transaction is not taken yet; NULL if there is none. */
 static inline icd_slot_t *icdgen_i2c_untaken(const icd_client_t *client)
 {
-    for (size_t i = 0; i < client->started; ++i) {
-        if (client->slots[i].state == ICD_SLOT_WAIT && client->slots[i].transaction == 0u) {
-            return &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (slot->state == ICD_SLOT_WAIT && slot->transaction == 0u) {
+            return slot;
         }
     }
     return NULL;
@@ -3816,42 +3841,41 @@ static inline icd_transaction_t icdgen_i2c_untake(icd_i2c_line_t *line)
     return transaction;
 }
 
-/* Return the index of the request that awaits the result of a transaction; the number of requests if there is none. */
-static inline size_t icdgen_i2c_awaiting(const icd_client_t *client, uint16_t number)
+/* Return the request that awaits the result of a transaction; NULL if there is none. */
+static inline icd_slot_t *icdgen_i2c_awaiting(const icd_client_t *client, uint16_t number)
 {
-    size_t i = 0;
-    while (i < client->started && (client->slots[i].transaction != number || number == 0u)) {
-        ++i;
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (slot->transaction == number && number != 0u) {
+            return slot;
+        }
     }
-    return i;
+    return NULL;
 }
 
 /* Process telemetry that was read for a request. */
-static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, icd_event_t *event)
+static inline void icdgen_i2c_result(const icdgen_call_t *call, icd_slot_t *slot, icd_event_t *event)
 {
-    icd_slot_t *const slot = &call->client->slots[index];
     const icd_outcome_poll_t *const poll = slot->awaited.exchange->poll;
     const icd_response_t *const response = icdgen_matching(&slot->awaited, event);
     if (response == NULL ||
         (poll != NULL && icdgen_stream_number(&poll->until, event->id, event->data, event->length) == 0u)) {
-        (void)icdgen_unanswered(call, index);
+        (void)icdgen_unanswered(call, slot);
     } else {
         slot->transaction = 0;
-        icdgen_responded(call, index, response, event);
+        icdgen_responded(call, slot, response, event);
     }
 }
 
 /* A telecommand is written: poll its response, if it has one. */
-static inline void icdgen_i2c_written(const icdgen_call_t *call, size_t index)
+static inline void icdgen_i2c_written(const icdgen_call_t *call, icd_slot_t *slot)
 {
-    icd_slot_t *const slot = &call->client->slots[index];
     if (slot->missing == 0u) {
-        icdgen_end_request(call, ICD_EVENT_SENT, index);
+        icdgen_end_request(call, ICD_EVENT_SENT, slot);
     } else {
         slot->is_polled = true;
         slot->poll_end = call->client->now + call->client->settings.poll_timeout;
         slot->awaited.latest = slot->poll_end;
-        (void)icdgen_unanswered(call, index);
+        (void)icdgen_unanswered(call, slot);
     }
 }
 
@@ -3866,7 +3890,7 @@ ICDGEN_API void icd_client_transferred(
     }
     const icd_transaction_t transaction = icdgen_i2c_untake(client->i2c);
     icd_client_tick(client, now, on_event, context); /* may end the request */
-    size_t index = icdgen_i2c_awaiting(client, transaction.number);
+    icd_slot_t *slot = icdgen_i2c_awaiting(client, transaction.number);
     if (transaction.number == 0u) {
         icdgen_event_init(&event, ICD_EVENT_STRAY);
         event.data = bytes;
@@ -3886,22 +3910,21 @@ ICDGEN_API void icd_client_transferred(
     if (status != ICD_OK) {
         const bool is_damaged = status == ICD_ERROR_CHECKSUM;
         icdgen_bus_fault(&call, is_damaged ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH, &event);
-        index = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
-        if (index < client->started) {
-            (void)icdgen_unanswered(&call, index);
+        slot = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
+        if (slot != NULL) {
+            (void)icdgen_unanswered(&call, slot);
         }
-    } else if (index == client->started) {
+    } else if (slot == NULL) {
         on_event(context, &event);
     } else if (bytes == NULL) {
-        icd_slot_t *const slot = &client->slots[index];
         if (!slot->is_polled) { /* the node has not received the telecommand */
             (void)memset(slot->awaited.owed, 0, sizeof slot->awaited.owed);
         }
-        (void)icdgen_unanswered(&call, index);
+        (void)icdgen_unanswered(&call, slot);
     } else if (transaction.reads) {
-        icdgen_i2c_result(&call, index, &event);
+        icdgen_i2c_result(&call, slot, &event);
     } else {
-        icdgen_i2c_written(&call, index);
+        icdgen_i2c_written(&call, slot);
     }
 }
 

@@ -465,6 +465,13 @@ typedef struct {
     icd_verdict_t verdict;
 } icd_meaning_t;
 
+/* Parts that responses can have. */
+#define ICDGEN_RESPONSE_ECHO 1u        /* repeats numbers of the telecommand */
+#define ICDGEN_RESPONSE_HEADER_ECHO 2u /* repeats numbers of its header */
+#define ICDGEN_RESPONSE_STATUS 4u
+#define ICDGEN_RESPONSE_REASON 8u
+#define ICDGEN_RESPONSE_DETAIL 16u
+
 /**
  * Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. Places that the ICD
  * does not have are NULL.
@@ -577,6 +584,22 @@ typedef struct {
      ICDGEN_BIT(ICD_VERDICT_AGAIN) | \
      ICDGEN_BIT(ICD_VERDICT_NAK) | \
      ICDGEN_BIT(ICD_VERDICT_REPLY))
+
+/* Parts of responses. */
+#define ICDGEN_RESPONSES \
+    (ICDGEN_RESPONSE_DETAIL | \
+     ICDGEN_RESPONSE_ECHO | \
+     ICDGEN_RESPONSE_REASON | \
+     ICDGEN_RESPONSE_STATUS)
+
+/* Of icd_bus_t. */
+#define ICDGEN_BUSES \
+    (ICDGEN_BIT(ICD_BUS_CAN) | \
+     ICDGEN_BIT(ICD_BUS_I2C) | \
+     ICDGEN_BIT(ICD_BUS_UART))
+
+/* Holds the number of data bytes that any length field says. */
+typedef int32_t icdgen_length_t;
 /* clang-format on */
 
 /* ---- description of the procedures of a node --------------------------------------------------------------------- */
@@ -779,37 +802,37 @@ typedef struct {
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
+    uint8_t error_count;
+    uint8_t unsolicited_count;
+    uint16_t telecommand_count, telemetry_count;
     const icd_message_t *telecommands; /**< In ascending order of the ids. */
     const icd_message_t *telemetry;    /**< In ascending order of the ids. */
-    uint16_t telecommand_count, telemetry_count;
     uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum; on framed links only of the data. */
     uint32_t longest_reply;
     uint32_t longest;
-    uint32_t longest_data;   /**< Largest size in bytes, without id and checksum. */
-    uint32_t received_bytes; /**< Buffer size in bytes of a client for what it receives. */
-    int32_t node_type;       /**< -1 if the ICD has none. */
-    int32_t interface_version;
-    icd_client_settings_t client;
+    uint32_t longest_data;           /**< Largest size in bytes, without id and checksum. */
+    uint32_t received_bytes;         /**< Buffer size in bytes of a client for what it receives. */
+    const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
+    const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
+    const icd_checksum_form_t *checksum;
     const icd_error_code_t *errors;
-    uint8_t error_count;
-    uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
-    uint8_t unsolicited_count;
+    const icd_log_message_form_t *log_message;
+    const icd_can_form_t *can;
+    icd_client_settings_t client;
+    uint32_t no_error;
+    int32_t node_type; /**< -1 if the ICD has none. */
+    int32_t interface_version;
     int16_t i2c_address;     /**< 7-bit address, -1 if the ICD has none. */
     bool i2c_repeated_start; /**< Whether a read may follow its write without a stop. */
     int32_t boot_ms;         /**< Waiting time of the boot program in ms, -1 if unknown. */
-    const icd_can_form_t *can;
-    const icd_checksum_form_t *checksum;
     const icd_log_mask_form_t *log_mask;
     const icd_log_file_form_t *log_file;
-    const icd_log_message_form_t *log_message;
     const icd_time_form_t *time;
     const icd_index_form_t *index;
     const icd_report_t *identification;
-    const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
-    const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 
 /** Return whether `node` is the node of this link or a node that it includes. */
@@ -872,26 +895,26 @@ typedef enum {
  */
 typedef struct {
     icd_event_kind_t kind;
-    bool has_id; /**< Whether the id is known. */
+    bool has_id;         /**< Whether `id` is known. */
+    bool has_reply;      /**< Events of a request: whether telemetry `reply` led to the event. */
+    bool has_code;       /**< REFUSED, BUSY: whether the response has a reason `code`. */
+    bool has_detail;     /**< REFUSED on I2C: whether the response has the index `detail` of a parameter. */
+    icd_reason_t reason; /**< REFUSED: meaning of `code` on UART and I2C. */
+    bool is_packet;      /**< Whether the packet or the response contains no message. `data` are all its bytes. */
+    uint8_t packet;      /**< Framed links: index of the packet format. */
+    icd_direction_t direction;
+    uint8_t source;          /**< CAN: address of the sender. */
+    uint8_t destination;     /**< MESSAGE on CAN. */
+    icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
     uint32_t id;
     const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
     const icd_link_t *link; /**< Client: link of the node, if the event belongs to a message of it; otherwise NULL. */
-    icd_direction_t direction;
-    uint32_t attempts;       /**< Outcomes: number of times the request was sent. */
-    uint32_t missing;        /**< GAP, INCOMPLETE. */
-    bool has_reply;          /**< Events of a request: whether telemetry led to the event. */
-    uint32_t reply;          /**< Its id. */
-    bool is_packet;          /**< Whether the packet or the response contains no message. `data` are all its bytes. */
-    uint8_t packet;          /**< Framed links: index of the packet format. */
-    bool has_code;           /**< REFUSED, BUSY: whether the response has a reason. */
-    uint32_t code;           /**< The reason. */
-    icd_reason_t reason;     /**< REFUSED: meaning of the code on UART and I2C. */
-    bool has_detail;         /**< REFUSED on I2C: whether the response has the index of a parameter. */
-    uint32_t detail;         /**< Index of the invalid parameter. */
-    uint8_t source;          /**< CAN: address of the sender. */
-    uint8_t destination;     /**< MESSAGE on CAN. */
-    icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
+    uint32_t attempts;      /**< Outcomes: number of times the request was sent. */
+    uint32_t missing;       /**< GAP, INCOMPLETE. */
+    uint32_t reply;         /**< Id of the telemetry that led to the event. */
+    uint32_t code;          /**< Reason of a refusal. */
+    uint32_t detail;        /**< Index of the invalid parameter. */
     icd_header_values_t values; /**< Framed links: header and trailer values of a message. */
 } icd_event_t;
 
@@ -1160,6 +1183,12 @@ typedef struct {
     const icd_link_t *link;
     const icd_stream_form_t *form;
     icd_direction_t direction;
+    bool escaped;
+    bool inside;  /* escape characters: whether a packet has begun */
+    bool zero;    /* COBS: whether a zero follows the block */
+    uint8_t left; /* COBS: remaining bytes of the block */
+    bool faulty;
+    icd_event_kind_t fault;
     uint8_t *buffer;
     size_t capacity;
     size_t length; /**< Number of bytes in the buffer. */
@@ -1168,12 +1197,6 @@ typedef struct {
     size_t sequence_count;
     size_t pending;     /**< Received bytes that may still become part of a message. */
     uint32_t discarded; /**< Number of received bytes that are not part of a message. May wrap around. */
-    bool escaped;
-    bool inside;  /* escape characters: whether a packet has begun */
-    bool zero;    /* COBS: whether a zero follows the block */
-    uint8_t left; /* COBS: remaining bytes of the block */
-    bool faulty;
-    icd_event_kind_t fault;
 } icd_stream_decoder_t;
 
 /**
@@ -1514,17 +1537,25 @@ typedef enum {
 /* The responses that may arrive for a request that was sent. */
 typedef struct {
     const icd_exchange_t *exchange;
-    uint32_t reply;                        /* id of the telemetry that the caller specified, or that is requested */
-    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
-    uint32_t latest;                       /* time until which a response is not late */
-    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
     bool has_reply;                        /* whether `reply` is given; otherwise as in the ICD */
     bool is_nameless;                      /* the reply comes in a packet without its id */
     bool is_in_order;                      /* I2C: the reply comes with its request, and never late */
+    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
+    uint32_t reply;                        /* id of the telemetry that the caller specified, or that is requested */
+    uint32_t latest;                       /* time until which a response is not late */
+    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
 } icd_awaited_t;
 
 /** Memory for a request. */
 typedef struct {
+    icd_slot_state_t state;
+    icd_direction_t direction;
+    bool repeat;
+    bool asks_by_id; /* telemetry is requested by its id, not by a telecommand */
+    bool is_polled;  /* I2C: the telecommand is written, and its outcome is polled */
+    uint8_t missing; /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
+    uint16_t attempts;
+    uint16_t transaction; /* I2C: number of the transaction whose result is awaited; 0: none */
     icd_awaited_t awaited;
     uint32_t id;      /* with which the request was started */
     uint32_t sent_id; /* of the telecommand that is sent, or of the telemetry that is requested by its id */
@@ -1533,14 +1564,6 @@ typedef struct {
     uint32_t sent_at;  /* time of the last transmission */
     uint32_t until;    /* time at which the state ends */
     uint32_t poll_end; /* I2C: time at which polling ends */
-    uint16_t attempts;
-    uint16_t transaction; /* I2C: number of the transaction whose result is awaited; 0: none */
-    uint8_t missing;      /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
-    bool repeat;
-    bool asks_by_id; /* telemetry is requested by its id, not by a telecommand */
-    bool is_polled;  /* I2C: the telecommand is written, and its outcome is polled */
-    icd_direction_t direction;
-    icd_slot_state_t state;
 } icd_slot_t;
 
 /** Line of a framed link. `sender.values` are the header and trailer values. */
@@ -1589,6 +1612,10 @@ typedef struct icd_line icd_line_t; /* functions of the line */
  * device handles, or while a response to another request could be taken for a response to it.
  */
 typedef struct {
+    bool in_gap; /* less than the gap has passed since `sent_at` */
+    bool checks_telecommands;
+    bool checks_telemetry;
+    uint8_t late_count;             /* number of elements of `late` */
     icd_client_settings_t settings; /**< Times and retries. May be changed while no request is in progress. */
     const icd_link_t *link;
     const icd_line_t *line; /* NULL unless initialized without an error */
@@ -1596,16 +1623,12 @@ typedef struct {
     icd_uart_line_t *uart;
     icd_can_line_t *can;
     icd_i2c_line_t *i2c;
-    icd_slot_t *slots; /* the requests, in the order in which they were started, then free memory */
-    size_t slot_count;
-    size_t started;         /* number of requests */
-    const uint8_t *partial; /* data of the request whose output is only partly taken; otherwise NULL */
-    uint32_t now;           /* time of the last call */
-    uint32_t sent_at;       /* time of the last transmission */
-    bool in_gap;            /* less than the gap has passed since */
-    bool checks_telecommands;
-    bool checks_telemetry;
-    uint8_t late_count;
+    icd_slot_t *slots; /* the requests, in the order in which they were started */
+    icd_slot_t *free;  /* behind the last request: free memory, up to `end` */
+    icd_slot_t *end;
+    const uint8_t *partial;                  /* data of the request whose output is only partly taken; otherwise NULL */
+    uint32_t now;                            /* time of the last call */
+    uint32_t sent_at;                        /* time of the last transmission */
     icd_awaited_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
 } icd_client_t;
 

@@ -53,6 +53,87 @@ static const icd_checksum_algorithm_t icdgen_node_common_checksum_crc16 = {
     {16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u,
      NULL, ICDGEN_TABLE(icdgen_node_common_checksum_crc16_table)},
 };
+static const icd_number_place_t icdgen_node_common_sources_0[] = {
+    {0u, 4u, 0u, 32u, false},
+};
+static const icd_number_place_t icdgen_node_common_place_0[] = {
+    {4u, 1u, 0u, 8u, false},
+};
+static const icd_echo_t icdgen_node_common_echoes_0[] = {
+    {icdgen_node_common_place_0, 0u},
+};
+static const icd_meaning_t icdgen_node_common_meanings_0[] = {
+    {0x0u, ICD_VERDICT_ACK},
+    {0x4u, ICD_VERDICT_AGAIN},
+};
+static const icd_number_place_t icdgen_node_common_place_1[] = {
+    {5u, 1u, 0u, 8u, false},
+};
+static const icd_response_t icdgen_node_common_responses_0[] = {
+    {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
+        icdgen_node_common_echoes_0, icdgen_node_common_meanings_0,
+        icdgen_node_common_place_1, icdgen_node_common_place_1, NULL},
+};
+static const icd_exchange_t icdgen_node_common_uart_exchanges[] = {
+    {icdgen_node_common_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_0,
+        1u, 0u, 1u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_common_on_uart = {
+    &icdgen_node_common_uart_exchanges[1], &icdgen_node_common_uart_exchanges[0],
+};
+static const icd_number_place_t icdgen_node_common_place_2[] = {
+    {4u, 1u, 0u, 8u, true},
+};
+static const icd_echo_t icdgen_node_common_echoes_1[] = {
+    {icdgen_node_common_place_2, 0u},
+};
+static const icd_number_place_t icdgen_node_common_place_3[] = {
+    {6u, 1u, 0u, 8u, true},
+};
+static const icd_number_place_t icdgen_node_common_place_4[] = {
+    {7u, 1u, 0u, 8u, true},
+};
+static const icd_response_t icdgen_node_common_responses_1[] = {
+    {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
+        icdgen_node_common_echoes_1, icdgen_node_common_meanings_0,
+        icdgen_node_common_place_3, icdgen_node_common_place_3, icdgen_node_common_place_4},
+};
+static const icd_outcome_poll_t icdgen_node_common_outcome_poll = {
+    240u, {5u, 1u, 0u, 1u, true},
+};
+static const icd_exchange_t icdgen_node_common_i2c_exchanges[] = {
+    {icdgen_node_common_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_1,
+        1u, 0u, 1u, false, 0u, &icdgen_node_common_outcome_poll},
+};
+static const icd_bus_exchanges_t icdgen_node_common_on_i2c = {
+    &icdgen_node_common_i2c_exchanges[1], &icdgen_node_common_i2c_exchanges[0],
+};
+static const icd_response_t icdgen_node_common_responses_2[] = {
+    {0x2u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_common_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_response_t icdgen_node_common_responses_3[] = {
+    {0x0u, ICD_VERDICT_ACK, 1u, true, 0x1u, 0u,
+        icdgen_node_common_echoes_0, NULL,
+        NULL, NULL, NULL},
+    {0x1u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_common_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_exchange_t icdgen_node_common_can_exchanges[] = {
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_2,
+        1u, 0u, 1u, true, 0u, NULL},
+    {icdgen_node_common_sources_0, icdgen_node_common_responses_3,
+        1u, 0u, 2u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_common_on_can = {
+    &icdgen_node_common_can_exchanges[1], &icdgen_node_common_can_exchanges[0],
+};
 static const icd_message_t icdgen_node_common_telecommands[] = {
 #if !defined(COMMON_CHOSEN) || \
     defined(COMMON_WITH_RESET)
@@ -382,87 +463,6 @@ static const icd_place_t icdgen_node_common_identification_places[] = {
 static const icd_report_t icdgen_node_common_identification = {
     -1, 128, 8u, 2u, icdgen_node_common_identification_places,
 };
-static const icd_number_place_t icdgen_node_common_sources_0[] = {
-    {0u, 4u, 0u, 32u, false},
-};
-static const icd_number_place_t icdgen_node_common_place_0[] = {
-    {4u, 1u, 0u, 8u, false},
-};
-static const icd_echo_t icdgen_node_common_echoes_0[] = {
-    {icdgen_node_common_place_0, 0u},
-};
-static const icd_meaning_t icdgen_node_common_meanings_0[] = {
-    {0x0u, ICD_VERDICT_ACK},
-    {0x4u, ICD_VERDICT_AGAIN},
-};
-static const icd_number_place_t icdgen_node_common_place_1[] = {
-    {5u, 1u, 0u, 8u, false},
-};
-static const icd_response_t icdgen_node_common_responses_0[] = {
-    {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
-        icdgen_node_common_echoes_0, icdgen_node_common_meanings_0,
-        icdgen_node_common_place_1, icdgen_node_common_place_1, NULL},
-};
-static const icd_exchange_t icdgen_node_common_uart_exchanges[] = {
-    {icdgen_node_common_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_common_sources_0, icdgen_node_common_responses_0,
-        1u, 0u, 1u, false, 0u, NULL},
-};
-static const icd_bus_exchanges_t icdgen_node_common_on_uart = {
-    &icdgen_node_common_uart_exchanges[1], &icdgen_node_common_uart_exchanges[0],
-};
-static const icd_number_place_t icdgen_node_common_place_2[] = {
-    {4u, 1u, 0u, 8u, true},
-};
-static const icd_echo_t icdgen_node_common_echoes_1[] = {
-    {icdgen_node_common_place_2, 0u},
-};
-static const icd_number_place_t icdgen_node_common_place_3[] = {
-    {6u, 1u, 0u, 8u, true},
-};
-static const icd_number_place_t icdgen_node_common_place_4[] = {
-    {7u, 1u, 0u, 8u, true},
-};
-static const icd_response_t icdgen_node_common_responses_1[] = {
-    {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
-        icdgen_node_common_echoes_1, icdgen_node_common_meanings_0,
-        icdgen_node_common_place_3, icdgen_node_common_place_3, icdgen_node_common_place_4},
-};
-static const icd_outcome_poll_t icdgen_node_common_outcome_poll = {
-    240u, {5u, 1u, 0u, 1u, true},
-};
-static const icd_exchange_t icdgen_node_common_i2c_exchanges[] = {
-    {icdgen_node_common_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_common_sources_0, icdgen_node_common_responses_1,
-        1u, 0u, 1u, false, 0u, &icdgen_node_common_outcome_poll},
-};
-static const icd_bus_exchanges_t icdgen_node_common_on_i2c = {
-    &icdgen_node_common_i2c_exchanges[1], &icdgen_node_common_i2c_exchanges[0],
-};
-static const icd_response_t icdgen_node_common_responses_2[] = {
-    {0x2u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
-        icdgen_node_common_echoes_0, NULL,
-        NULL, NULL, NULL},
-};
-static const icd_response_t icdgen_node_common_responses_3[] = {
-    {0x0u, ICD_VERDICT_ACK, 1u, true, 0x1u, 0u,
-        icdgen_node_common_echoes_0, NULL,
-        NULL, NULL, NULL},
-    {0x1u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
-        icdgen_node_common_echoes_0, NULL,
-        NULL, NULL, NULL},
-};
-static const icd_exchange_t icdgen_node_common_can_exchanges[] = {
-    {icdgen_node_common_sources_0, icdgen_node_common_responses_2,
-        1u, 0u, 1u, true, 0u, NULL},
-    {icdgen_node_common_sources_0, icdgen_node_common_responses_3,
-        1u, 0u, 2u, false, 0u, NULL},
-};
-static const icd_bus_exchanges_t icdgen_node_common_on_can = {
-    &icdgen_node_common_can_exchanges[1], &icdgen_node_common_can_exchanges[0],
-};
 
 ICDGEN_API const icd_link_t *common_link(void)
 {
@@ -479,36 +479,38 @@ ICDGEN_API const icd_link_t *common_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_common_telecommands, /* what can be sent */
-        icdgen_node_common_telemetry, /* what can be requested */
+        5u, /* how many error codes */
+        1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         29u, /* buffer for what is received */
-        -1, /* node type */
-        -1, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        icdgen_node_common_errors, /* error codes */
-        5u, 0u, /* how many; no error */
-        &icdgen_node_common_framing, /* framing of the UART */
-        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
-        icdgen_node_common_unsolicited, 1u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        &icdgen_node_common_can, /* CAN */
-        NULL, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        NULL, /* unsolicited logs */
-        ICDGEN_OF_FILES(&icdgen_node_common_packed_time), /* packed times */
-        ICDGEN_OF_FILES(&icdgen_node_common_index_entry), /* index of files */
-        &icdgen_node_common_identification, /* identification */
+        NULL, /* framing */
         {&icdgen_node_common_on_uart,
             &icdgen_node_common_on_i2c,
             &icdgen_node_common_on_can}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        NULL, /* checksums of messages */
+        icdgen_node_common_errors, /* error codes */
+        &icdgen_node_common_framing, /* framing of the UART */
+        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
+        icdgen_node_common_unsolicited, /* unsolicited */
+        NULL, /* unsolicited logs */
+        &icdgen_node_common_can, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        -1, /* node type */
+        -1, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        ICDGEN_OF_FILES(&icdgen_node_common_packed_time), /* packed times */
+        ICDGEN_OF_FILES(&icdgen_node_common_index_entry), /* index of files */
+        &icdgen_node_common_identification, /* identification */
     };
     return &link;
 }
@@ -521,36 +523,38 @@ ICDGEN_API const icd_link_t *common_uart_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_common_telecommands, /* what can be sent */
-        icdgen_node_common_telemetry, /* what can be requested */
+        5u, /* how many error codes */
+        1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         29u, /* buffer for what is received */
-        -1, /* node type */
-        -1, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        icdgen_node_common_errors, /* error codes */
-        5u, 0u, /* how many; no error */
-        &icdgen_node_common_framing, /* framing of the UART */
-        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
-        icdgen_node_common_unsolicited, 1u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        NULL, /* CAN */
-        NULL, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        NULL, /* unsolicited logs */
-        NULL, /* packed times */
-        NULL, /* index of files */
-        NULL, /* identification */
+        NULL, /* framing */
         {&icdgen_node_common_on_uart,
             NULL,
             NULL}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        NULL, /* checksums of messages */
+        icdgen_node_common_errors, /* error codes */
+        &icdgen_node_common_framing, /* framing of the UART */
+        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
+        icdgen_node_common_unsolicited, /* unsolicited */
+        NULL, /* unsolicited logs */
+        NULL, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        -1, /* node type */
+        -1, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
     };
     return &link;
 }
@@ -563,36 +567,38 @@ ICDGEN_API const icd_link_t *common_i2c_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_common_telecommands, /* what can be sent */
-        icdgen_node_common_telemetry, /* what can be requested */
+        5u, /* how many error codes */
+        0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         29u, /* buffer for what is received */
-        -1, /* node type */
-        -1, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        icdgen_node_common_errors, /* error codes */
-        5u, 0u, /* how many; no error */
-        NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
-        NULL, 0u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        NULL, /* CAN */
-        NULL, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        NULL, /* unsolicited logs */
-        NULL, /* packed times */
-        NULL, /* index of files */
-        NULL, /* identification */
+        NULL, /* framing */
         {NULL,
             &icdgen_node_common_on_i2c,
             NULL}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        NULL, /* checksums of messages */
+        icdgen_node_common_errors, /* error codes */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, /* unsolicited */
+        NULL, /* unsolicited logs */
+        NULL, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        -1, /* node type */
+        -1, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
     };
     return &link;
 }
@@ -605,36 +611,38 @@ ICDGEN_API const icd_link_t *common_can_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_common_telecommands, /* what can be sent */
-        icdgen_node_common_telemetry, /* what can be requested */
+        0u, /* how many error codes */
+        0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
+        icdgen_node_common_telecommands, /* what can be sent */
+        icdgen_node_common_telemetry, /* what can be requested */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         29u, /* buffer for what is received */
-        -1, /* node type */
-        -1, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        NULL, /* error codes */
-        0u, 0u, /* how many; no error */
-        NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
-        NULL, 0u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        &icdgen_node_common_can, /* CAN */
-        NULL, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        NULL, /* unsolicited logs */
-        NULL, /* packed times */
-        NULL, /* index of files */
-        NULL, /* identification */
+        NULL, /* framing */
         {NULL,
             NULL,
             &icdgen_node_common_on_can}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        NULL, /* checksums of messages */
+        NULL, /* error codes */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, /* unsolicited */
+        NULL, /* unsolicited logs */
+        &icdgen_node_common_can, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        -1, /* node type */
+        -1, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
     };
     return &link;
 }

@@ -95,6 +95,87 @@ static const icd_checksum_algorithm_t icdgen_node_cubeacp_checksum_crc8 = {
     {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu,
      ICDGEN_TABLE(icdgen_node_cubeacp_checksum_crc8_table), NULL},
 };
+static const icd_number_place_t icdgen_node_cubeacp_sources_0[] = {
+    {0u, 4u, 0u, 32u, false},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_0[] = {
+    {4u, 1u, 0u, 8u, false},
+};
+static const icd_echo_t icdgen_node_cubeacp_echoes_0[] = {
+    {icdgen_node_cubeacp_place_0, 0u},
+};
+static const icd_meaning_t icdgen_node_cubeacp_meanings_0[] = {
+    {0x0u, ICD_VERDICT_ACK},
+    {0x4u, ICD_VERDICT_AGAIN},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_1[] = {
+    {5u, 1u, 0u, 8u, false},
+};
+static const icd_response_t icdgen_node_cubeacp_responses_0[] = {
+    {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
+        icdgen_node_cubeacp_echoes_0, icdgen_node_cubeacp_meanings_0,
+        icdgen_node_cubeacp_place_1, icdgen_node_cubeacp_place_1, NULL},
+};
+static const icd_exchange_t icdgen_node_cubeacp_uart_exchanges[] = {
+    {icdgen_node_cubeacp_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_0,
+        1u, 0u, 1u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_cubeacp_on_uart = {
+    &icdgen_node_cubeacp_uart_exchanges[1], &icdgen_node_cubeacp_uart_exchanges[0],
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_2[] = {
+    {4u, 1u, 0u, 8u, true},
+};
+static const icd_echo_t icdgen_node_cubeacp_echoes_1[] = {
+    {icdgen_node_cubeacp_place_2, 0u},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_3[] = {
+    {6u, 1u, 0u, 8u, true},
+};
+static const icd_number_place_t icdgen_node_cubeacp_place_4[] = {
+    {7u, 1u, 0u, 8u, true},
+};
+static const icd_response_t icdgen_node_cubeacp_responses_1[] = {
+    {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
+        icdgen_node_cubeacp_echoes_1, icdgen_node_cubeacp_meanings_0,
+        icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_4},
+};
+static const icd_outcome_poll_t icdgen_node_cubeacp_outcome_poll = {
+    240u, {5u, 1u, 0u, 1u, true},
+};
+static const icd_exchange_t icdgen_node_cubeacp_i2c_exchanges[] = {
+    {icdgen_node_cubeacp_sources_0, NULL,
+        1u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_1,
+        1u, 0u, 1u, false, 0u, &icdgen_node_cubeacp_outcome_poll},
+};
+static const icd_bus_exchanges_t icdgen_node_cubeacp_on_i2c = {
+    &icdgen_node_cubeacp_i2c_exchanges[1], &icdgen_node_cubeacp_i2c_exchanges[0],
+};
+static const icd_response_t icdgen_node_cubeacp_responses_2[] = {
+    {0x2u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_cubeacp_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_response_t icdgen_node_cubeacp_responses_3[] = {
+    {0x0u, ICD_VERDICT_ACK, 1u, true, 0x1u, 0u,
+        icdgen_node_cubeacp_echoes_0, NULL,
+        NULL, NULL, NULL},
+    {0x1u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
+        icdgen_node_cubeacp_echoes_0, NULL,
+        NULL, NULL, NULL},
+};
+static const icd_exchange_t icdgen_node_cubeacp_can_exchanges[] = {
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_2,
+        1u, 0u, 1u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_3,
+        1u, 0u, 2u, false, 0u, NULL},
+};
+static const icd_bus_exchanges_t icdgen_node_cubeacp_on_can = {
+    &icdgen_node_cubeacp_can_exchanges[1], &icdgen_node_cubeacp_can_exchanges[0],
+};
 static const icd_message_t icdgen_node_cubeacp_telecommands[] = {
 #if !defined(CUBEACP_CHOSEN) || \
     defined(CUBEACP_WITH_RESET)
@@ -905,70 +986,6 @@ static const char *const icdgen_node_cubeacp_nodes[] = {
     "cubeacp",
     "common",
 };
-static const icd_error_code_t icdgen_node_cubeacp_errors[] = {
-    {ICD_REASON_NONE, 0u},
-    {ICD_REASON_UNKNOWN_ID, 1u},
-    {ICD_REASON_LENGTH, 2u},
-    {ICD_REASON_VALUE, 3u},
-    {ICD_REASON_CHECKSUM, 4u},
-};
-/**
- * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
- * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
- */
-static const icd_framing_t icdgen_node_cubeacp_framing = {
-    0x1fu, /* escape */
-    0x7fu, /* start */
-    0xffu, /* end */
-    0x1fu, /* escaped */
-    true, /* escapes_id */
-    false, /* ignores_other */
-};
-/**
- * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
- * and that no other id heads the message, stood in a figure.
- */
-static const icd_acknowledge_t icdgen_node_cubeacp_acknowledge = {
-    2u, /* length */
-    0u, /* id_at */
-    1u, /* error_at */
-};
-static const icd_unsolicited_t icdgen_node_cubeacp_unsolicited[] = {
-    {119u, 241u, 22u}, /* File Download Buffer with File Contents */
-};
-/**
- * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
- * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
- */
-static const icd_can_extended_t icdgen_node_cubeacp_can_extended = {
-    7u, /* data_bytes */
-    7u, /* left_at */
-    0u, /* left_in_last */
-    256u, /* packets */
-    1792u, /* bytes */
-    0x00u, /* fill */
-    1000u, /* packet_timeout in ms */
-};
-static const icd_can_form_t icdgen_node_cubeacp_can = {
-    0x01u, /* node_address */
-    8u, /* data_bytes */
-    {5u, 24u}, /* type: bits, shift */
-    {8u, 16u}, /* channel: bits, shift */
-    {8u, 8u}, /* source: bits, shift */
-    {8u, 0u}, /* destination: bits, shift */
-    {1, 2, 3, 4, 5, 6}, /* types */
-    {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-    &icdgen_node_cubeacp_can_extended, /* messages of several packets */
-};
-static const icd_checksum_form_t icdgen_node_cubeacp_checksum = {
-    false, /* covers_id */
-    3u, /* telecommand_buses */
-    2u, /* telemetry_buses */
-    0u, /* telecommand_always */
-    0u, /* telemetry_always */
-    1u, /* bytes */
-    &icdgen_node_cubeacp_checksum_crc8, /* algorithm */
-};
 #ifndef ICDGEN_NO_LOGS
 static const icd_log_bit_t icdgen_node_cubeacp_log_bits[] = {
     {144, 6u}, /* bit 0: Communication Status */
@@ -1091,6 +1108,70 @@ static const icd_log_message_form_t icdgen_node_cubeacp_log_message = {
     10u, 6u, /* size of the mask, slot_bytes */
 };
 #endif
+static const icd_checksum_form_t icdgen_node_cubeacp_checksum = {
+    false, /* covers_id */
+    3u, /* telecommand_buses */
+    2u, /* telemetry_buses */
+    0u, /* telecommand_always */
+    0u, /* telemetry_always */
+    1u, /* bytes */
+    &icdgen_node_cubeacp_checksum_crc8, /* algorithm */
+};
+static const icd_error_code_t icdgen_node_cubeacp_errors[] = {
+    {ICD_REASON_NONE, 0u},
+    {ICD_REASON_UNKNOWN_ID, 1u},
+    {ICD_REASON_LENGTH, 2u},
+    {ICD_REASON_VALUE, 3u},
+    {ICD_REASON_CHECKSUM, 4u},
+};
+/**
+ * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+ * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
+ */
+static const icd_framing_t icdgen_node_cubeacp_framing = {
+    0x1fu, /* escape */
+    0x7fu, /* start */
+    0xffu, /* end */
+    0x1fu, /* escaped */
+    true, /* escapes_id */
+    false, /* ignores_other */
+};
+/**
+ * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
+ * and that no other id heads the message, stood in a figure.
+ */
+static const icd_acknowledge_t icdgen_node_cubeacp_acknowledge = {
+    2u, /* length */
+    0u, /* id_at */
+    1u, /* error_at */
+};
+static const icd_unsolicited_t icdgen_node_cubeacp_unsolicited[] = {
+    {119u, 241u, 22u}, /* File Download Buffer with File Contents */
+};
+/**
+ * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
+ * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
+ */
+static const icd_can_extended_t icdgen_node_cubeacp_can_extended = {
+    7u, /* data_bytes */
+    7u, /* left_at */
+    0u, /* left_in_last */
+    256u, /* packets */
+    1792u, /* bytes */
+    0x00u, /* fill */
+    1000u, /* packet_timeout in ms */
+};
+static const icd_can_form_t icdgen_node_cubeacp_can = {
+    0x01u, /* node_address */
+    8u, /* data_bytes */
+    {5u, 24u}, /* type: bits, shift */
+    {8u, 16u}, /* channel: bits, shift */
+    {8u, 8u}, /* source: bits, shift */
+    {8u, 0u}, /* destination: bits, shift */
+    {1, 2, 3, 4, 5, 6}, /* types */
+    {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
+    &icdgen_node_cubeacp_can_extended, /* messages of several packets */
+};
 #ifndef ICDGEN_NO_FILES
 static const icd_time_form_t icdgen_node_cubeacp_packed_time = {
     {25u, 7u, 1u, 1980u}, /* year */
@@ -1120,87 +1201,6 @@ static const icd_place_t icdgen_node_cubeacp_identification_places[] = {
 static const icd_report_t icdgen_node_cubeacp_identification = {
     -1, 128, 8u, 2u, icdgen_node_cubeacp_identification_places,
 };
-static const icd_number_place_t icdgen_node_cubeacp_sources_0[] = {
-    {0u, 4u, 0u, 32u, false},
-};
-static const icd_number_place_t icdgen_node_cubeacp_place_0[] = {
-    {4u, 1u, 0u, 8u, false},
-};
-static const icd_echo_t icdgen_node_cubeacp_echoes_0[] = {
-    {icdgen_node_cubeacp_place_0, 0u},
-};
-static const icd_meaning_t icdgen_node_cubeacp_meanings_0[] = {
-    {0x0u, ICD_VERDICT_ACK},
-    {0x4u, ICD_VERDICT_AGAIN},
-};
-static const icd_number_place_t icdgen_node_cubeacp_place_1[] = {
-    {5u, 1u, 0u, 8u, false},
-};
-static const icd_response_t icdgen_node_cubeacp_responses_0[] = {
-    {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
-        icdgen_node_cubeacp_echoes_0, icdgen_node_cubeacp_meanings_0,
-        icdgen_node_cubeacp_place_1, icdgen_node_cubeacp_place_1, NULL},
-};
-static const icd_exchange_t icdgen_node_cubeacp_uart_exchanges[] = {
-    {icdgen_node_cubeacp_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_0,
-        1u, 0u, 1u, false, 0u, NULL},
-};
-static const icd_bus_exchanges_t icdgen_node_cubeacp_on_uart = {
-    &icdgen_node_cubeacp_uart_exchanges[1], &icdgen_node_cubeacp_uart_exchanges[0],
-};
-static const icd_number_place_t icdgen_node_cubeacp_place_2[] = {
-    {4u, 1u, 0u, 8u, true},
-};
-static const icd_echo_t icdgen_node_cubeacp_echoes_1[] = {
-    {icdgen_node_cubeacp_place_2, 0u},
-};
-static const icd_number_place_t icdgen_node_cubeacp_place_3[] = {
-    {6u, 1u, 0u, 8u, true},
-};
-static const icd_number_place_t icdgen_node_cubeacp_place_4[] = {
-    {7u, 1u, 0u, 8u, true},
-};
-static const icd_response_t icdgen_node_cubeacp_responses_1[] = {
-    {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
-        icdgen_node_cubeacp_echoes_1, icdgen_node_cubeacp_meanings_0,
-        icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_4},
-};
-static const icd_outcome_poll_t icdgen_node_cubeacp_outcome_poll = {
-    240u, {5u, 1u, 0u, 1u, true},
-};
-static const icd_exchange_t icdgen_node_cubeacp_i2c_exchanges[] = {
-    {icdgen_node_cubeacp_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_1,
-        1u, 0u, 1u, false, 0u, &icdgen_node_cubeacp_outcome_poll},
-};
-static const icd_bus_exchanges_t icdgen_node_cubeacp_on_i2c = {
-    &icdgen_node_cubeacp_i2c_exchanges[1], &icdgen_node_cubeacp_i2c_exchanges[0],
-};
-static const icd_response_t icdgen_node_cubeacp_responses_2[] = {
-    {0x2u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
-        icdgen_node_cubeacp_echoes_0, NULL,
-        NULL, NULL, NULL},
-};
-static const icd_response_t icdgen_node_cubeacp_responses_3[] = {
-    {0x0u, ICD_VERDICT_ACK, 1u, true, 0x1u, 0u,
-        icdgen_node_cubeacp_echoes_0, NULL,
-        NULL, NULL, NULL},
-    {0x1u, ICD_VERDICT_NAK, 1u, true, 0x4u, 0u,
-        icdgen_node_cubeacp_echoes_0, NULL,
-        NULL, NULL, NULL},
-};
-static const icd_exchange_t icdgen_node_cubeacp_can_exchanges[] = {
-    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_2,
-        1u, 0u, 1u, true, 0u, NULL},
-    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_3,
-        1u, 0u, 2u, false, 0u, NULL},
-};
-static const icd_bus_exchanges_t icdgen_node_cubeacp_on_can = {
-    &icdgen_node_cubeacp_can_exchanges[1], &icdgen_node_cubeacp_can_exchanges[0],
-};
 
 ICDGEN_API const icd_link_t *cubeacp_link(void)
 {
@@ -1221,36 +1221,38 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_cubeacp_telecommands, /* what can be sent */
-        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        5u, /* how many error codes */
+        1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         506u, /* buffer for what is received */
-        10, /* node type */
-        7, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        icdgen_node_cubeacp_errors, /* error codes */
-        5u, 0u, /* how many; no error */
-        &icdgen_node_cubeacp_framing, /* framing of the UART */
-        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
-        icdgen_node_cubeacp_unsolicited, 1u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        &icdgen_node_cubeacp_can, /* CAN */
-        &icdgen_node_cubeacp_checksum, /* checksums of messages */
-        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_mask), /* mask of logs */
-        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_file), /* log files */
-        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
-        ICDGEN_OF_FILES(&icdgen_node_cubeacp_packed_time), /* packed times */
-        ICDGEN_OF_FILES(&icdgen_node_cubeacp_index_entry), /* index of files */
-        &icdgen_node_cubeacp_identification, /* identification */
+        NULL, /* framing */
         {&icdgen_node_cubeacp_on_uart,
             &icdgen_node_cubeacp_on_i2c,
             &icdgen_node_cubeacp_on_can}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        &icdgen_node_cubeacp_checksum, /* checksums of messages */
+        icdgen_node_cubeacp_errors, /* error codes */
+        &icdgen_node_cubeacp_framing, /* framing of the UART */
+        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
+        icdgen_node_cubeacp_unsolicited, /* unsolicited */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
+        &icdgen_node_cubeacp_can, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        10, /* node type */
+        7, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_mask), /* mask of logs */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_file), /* log files */
+        ICDGEN_OF_FILES(&icdgen_node_cubeacp_packed_time), /* packed times */
+        ICDGEN_OF_FILES(&icdgen_node_cubeacp_index_entry), /* index of files */
+        &icdgen_node_cubeacp_identification, /* identification */
     };
     return &link;
 }
@@ -1263,36 +1265,38 @@ ICDGEN_API const icd_link_t *cubeacp_uart_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_cubeacp_telecommands, /* what can be sent */
-        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        5u, /* how many error codes */
+        1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         506u, /* buffer for what is received */
-        10, /* node type */
-        7, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        icdgen_node_cubeacp_errors, /* error codes */
-        5u, 0u, /* how many; no error */
-        &icdgen_node_cubeacp_framing, /* framing of the UART */
-        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
-        icdgen_node_cubeacp_unsolicited, 1u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        NULL, /* CAN */
-        &icdgen_node_cubeacp_checksum, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
-        NULL, /* packed times */
-        NULL, /* index of files */
-        NULL, /* identification */
+        NULL, /* framing */
         {&icdgen_node_cubeacp_on_uart,
             NULL,
             NULL}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        &icdgen_node_cubeacp_checksum, /* checksums of messages */
+        icdgen_node_cubeacp_errors, /* error codes */
+        &icdgen_node_cubeacp_framing, /* framing of the UART */
+        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
+        icdgen_node_cubeacp_unsolicited, /* unsolicited */
+        ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
+        NULL, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        10, /* node type */
+        7, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
     };
     return &link;
 }
@@ -1305,36 +1309,38 @@ ICDGEN_API const icd_link_t *cubeacp_i2c_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_cubeacp_telecommands, /* what can be sent */
-        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        5u, /* how many error codes */
+        0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         506u, /* buffer for what is received */
-        10, /* node type */
-        7, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        icdgen_node_cubeacp_errors, /* error codes */
-        5u, 0u, /* how many; no error */
-        NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
-        NULL, 0u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        NULL, /* CAN */
-        &icdgen_node_cubeacp_checksum, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        NULL, /* unsolicited logs */
-        NULL, /* packed times */
-        NULL, /* index of files */
-        NULL, /* identification */
+        NULL, /* framing */
         {NULL,
             &icdgen_node_cubeacp_on_i2c,
             NULL}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        &icdgen_node_cubeacp_checksum, /* checksums of messages */
+        icdgen_node_cubeacp_errors, /* error codes */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, /* unsolicited */
+        NULL, /* unsolicited logs */
+        NULL, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        10, /* node type */
+        7, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
     };
     return &link;
 }
@@ -1347,36 +1353,38 @@ ICDGEN_API const icd_link_t *cubeacp_can_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        icdgen_node_cubeacp_telecommands, /* what can be sent */
-        icdgen_node_cubeacp_telemetry, /* what can be requested */
+        0u, /* how many error codes */
+        0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
+        icdgen_node_cubeacp_telecommands, /* what can be sent */
+        icdgen_node_cubeacp_telemetry, /* what can be requested */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         506u, /* buffer for what is received */
-        10, /* node type */
-        7, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        NULL, /* error codes */
-        0u, 0u, /* how many; no error */
-        NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
-        NULL, 0u, /* unsolicited */
-        87, /* I2C address */
-        true, /* I2C: a read may follow its write without a stop */
-        5000, /* boot time in ms */
-        &icdgen_node_cubeacp_can, /* CAN */
-        NULL, /* checksums of messages */
-        NULL, /* mask of logs */
-        NULL, /* log files */
-        NULL, /* unsolicited logs */
-        NULL, /* packed times */
-        NULL, /* index of files */
-        NULL, /* identification */
+        NULL, /* framing */
         {NULL,
             NULL,
             &icdgen_node_cubeacp_on_can}, /* exchanges on UART, I2C, CAN */
-        NULL, /* framing */
+        NULL, /* checksums of messages */
+        NULL, /* error codes */
+        NULL, /* framing of the UART */
+        NULL, /* acknowledges on the UART */
+        NULL, /* unsolicited */
+        NULL, /* unsolicited logs */
+        &icdgen_node_cubeacp_can, /* CAN */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
+        0u, /* no error */
+        10, /* node type */
+        7, /* interface version */
+        87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
+        5000, /* boot time in ms */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* packed times */
+        NULL, /* index of files */
+        NULL, /* identification */
     };
     return &link;
 }

@@ -46,7 +46,8 @@ static inline icd_status_t icdgen_client_init(
         return ICD_ERROR_LENGTH;
     }
     client->slots = slots;
-    client->slot_count = slot_count;
+    client->free = slots;
+    client->end = slots + slot_count;
     for (size_t i = 0; i < slot_count; ++i) {
         (void)memset(&slots[i], 0, sizeof slots[i]);
         slots[i].data = buffer + first + (i * each);
@@ -106,13 +107,19 @@ static inline uint32_t icdgen_needed(const icd_awaited_t *awaited)
     return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
 }
 
+/* Return how many numbers of the telecommand a response repeats. */
+static inline size_t icdgen_echo_count(const icd_response_t *response)
+{
+    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO) ? ICDGEN_SIZE(response->echo_count) : 0u;
+}
+
 /* Return whether telemetry or a packet is this response to a request. */
 static inline bool icdgen_matches(
     const icd_awaited_t *awaited, const icd_response_t *response, const icd_event_t *event)
 {
     const uint32_t source = event->is_packet ? event->packet : event->id;
     bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
-    for (size_t i = 0; matches && i < response->echo_count; ++i) {
+    for (size_t i = 0; matches && i < icdgen_echo_count(response); ++i) {
         const icd_echo_t *const echo = &response->echoes[i];
         matches =
             icdgen_stream_number(echo->place, event->id, event->data, event->length) == awaited->sources[echo->source];
@@ -135,16 +142,18 @@ static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
 static inline size_t icdgen_message_sources(const icd_awaited_t *awaited)
 {
-    return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
+    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO)
+        ? ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count
+        : 0u;
 }
 
 /* Return whether the responses to two requests have different numbers at the same place. */
 static inline bool icdgen_differs_in_echo(
     const icd_awaited_t *a, const icd_response_t *response_a, const icd_awaited_t *b, const icd_response_t *response_b)
 {
-    for (size_t i = 0; i < response_a->echo_count; ++i) {
+    for (size_t i = 0; i < icdgen_echo_count(response_a); ++i) {
         const icd_echo_t *const echo = &response_a->echoes[i];
-        for (size_t j = 0; j < response_b->echo_count; ++j) {
+        for (size_t j = 0; j < icdgen_echo_count(response_b); ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
             if (echo->place == other->place && echo->source < icdgen_message_sources(a) &&
                 other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
@@ -155,13 +164,19 @@ static inline bool icdgen_differs_in_echo(
     return false;
 }
 
+/* I2C: return whether the reply comes with its request, and never late. */
+static inline bool icdgen_is_in_order(const icd_awaited_t *awaited)
+{
+    return ICDGEN_HAS_BUS(ICD_BUS_I2C) && awaited->is_in_order;
+}
+
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b)
 {
-    if (a->is_in_order || b->is_in_order) {
+    if (icdgen_is_in_order(a) || icdgen_is_in_order(b)) {
         return false;
     }
-    if (a->is_nameless && b->is_nameless) {
+    if ((ICDGEN_STREAM_FLAGS & ICD_STREAM_NAMELESS) != 0u && a->is_nameless && b->is_nameless) {
         return true;
     }
     for (size_t i = 0; i < icdgen_response_count(a); ++i) {
@@ -179,7 +194,7 @@ static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b
 
 static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
 {
-    if (response->status != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_STATUS) && response->status != NULL) {
         const uint32_t status = icdgen_stream_number(response->status, event->id, event->data, event->length);
         for (size_t i = 0; i < response->meaning_count; ++i) {
             if (response->meanings[i].value == status) {
@@ -232,56 +247,56 @@ static inline bool icdgen_can_be_late(const icd_client_t *client, const icd_awai
 {
     const uint32_t left = icdgen_late_end(client, awaited) - client->now;
     uint32_t longest = icdgen_timeout(client, awaited);
-    if (awaited->exchange->poll != NULL && client->settings.poll_timeout > longest) {
+    if (ICDGEN_HAS_BUS(ICD_BUS_I2C) && awaited->exchange->poll != NULL && client->settings.poll_timeout > longest) {
         longest = client->settings.poll_timeout;
     }
-    return left != 0u && left <= longest + client->settings.late;
+    return icdgen_is_owed(awaited) && left != 0u && left <= longest + client->settings.late;
 }
 
-/* Remove an entry of the late responses. Their order has no meaning: no response can be taken for two of them. */
-static inline void icdgen_forget(icd_client_t *client, size_t index)
+/* Forget the late responses that have arrived, or can no longer arrive. */
+static inline void icdgen_forget(icd_client_t *client)
 {
-    client->late_count--;
-    client->late[index] = client->late[client->late_count];
+    uint8_t kept = 0;
+    for (size_t i = 0; i < client->late_count; ++i) {
+        if (icdgen_can_be_late(client, &client->late[i])) {
+            client->late[kept] = client->late[i];
+            kept++;
+        }
+    }
+    client->late_count = kept;
 }
 
 /* Store the time, and drop what has passed. */
 static inline void icdgen_set_time(icd_client_t *client, uint32_t now)
 {
-    size_t i = 0;
     client->now = now;
     client->in_gap = client->in_gap && now - client->sent_at < client->settings.gap;
-    while (i < client->late_count) {
-        if (icdgen_can_be_late(client, &client->late[i])) {
-            i++;
-        } else {
-            icdgen_forget(client, i);
-        }
-    }
+    icdgen_forget(client);
 }
 
 /* End a request, and remember the responses that may still arrive. */
-static inline void icdgen_request_end(icd_client_t *client, size_t index)
+static inline void icdgen_request_end(icd_client_t *client, icd_slot_t *slot)
 {
-    const icd_awaited_t *const awaited = &client->slots[index].awaited;
-    if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
-        client->late[client->late_count] = *awaited;
+    if (icdgen_can_be_late(client, &slot->awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
+        client->late[client->late_count] = slot->awaited;
         client->late_count++;
     }
-    client->started--;
-    for (size_t i = index; i < client->started; ++i) {
-        uint8_t *const data = client->slots[i].data; /* free memory: it moves to the end */
-        client->slots[i] = client->slots[i + 1u];
-        client->slots[i + 1u].data = data;
+    client->free--;
+    icd_slot_t *each = slot;
+    while (each != client->free) {
+        uint8_t *const data = each->data; /* free memory: it moves to the end */
+        *each = each[1];
+        each++;
+        each->data = data;
     }
 }
 
 /* Return the oldest request that is to be sent; NULL if there is none. */
 static inline icd_slot_t *icdgen_queued(const icd_client_t *client)
 {
-    for (size_t i = 0; i < client->started; ++i) {
-        if (client->slots[i].state == ICD_SLOT_QUEUED) {
-            return &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (slot->state == ICD_SLOT_QUEUED) {
+            return slot;
         }
     }
     return NULL;
@@ -293,18 +308,30 @@ static inline bool icdgen_has_end(const icd_client_t *client, const icd_slot_t *
     return slot->state != ICD_SLOT_QUEUED && slot->data != client->partial;
 }
 
+/* I2C: return whether a telecommand is written, and its outcome is polled. */
+static inline bool icdgen_is_polled(const icd_slot_t *slot)
+{
+    return ICDGEN_HAS_BUS(ICD_BUS_I2C) && slot->is_polled;
+}
+
+/* Return whether transmissions have a result: those on I2C. */
+static inline bool icdgen_has_results(const icd_client_t *client)
+{
+    return ICDGEN_HAS_BUS(ICD_BUS_I2C) && client->line->has_results;
+}
+
 /* Return whether a response may arrive for a request, and it does not poll. */
 static inline bool icdgen_has_responses(const icd_slot_t *slot)
 {
-    return !slot->is_polled && (slot->awaited.has_reply || slot->awaited.exchange->response_count != 0u);
+    return !icdgen_is_polled(slot) && (slot->awaited.has_reply || slot->awaited.exchange->response_count != 0u);
 }
 
 /* Return how many other requests in progress wait for responses, also those that are to be sent again. */
 static inline size_t icdgen_unfinished(const icd_client_t *client, const icd_slot_t *slot)
 {
     size_t count = 0;
-    for (size_t i = 0; i < client->started; ++i) {
-        count += (&client->slots[i] != slot && client->slots[i].missing != 0u) ? 1u : 0u;
+    for (const icd_slot_t *other = client->slots; other != client->free; ++other) {
+        count += (other != slot && other->missing != 0u) ? 1u : 0u;
     }
     return count;
 }
@@ -338,9 +365,9 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 {
     icdgen_earliest_t earliest = {0u, false};
     const icd_slot_t *const queued = icdgen_queued(client);
-    for (size_t i = 0; i < client->started; ++i) {
-        if (icdgen_has_end(client, &client->slots[i])) {
-            icdgen_earliest_add(&earliest, client->slots[i].until);
+    for (const icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (icdgen_has_end(client, slot)) {
+            icdgen_earliest_add(&earliest, slot->until);
         }
     }
     if (queued != NULL) {
@@ -361,7 +388,7 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 /* Return whether there is memory for another request. */
 static inline bool icdgen_has_room(const icd_client_t *client)
 {
-    return client->started < client->slot_count && client->slots[client->started].data != client->partial;
+    return client->free != client->end && client->free->data != client->partial;
 }
 
 ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, const icd_request_t *request)
@@ -380,7 +407,7 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
         status = ICD_ERROR_BUSY;
     }
     if (status == ICD_OK) {
-        slot.data = client->slots[client->started].data;
+        slot.data = client->free->data;
         status = client->line->store(client, &slot, asks ? NULL : request->data);
     }
     if (status == ICD_OK) {
@@ -388,8 +415,8 @@ ICDGEN_API icd_status_t icd_client_start(icd_client_t *client, uint32_t now, con
             awaited->sources[i] =
                 icdgen_stream_number(&awaited->exchange->sources[i], slot.sent_id, slot.data, slot.length);
         }
-        client->slots[client->started] = slot;
-        client->started++;
+        *client->free = slot;
+        client->free++;
         icdgen_set_time(client, now);
     }
     return status;
@@ -426,8 +453,7 @@ static inline bool icdgen_may_be_sent(const icd_client_t *client, const icd_slot
     if (client->in_gap || !icdgen_has_responses(slot)) {
         return !client->in_gap;
     }
-    for (size_t i = 0; i < client->started; ++i) {
-        const icd_slot_t *const other = &client->slots[i];
+    for (const icd_slot_t *other = client->slots; other != client->free; ++other) {
         if (other == slot) {
             continue;
         }
@@ -464,7 +490,7 @@ static inline void icdgen_count_times(icd_client_t *client, icd_slot_t *slot)
     client->in_gap = client->settings.gap != 0u;
     slot->sent_at = client->now;
     slot->until = client->now + (slot->state == ICD_SLOT_WAIT ? icdgen_timeout(client, &slot->awaited) : 0u);
-    if (!slot->is_polled) {
+    if (!icdgen_is_polled(slot)) {
         slot->awaited.latest = slot->until;
     }
 }
@@ -474,7 +500,7 @@ static inline void icdgen_begin_attempt(icd_client_t *client, icd_slot_t *slot)
 {
     slot->attempts++;
     slot->missing = ICDGEN_U8(icdgen_needed(&slot->awaited));
-    slot->state = slot->missing != 0u || client->line->has_results ? ICD_SLOT_WAIT : ICD_SLOT_SENT;
+    slot->state = slot->missing != 0u || icdgen_has_results(client) ? ICD_SLOT_WAIT : ICD_SLOT_SENT;
     icdgen_count_times(client, slot);
 }
 
@@ -482,7 +508,7 @@ static inline void icdgen_begin_attempt(icd_client_t *client, icd_slot_t *slot)
 static inline void icdgen_owe(icd_slot_t *slot)
 {
     icd_awaited_t *const awaited = &slot->awaited;
-    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS && !awaited->is_in_order; ++i) {
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS && !icdgen_is_in_order(awaited); ++i) {
         awaited->owed[i] = ICDGEN_U16(awaited->owed[i] + ((ICDGEN_U32(slot->missing) >> i) & 1u));
     }
 }
@@ -497,8 +523,7 @@ static inline void icdgen_count_sent(icd_client_t *client, icd_slot_t *slot)
 /* The last part of the output of a request is taken. The request may have ended before. */
 static inline void icdgen_output_ends(icd_client_t *client)
 {
-    for (size_t i = 0; i < client->started; ++i) {
-        icd_slot_t *const slot = &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
         if (slot->data == client->partial && slot->state != ICD_SLOT_QUEUED) {
             icdgen_count_times(client, slot);
         }
@@ -514,9 +539,8 @@ ICDGEN_API bool icd_client_output(icd_client_t *client, uint8_t *buffer, size_t 
 }
 
 /* Report an event of a request. An outcome ends the request. */
-static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kind, size_t index, icd_event_t *event)
+static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kind, icd_slot_t *slot, icd_event_t *event)
 {
-    const icd_slot_t *const slot = &call->client->slots[index];
     event->kind = kind;
     event->has_id = true;
     event->id = slot->id;
@@ -524,32 +548,31 @@ static inline void icdgen_report(const icdgen_call_t *call, icd_event_kind_t kin
     event->direction = slot->direction;
     event->attempts = slot->attempts;
     if (kind != ICD_EVENT_PROGRESS && kind != ICD_EVENT_REPLY) {
-        icdgen_request_end(call->client, index);
+        icdgen_request_end(call->client, slot);
     }
     call->on_event(call->context, event);
 }
 
 /* End a request without a response. */
-static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, size_t index)
+static inline void icdgen_end_request(const icdgen_call_t *call, icd_event_kind_t kind, icd_slot_t *slot)
 {
     icd_event_t event;
     icdgen_event_init(&event, kind);
-    icdgen_report(call, kind, index, &event);
+    icdgen_report(call, kind, slot, &event);
 }
 
 /*
  * Process a missing or unusable response: poll or send again, or end the request. Return whether the request has ended.
  */
-static inline bool icdgen_unanswered(const icdgen_call_t *call, size_t index)
+static inline bool icdgen_unanswered(const icdgen_call_t *call, icd_slot_t *slot)
 {
     const icd_client_t *const client = call->client;
-    icd_slot_t *const slot = &client->slots[index];
-    const bool is_left = slot->is_polled ? !icdgen_reached(client->now, slot->poll_end)
-                                         : slot->repeat && slot->attempts <= client->settings.retries;
-    slot->transaction = 0;
+    const bool is_left = icdgen_is_polled(slot) ? !icdgen_reached(client->now, slot->poll_end)
+                                                : slot->repeat && slot->attempts <= client->settings.retries;
+    slot->transaction = 0; /* I2C */
     if (!is_left) {
-        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
-    } else if (!client->line->has_results) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, slot);
+    } else if (!icdgen_has_results(client)) {
         slot->state = ICD_SLOT_QUEUED;
     } else { /* a failure can be immediate: wait before the next attempt */
         slot->state = ICD_SLOT_PAUSE;
@@ -562,19 +585,18 @@ static inline bool icdgen_unanswered(const icdgen_call_t *call, size_t index)
 }
 
 /* Process the end of the time of a state. Return whether the request has ended. */
-static inline bool icdgen_state_ends(const icdgen_call_t *call, size_t index)
+static inline bool icdgen_state_ends(const icdgen_call_t *call, icd_slot_t *slot)
 {
     const icd_client_t *const client = call->client;
-    icd_slot_t *const slot = &client->slots[index];
     if (slot->state == ICD_SLOT_SENT) {
-        icdgen_end_request(call, ICD_EVENT_SENT, index);
+        icdgen_end_request(call, ICD_EVENT_SENT, slot);
         return true;
     }
     if (slot->state == ICD_SLOT_WAIT) {
-        return icdgen_unanswered(call, index);
+        return icdgen_unanswered(call, slot);
     }
-    if (client->line->has_results && icdgen_reached(client->now, slot->poll_end)) {
-        icdgen_end_request(call, ICD_EVENT_TIMEOUT, index);
+    if (icdgen_has_results(client) && icdgen_reached(client->now, slot->poll_end)) {
+        icdgen_end_request(call, ICD_EVENT_TIMEOUT, slot);
         return true;
     }
     slot->state = ICD_SLOT_QUEUED;
@@ -584,16 +606,18 @@ static inline bool icdgen_state_ends(const icdgen_call_t *call, size_t index)
 ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     const icdgen_call_t call = {client, on_event, context};
-    size_t i = 0;
-    if (client->line != NULL && client->line->expire != NULL) {
+    icd_slot_t *slot = client->slots;
+    if (client->line == NULL) {
+        return;
+    }
+    if (ICDGEN_HAS_BUS(ICD_BUS_CAN) && client->line->expire != NULL) {
         client->line->expire(&call, now);
     }
     icdgen_set_time(client, now);
-    while (i < client->started) {
-        const icd_slot_t *const slot = &client->slots[i];
+    while (slot < client->free) { /* a callback may cancel requests */
         const bool is_over = icdgen_has_end(client, slot) && icdgen_reached(now, slot->until);
-        if (!is_over || !icdgen_state_ends(&call, i)) {
-            i++;
+        if (!is_over || !icdgen_state_ends(&call, slot)) {
+            slot++;
         }
     }
 }
@@ -601,7 +625,7 @@ ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn
 /* Get the reason of a refusal, or why the device is busy. */
 static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_t *response, icd_event_t *event)
 {
-    if (response->reason != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_REASON) && response->reason != NULL) {
         event->has_code = true;
         event->code = icdgen_stream_number(response->reason, event->id, event->data, event->length);
         for (size_t i = link->error_count; i > 0u; --i) {
@@ -610,7 +634,7 @@ static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_
             }
         }
     }
-    if (response->detail != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_DETAIL) && response->detail != NULL) {
         event->has_detail = true;
         event->detail = icdgen_stream_number(response->detail, event->id, event->data, event->length);
     }
@@ -618,10 +642,9 @@ static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_
 
 /* Process a response to a request. */
 static inline void icdgen_responded(
-    const icdgen_call_t *call, size_t index, const icd_response_t *response, icd_event_t *event)
+    const icdgen_call_t *call, icd_slot_t *slot, const icd_response_t *response, icd_event_t *event)
 {
     icd_client_t *const client = call->client;
-    icd_slot_t *const slot = &client->slots[index];
     const icd_verdict_t verdict = icdgen_verdict(response, event);
     const bool is_left = slot->attempts <= client->settings.retries;
     icd_event_kind_t kind = ICD_EVENT_PROGRESS;
@@ -658,7 +681,7 @@ static inline void icdgen_responded(
         kind = ICDGEN_IS_VERDICT(verdict, ICD_VERDICT_BUSY) ? ICD_EVENT_BUSY : ICD_EVENT_REFUSED;
         icdgen_set_reason(client->link, response, event);
     }
-    icdgen_report(call, kind, index, event);
+    icdgen_report(call, kind, slot, event);
 }
 
 /* Return whether telemetry is a response to a request that has ended. */
@@ -668,9 +691,7 @@ static inline bool icdgen_is_late(icd_client_t *client, const icd_event_t *event
         const icd_response_t *const response = icdgen_matching(&client->late[i], event);
         if (response != NULL) {
             icdgen_settle(&client->late[i], icdgen_verdict(response, event));
-            if (!icdgen_is_owed(&client->late[i])) {
-                icdgen_forget(client, i);
-            }
+            icdgen_forget(client);
             return true;
         }
     }
@@ -683,11 +704,10 @@ static inline void icdgen_client_arrived(const icdgen_call_t *call, icd_event_t 
     icd_client_t *const client = call->client;
     event->link = client->link;
     event->direction = ICD_TELEMETRY;
-    for (size_t i = 0; i < client->started; ++i) {
-        const icd_slot_t *const slot = &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
         const icd_response_t *const response = icdgen_is_awaited(slot) ? icdgen_matching(&slot->awaited, event) : NULL;
         if (response != NULL) {
-            icdgen_responded(call, i, response, event);
+            icdgen_responded(call, slot, response, event);
             return;
         }
     }
@@ -708,21 +728,20 @@ ICDGEN_API void icd_client_received(
 ICDGEN_API void icd_client_cancel(icd_client_t *client)
 {
     client->partial = NULL;
-    while (client->started != 0u) {
-        icdgen_request_end(client, 0);
+    while (client->free != client->slots) {
+        icdgen_request_end(client, client->slots);
     }
 }
 
 ICDGEN_API void icd_client_cancel_request(icd_client_t *client, icd_direction_t direction, uint32_t id)
 {
-    size_t i = 0;
-    while (i < client->started) {
-        const icd_slot_t *const slot = &client->slots[i];
+    icd_slot_t *slot = client->slots;
+    while (slot != client->free) {
         if (slot->direction == direction && slot->id == id) {
             client->partial = slot->data == client->partial ? NULL : client->partial;
-            icdgen_request_end(client, i);
+            icdgen_request_end(client, slot);
         } else {
-            i++;
+            slot++;
         }
     }
 }

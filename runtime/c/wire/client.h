@@ -39,17 +39,25 @@ typedef enum {
 /* The responses that may arrive for a request that was sent. */
 typedef struct {
     const icd_exchange_t *exchange;
-    uint32_t reply;                        /* id of the telemetry that the caller specified, or that is requested */
-    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
-    uint32_t latest;                       /* time until which a response is not late */
-    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
     bool has_reply;                        /* whether `reply` is given; otherwise as in the ICD */
     bool is_nameless;                      /* the reply comes in a packet without its id */
     bool is_in_order;                      /* I2C: the reply comes with its request, and never late */
+    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
+    uint32_t reply;                        /* id of the telemetry that the caller specified, or that is requested */
+    uint32_t latest;                       /* time until which a response is not late */
+    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
 } icd_awaited_t;
 
 /** Memory for a request. */
 typedef struct {
+    icd_slot_state_t state;
+    icd_direction_t direction;
+    bool repeat;
+    bool asks_by_id; /* telemetry is requested by its id, not by a telecommand */
+    bool is_polled;  /* I2C: the telecommand is written, and its outcome is polled */
+    uint8_t missing; /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
+    uint16_t attempts;
+    uint16_t transaction; /* I2C: number of the transaction whose result is awaited; 0: none */
     icd_awaited_t awaited;
     uint32_t id;      /* with which the request was started */
     uint32_t sent_id; /* of the telecommand that is sent, or of the telemetry that is requested by its id */
@@ -58,14 +66,6 @@ typedef struct {
     uint32_t sent_at;  /* time of the last transmission */
     uint32_t until;    /* time at which the state ends */
     uint32_t poll_end; /* I2C: time at which polling ends */
-    uint16_t attempts;
-    uint16_t transaction; /* I2C: number of the transaction whose result is awaited; 0: none */
-    uint8_t missing;      /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
-    bool repeat;
-    bool asks_by_id; /* telemetry is requested by its id, not by a telecommand */
-    bool is_polled;  /* I2C: the telecommand is written, and its outcome is polled */
-    icd_direction_t direction;
-    icd_slot_state_t state;
 } icd_slot_t;
 
 /** Line of a framed link. `sender.values` are the header and trailer values. */
@@ -114,6 +114,10 @@ typedef struct icd_line icd_line_t; /* functions of the line */
  * device handles, or while a response to another request could be taken for a response to it.
  */
 typedef struct {
+    bool in_gap; /* less than the gap has passed since `sent_at` */
+    bool checks_telecommands;
+    bool checks_telemetry;
+    uint8_t late_count;             /* number of elements of `late` */
     icd_client_settings_t settings; /**< Times and retries. May be changed while no request is in progress. */
     const icd_link_t *link;
     const icd_line_t *line; /* NULL unless initialized without an error */
@@ -121,16 +125,12 @@ typedef struct {
     icd_uart_line_t *uart;
     icd_can_line_t *can;
     icd_i2c_line_t *i2c;
-    icd_slot_t *slots; /* the requests, in the order in which they were started, then free memory */
-    size_t slot_count;
-    size_t started;         /* number of requests */
-    const uint8_t *partial; /* data of the request whose output is only partly taken; otherwise NULL */
-    uint32_t now;           /* time of the last call */
-    uint32_t sent_at;       /* time of the last transmission */
-    bool in_gap;            /* less than the gap has passed since */
-    bool checks_telecommands;
-    bool checks_telemetry;
-    uint8_t late_count;
+    icd_slot_t *slots; /* the requests, in the order in which they were started */
+    icd_slot_t *free;  /* behind the last request: free memory, up to `end` */
+    icd_slot_t *end;
+    const uint8_t *partial;                  /* data of the request whose output is only partly taken; otherwise NULL */
+    uint32_t now;                            /* time of the last call */
+    uint32_t sent_at;                        /* time of the last transmission */
     icd_awaited_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
 } icd_client_t;
 

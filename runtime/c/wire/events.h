@@ -48,26 +48,26 @@ typedef enum {
  */
 typedef struct {
     icd_event_kind_t kind;
-    bool has_id; /**< Whether the id is known. */
+    bool has_id;         /**< Whether `id` is known. */
+    bool has_reply;      /**< Events of a request: whether telemetry `reply` led to the event. */
+    bool has_code;       /**< REFUSED, BUSY: whether the response has a reason `code`. */
+    bool has_detail;     /**< REFUSED on I2C: whether the response has the index `detail` of a parameter. */
+    icd_reason_t reason; /**< REFUSED: meaning of `code` on UART and I2C. */
+    bool is_packet;      /**< Whether the packet or the response contains no message. `data` are all its bytes. */
+    uint8_t packet;      /**< Framed links: index of the packet format. */
+    icd_direction_t direction;
+    uint8_t source;          /**< CAN: address of the sender. */
+    uint8_t destination;     /**< MESSAGE on CAN. */
+    icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
     uint32_t id;
     const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
     const icd_link_t *link; /**< Client: link of the node, if the event belongs to a message of it; otherwise NULL. */
-    icd_direction_t direction;
-    uint32_t attempts;       /**< Outcomes: number of times the request was sent. */
-    uint32_t missing;        /**< GAP, INCOMPLETE. */
-    bool has_reply;          /**< Events of a request: whether telemetry led to the event. */
-    uint32_t reply;          /**< Its id. */
-    bool is_packet;          /**< Whether the packet or the response contains no message. `data` are all its bytes. */
-    uint8_t packet;          /**< Framed links: index of the packet format. */
-    bool has_code;           /**< REFUSED, BUSY: whether the response has a reason. */
-    uint32_t code;           /**< The reason. */
-    icd_reason_t reason;     /**< REFUSED: meaning of the code on UART and I2C. */
-    bool has_detail;         /**< REFUSED on I2C: whether the response has the index of a parameter. */
-    uint32_t detail;         /**< Index of the invalid parameter. */
-    uint8_t source;          /**< CAN: address of the sender. */
-    uint8_t destination;     /**< MESSAGE on CAN. */
-    icd_can_kind_t can_kind; /**< MESSAGE on CAN. */
+    uint32_t attempts;      /**< Outcomes: number of times the request was sent. */
+    uint32_t missing;       /**< GAP, INCOMPLETE. */
+    uint32_t reply;         /**< Id of the telemetry that led to the event. */
+    uint32_t code;          /**< Reason of a refusal. */
+    uint32_t detail;        /**< Index of the invalid parameter. */
     icd_header_values_t values; /**< Framed links: header and trailer values of a message. */
 } icd_event_t;
 

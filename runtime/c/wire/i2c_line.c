@@ -6,9 +6,9 @@
 /* Return the request whose attempt has begun and whose transaction is not taken yet; NULL if there is none. */
 static inline icd_slot_t *icdgen_i2c_untaken(const icd_client_t *client)
 {
-    for (size_t i = 0; i < client->started; ++i) {
-        if (client->slots[i].state == ICD_SLOT_WAIT && client->slots[i].transaction == 0u) {
-            return &client->slots[i];
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (slot->state == ICD_SLOT_WAIT && slot->transaction == 0u) {
+            return slot;
         }
     }
     return NULL;
@@ -78,42 +78,41 @@ static inline icd_transaction_t icdgen_i2c_untake(icd_i2c_line_t *line)
     return transaction;
 }
 
-/* Return the index of the request that awaits the result of a transaction; the number of requests if there is none. */
-static inline size_t icdgen_i2c_awaiting(const icd_client_t *client, uint16_t number)
+/* Return the request that awaits the result of a transaction; NULL if there is none. */
+static inline icd_slot_t *icdgen_i2c_awaiting(const icd_client_t *client, uint16_t number)
 {
-    size_t i = 0;
-    while (i < client->started && (client->slots[i].transaction != number || number == 0u)) {
-        ++i;
+    for (icd_slot_t *slot = client->slots; slot != client->free; ++slot) {
+        if (slot->transaction == number && number != 0u) {
+            return slot;
+        }
     }
-    return i;
+    return NULL;
 }
 
 /* Process telemetry that was read for a request. */
-static inline void icdgen_i2c_result(const icdgen_call_t *call, size_t index, icd_event_t *event)
+static inline void icdgen_i2c_result(const icdgen_call_t *call, icd_slot_t *slot, icd_event_t *event)
 {
-    icd_slot_t *const slot = &call->client->slots[index];
     const icd_outcome_poll_t *const poll = slot->awaited.exchange->poll;
     const icd_response_t *const response = icdgen_matching(&slot->awaited, event);
     if (response == NULL ||
         (poll != NULL && icdgen_stream_number(&poll->until, event->id, event->data, event->length) == 0u)) {
-        (void)icdgen_unanswered(call, index);
+        (void)icdgen_unanswered(call, slot);
     } else {
         slot->transaction = 0;
-        icdgen_responded(call, index, response, event);
+        icdgen_responded(call, slot, response, event);
     }
 }
 
 /* A telecommand is written: poll its response, if it has one. */
-static inline void icdgen_i2c_written(const icdgen_call_t *call, size_t index)
+static inline void icdgen_i2c_written(const icdgen_call_t *call, icd_slot_t *slot)
 {
-    icd_slot_t *const slot = &call->client->slots[index];
     if (slot->missing == 0u) {
-        icdgen_end_request(call, ICD_EVENT_SENT, index);
+        icdgen_end_request(call, ICD_EVENT_SENT, slot);
     } else {
         slot->is_polled = true;
         slot->poll_end = call->client->now + call->client->settings.poll_timeout;
         slot->awaited.latest = slot->poll_end;
-        (void)icdgen_unanswered(call, index);
+        (void)icdgen_unanswered(call, slot);
     }
 }
 
@@ -128,7 +127,7 @@ ICDGEN_API void icd_client_transferred(
     }
     const icd_transaction_t transaction = icdgen_i2c_untake(client->i2c);
     icd_client_tick(client, now, on_event, context); /* may end the request */
-    size_t index = icdgen_i2c_awaiting(client, transaction.number);
+    icd_slot_t *slot = icdgen_i2c_awaiting(client, transaction.number);
     if (transaction.number == 0u) {
         icdgen_event_init(&event, ICD_EVENT_STRAY);
         event.data = bytes;
@@ -148,22 +147,21 @@ ICDGEN_API void icd_client_transferred(
     if (status != ICD_OK) {
         const bool is_damaged = status == ICD_ERROR_CHECKSUM;
         icdgen_bus_fault(&call, is_damaged ? ICD_EVENT_CHECKSUM : ICD_EVENT_LENGTH, &event);
-        index = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
-        if (index < client->started) {
-            (void)icdgen_unanswered(&call, index);
+        slot = icdgen_i2c_awaiting(client, transaction.number); /* the callback may have cancelled the request */
+        if (slot != NULL) {
+            (void)icdgen_unanswered(&call, slot);
         }
-    } else if (index == client->started) {
+    } else if (slot == NULL) {
         on_event(context, &event);
     } else if (bytes == NULL) {
-        icd_slot_t *const slot = &client->slots[index];
         if (!slot->is_polled) { /* the node has not received the telecommand */
             (void)memset(slot->awaited.owed, 0, sizeof slot->awaited.owed);
         }
-        (void)icdgen_unanswered(&call, index);
+        (void)icdgen_unanswered(&call, slot);
     } else if (transaction.reads) {
-        icdgen_i2c_result(&call, index, &event);
+        icdgen_i2c_result(&call, slot, &event);
     } else {
-        icdgen_i2c_written(&call, index);
+        icdgen_i2c_written(&call, slot);
     }
 }
 

@@ -1,6 +1,8 @@
 #ifndef ICDGEN_WIRE_KINDS_H
 #define ICDGEN_WIRE_KINDS_H
 
+#include "../icdgen.h"
+
 /* Kinds of parts that the links of these nodes have, as masks. A compiler leaves out the code for other kinds. */
 
 /* Of icd_delimiter_t. */
@@ -20,5 +22,14 @@
 
 /* Of icd_verdict_t. */
 #define ICDGEN_VERDICTS 0x3Fu
+
+/* Parts of responses. */
+#define ICDGEN_RESPONSES 0x1Fu
+
+/* Of icd_bus_t. */
+#define ICDGEN_BUSES 0x7u
+
+/* Holds the number of data bytes that any length field says. */
+typedef int64_t icdgen_length_t;
 
 #endif /* ICDGEN_WIRE_KINDS_H */

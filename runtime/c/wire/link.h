@@ -40,37 +40,37 @@ typedef struct {
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
+    uint8_t error_count;
+    uint8_t unsolicited_count;
+    uint16_t telecommand_count, telemetry_count;
     const icd_message_t *telecommands; /**< In ascending order of the ids. */
     const icd_message_t *telemetry;    /**< In ascending order of the ids. */
-    uint16_t telecommand_count, telemetry_count;
     uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum; on framed links only of the data. */
     uint32_t longest_reply;
     uint32_t longest;
-    uint32_t longest_data;   /**< Largest size in bytes, without id and checksum. */
-    uint32_t received_bytes; /**< Buffer size in bytes of a client for what it receives. */
-    int32_t node_type;       /**< -1 if the ICD has none. */
-    int32_t interface_version;
-    icd_client_settings_t client;
+    uint32_t longest_data;           /**< Largest size in bytes, without id and checksum. */
+    uint32_t received_bytes;         /**< Buffer size in bytes of a client for what it receives. */
+    const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
+    const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
+    const icd_checksum_form_t *checksum;
     const icd_error_code_t *errors;
-    uint8_t error_count;
-    uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
-    uint8_t unsolicited_count;
+    const icd_log_message_form_t *log_message;
+    const icd_can_form_t *can;
+    icd_client_settings_t client;
+    uint32_t no_error;
+    int32_t node_type; /**< -1 if the ICD has none. */
+    int32_t interface_version;
     int16_t i2c_address;     /**< 7-bit address, -1 if the ICD has none. */
     bool i2c_repeated_start; /**< Whether a read may follow its write without a stop. */
     int32_t boot_ms;         /**< Waiting time of the boot program in ms, -1 if unknown. */
-    const icd_can_form_t *can;
-    const icd_checksum_form_t *checksum;
     const icd_log_mask_form_t *log_mask;
     const icd_log_file_form_t *log_file;
-    const icd_log_message_form_t *log_message;
     const icd_time_form_t *time;
     const icd_index_form_t *index;
     const icd_report_t *identification;
-    const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
-    const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 
 /** Return whether `node` is the node of this link or a node that it includes. */

@@ -12,10 +12,14 @@
 #define ICDGEN_CONTAINS(packet, member) ICDGEN_IS((packet)->content, member, ICDGEN_CONTENTS)
 #define ICDGEN_IS_VERDICT(verdict, member) ICDGEN_IS(verdict, member, ICDGEN_VERDICTS)
 #define ICDGEN_HAS_FLAG(row, flag) (((row)->flags & (flag) & ICDGEN_STREAM_FLAGS) != 0u)
+#define ICDGEN_RESPONSES_HAVE(part) ((ICDGEN_RESPONSES & (part)) != 0u)
+#define ICDGEN_HAS_BUS(bus) ((ICDGEN_BUSES & ICDGEN_BIT(bus)) != 0u)
 
 /* Whether the sender chooses the value of a field. */
 #define ICDGEN_IS_OF_SENDER(field)                                                                                     \
     ((ICDGEN_ROLES & (ICDGEN_BIT(ICD_HEADER_VALUES) - 1u)) != 0u && (field)->role < ICD_FIELD_CONSTANT)
+
+#define ICDGEN_LENGTH(value) ICDGEN_CAST(icdgen_length_t, value)
 
 /* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
@@ -40,6 +44,9 @@ static inline const icd_packet_field_t *icdgen_packet_field(const icd_packet_for
     }
     return NULL;
 }
+
+/* The field with this role. A compiler knows that there is none if no packet has one. */
+#define ICDGEN_FIELD(packet, role) ((ICDGEN_ROLES & ICDGEN_BIT(role)) != 0u ? icdgen_packet_field(packet, role) : NULL)
 
 /* Return the value of a field. `bytes` is the header or the trailer that contains the field. */
 static inline uint32_t icdgen_field_get(const icd_packet_field_t *field, const uint8_t *bytes)
@@ -66,9 +73,9 @@ static inline uint32_t icdgen_packet_id(
 }
 
 /* Return the number of data bytes that a length field says. */
-static inline int64_t icdgen_field_bytes(const icd_packet_field_t *field, uint32_t value)
+static inline icdgen_length_t icdgen_field_bytes(const icd_packet_field_t *field, uint32_t value)
 {
-    return (ICDGEN_I64(value) * ICDGEN_I64(field->values[1])) - ICDGEN_I64(ICDGEN_I32(field->values[0]));
+    return (ICDGEN_LENGTH(value) * ICDGEN_LENGTH(field->values[1])) - ICDGEN_I32(field->values[0]);
 }
 
 /* Return the value of a length field for a number of data bytes. */

@@ -119,6 +119,12 @@ typedef struct {
     const icd_link_t *link;
     const icd_stream_form_t *form;
     icd_direction_t direction;
+    bool escaped;
+    bool inside;  /* escape characters: whether a packet has begun */
+    bool zero;    /* COBS: whether a zero follows the block */
+    uint8_t left; /* COBS: remaining bytes of the block */
+    bool faulty;
+    icd_event_kind_t fault;
     uint8_t *buffer;
     size_t capacity;
     size_t length; /**< Number of bytes in the buffer. */
@@ -127,12 +133,6 @@ typedef struct {
     size_t sequence_count;
     size_t pending;     /**< Received bytes that may still become part of a message. */
     uint32_t discarded; /**< Number of received bytes that are not part of a message. May wrap around. */
-    bool escaped;
-    bool inside;  /* escape characters: whether a packet has begun */
-    bool zero;    /* COBS: whether a zero follows the block */
-    uint8_t left; /* COBS: remaining bytes of the block */
-    bool faulty;
-    icd_event_kind_t fault;
 } icd_stream_decoder_t;
 
 /**

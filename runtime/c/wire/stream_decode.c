@@ -223,7 +223,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
     const icd_packet_field_t *sequence = NULL;
-    int64_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
+    icdgen_length_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
     uint32_t sum = 0;
     bool is_framed = true;
     bool is_long = true; /* whether each length is right */
@@ -238,7 +238,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_ID)) {
             event.id |= value << field->values[0];
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_LENGTH)) {
-            is_long = is_long && icdgen_field_bytes(field, value) == ICDGEN_I64(length);
+            is_long = is_long && icdgen_field_bytes(field, value) == ICDGEN_LENGTH(length);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_RESPONSE_LENGTH)) {
             wanted = icdgen_field_bytes(field, value);
         } else if (ICDGEN_HAS_ROLE(field, ICD_FIELD_CHECKSUM)) {
@@ -269,7 +269,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     }
     if (verdict == ICDGEN_PROVEN && event.kind != ICD_EVENT_UNKNOWN_ID &&
         (length < incoming.least || length > incoming.most ||
-         (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
+         (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_LENGTH(incoming.row->most)))) {
         event.kind = ICD_EVENT_LENGTH;
     }
     if (event.kind != incoming.kind || event.kind == ICD_EVENT_UNKNOWN_ID) {
@@ -313,8 +313,8 @@ static inline size_t icdgen_stream_front(
         decoder->needed = icdgen_stream_next(packet, left);
         return 0;
     }
-    const icd_packet_field_t *const field = icdgen_packet_field(packet, ICD_FIELD_LENGTH);
-    int64_t length;
+    const icd_packet_field_t *const field = ICDGEN_FIELD(packet, ICD_FIELD_LENGTH);
+    icdgen_length_t length;
     if (field != NULL) {
         length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
@@ -324,11 +324,11 @@ static inline size_t icdgen_stream_front(
             icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
             return icdgen_stream_skip(decoder);
         }
-        length = ICDGEN_I64(incoming.most);
+        length = ICDGEN_LENGTH(incoming.most);
     }
-    const int64_t size = length + ICDGEN_I64(icdgen_packet_around(packet));
-    if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
-        const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
+    const icdgen_length_t size = length + ICDGEN_LENGTH(icdgen_packet_around(packet));
+    if (length < 0 || size > ICDGEN_LENGTH(decoder->capacity)) {
+        const bool fits = length >= 0 && size <= ICDGEN_LENGTH(decoder->link->longest);
         icdgen_stream_tell(listener, fits ? ICD_EVENT_OVERRUN : ICD_EVENT_LENGTH);
         return icdgen_stream_skip(decoder);
     }

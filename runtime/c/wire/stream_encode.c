@@ -305,12 +305,12 @@ static inline icd_status_t icdgen_outgoing_encode(
     if (!icdgen_packet_fill(outgoing, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
-    const icd_packet_field_t *const check = icdgen_packet_field(packet, ICD_FIELD_CHECKSUM);
+    const icd_packet_field_t *const check = ICDGEN_FIELD(packet, ICD_FIELD_CHECKSUM);
     if (check != NULL && packet->check != NULL) {
         const uint32_t sum = icdgen_packet_checksum(packet, outgoing->row, header, data, length, trailer);
         icdgen_field_put(check, check->in_trailer ? trailer : header, sum);
     }
-    if (outgoing->exchange != NULL) {
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_HEADER_ECHO) && outgoing->exchange != NULL) {
         const icd_exchange_t *const exchange = outgoing->exchange;
         const size_t first = ICDGEN_SIZE(exchange->source_count) - exchange->header_count;
         for (size_t i = first; i < exchange->source_count; ++i) {
@@ -400,7 +400,7 @@ static inline icd_status_t icdgen_outgoing_send(
     size_t *written)
 {
     const bool per_id = outgoing->form->per_id;
-    const icd_packet_field_t *const field = icdgen_packet_field(outgoing->packet, ICD_FIELD_SEQUENCE);
+    const icd_packet_field_t *const field = ICDGEN_FIELD(outgoing->packet, ICD_FIELD_SEQUENCE);
     size_t counter = 0;
     if (per_id && outgoing->is_message) {
         counter = ICDGEN_SIZE(outgoing->row - outgoing->form->rows[outgoing->direction]);

@@ -136,6 +136,13 @@ typedef struct {
     icd_verdict_t verdict;
 } icd_meaning_t;
 
+/* Parts that responses can have. */
+#define ICDGEN_RESPONSE_ECHO 1u        /* repeats numbers of the telecommand */
+#define ICDGEN_RESPONSE_HEADER_ECHO 2u /* repeats numbers of its header */
+#define ICDGEN_RESPONSE_STATUS 4u
+#define ICDGEN_RESPONSE_REASON 8u
+#define ICDGEN_RESPONSE_DETAIL 16u
+
 /**
  * Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. Places that the ICD
  * does not have are NULL.

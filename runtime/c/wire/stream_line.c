@@ -144,8 +144,7 @@ static inline void icdgen_stream_identify(const icd_client_t *client, icd_event_
     const icd_stream_row_t *row = NULL;
     const icd_stream_row_t *other = NULL;
     bool fits = false;
-    for (size_t i = 0; !fits && i < client->started; ++i) {
-        const icd_slot_t *const slot = &client->slots[i];
+    for (const icd_slot_t *slot = client->slots; !fits && slot != client->free; ++slot) {
         if (icdgen_is_awaited(slot)) {
             fits = icdgen_names(form, &slot->awaited, length, &row, &other);
         }

@@ -81,13 +81,16 @@ class CBackend:
             )
         links = links_of(description)
         if links:
-            from icdgen.backends.c.kinds import kinds_of
+            from icdgen.backends.c.kinds import kinds_of, length_type
             from icdgen.backends.c.procedures import procedure_sizes
 
             longest = procedure_sizes(links.values())
-            kinds = kinds_of(links.values())
+            kinds = {
+                "kinds": kinds_of(links.values()),
+                "length_type": length_type(links.values()),
+            }
             of_icd = {
-                "wire/kinds.h": render("kinds.h.j2", kinds=kinds),
+                "wire/kinds.h": render("kinds.h.j2", **kinds),
                 "wire/sizes.h": render("sizes.h.j2", sizes=longest),
             }
             yield (

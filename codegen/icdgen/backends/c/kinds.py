@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from icdgen.backends.c.facts import MOST_SIGNED
 from icdgen.backends.c.stream_rows import content_name, stream_flags
 from icdgen.describe.links import LinkDescription
 from icdgen.frozen import NamedTuple
 from icdgen.icd.responses import REPLY
+from icdgen.protocol.exchange import Exchange
 
 
 class Kinds(NamedTuple):
@@ -76,7 +78,45 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
             "Flags of messages in packets.",
         ),
         _kinds("VERDICTS", "ICD_VERDICT", verdicts, "icd_verdict_t"),
+        Kinds("RESPONSES", _response_parts(exchanges), "Parts of responses."),
+        _kinds(
+            "BUSES",
+            "ICD_BUS",
+            (bus for each in facts for bus in each.bus_exchanges),
+            "icd_bus_t",
+        ),
     ]
+
+
+def _response_parts(exchanges: Iterable[Exchange]) -> list[str]:
+    parts = set()
+    for exchange in exchanges:
+        parts |= {"ECHO"} if exchange.sources else set()
+        parts |= {"HEADER_ECHO"} if exchange.in_header else set()
+        for response in exchange.responses:
+            parts |= {"STATUS"} if response.status else set()
+            parts |= {"REASON"} if response.reason else set()
+            parts |= {"DETAIL"} if response.detail else set()
+    return [f"ICDGEN_RESPONSE_{part}" for part in sorted(parts)]
+
+
+def length_type(links: Iterable[LinkDescription]) -> str:
+    """Return the type that holds the number of data bytes that any length field of these
+    links says.
+    """
+    streams = [link.facts.stream for link in links if link.facts.stream]
+    most = max(
+        (
+            (field.mask * field.unit) + abs(field.plus) + packet.overhead
+            for stream in streams
+            for packet in stream.packets
+            for field in packet.fields
+            if field.role in ("length", "response_length")
+        ),
+        default=0,
+    )
+    longest = max((stream.longest for stream in streams), default=0)
+    return "int32_t" if max(most, longest) <= MOST_SIGNED else "int64_t"
 
 
 def _kinds(name: str, prefix: str, kinds: Iterable[str], type: str) -> Kinds:

@@ -122,9 +122,11 @@ class _Part(NamedTuple):
     buses: Collection[str] = BUSES
     absent: str = "NULL"
 
-    def on(self, bus: str) -> Row:
-        """Return the member in the link of a bus."""
-        return self.row if bus in self.buses else self.row._replace(value=self.absent)
+    def on(self, bus: str | None) -> Row:
+        """Return the member in the link of a bus, or in that of the node (None)."""
+        if bus is None or bus in self.buses:
+            return self.row
+        return self.row._replace(value=self.absent)
 
 
 class _Tables(TableSet):
@@ -141,52 +143,42 @@ class _Tables(TableSet):
         the linker of a program can drop the tables of everything else.
         """
         self.algorithms()
-        parts, exchanges = self.parts(), self.buses()
+        exchanges = self.buses()
+        before, after = self.before_exchanges(), self.after_exchanges()
         assumed = (
             (key, why)
             for section, key, why in self.assumed.others()
             if not section.startswith("message ")
         )
-        whole = [each.row for each in parts], exchanges
-        on_bus = {
-            bus: ([each.on(bus) for each in parts], {bus: exchanges.get(bus, "NULL")})
-            for bus in self.link.buses
-        }
         links = []
-        for bus, (rows, on) in ((None, whole), *on_bus.items()):
-            every = _in_lines(on.get(each, "NULL") for each in BUSES)
-            row = Row(f"{{{every}}}", "exchanges on UART, I2C, CAN")
-            framing = Row(self.stream() if bus is None else "NULL", "framing")
+        for bus in (None, *self.link.buses):
+            on = [each for each in BUSES if bus is None or bus == each]
+            every = _in_lines(
+                exchanges.get(each, "NULL") if each in on else "NULL" for each in BUSES
+            )
             table = self.table(
                 "link",
                 "icd_link_t",
-                [*rows, row, framing],
+                [
+                    *(each.on(bus) for each in before),
+                    Row(f"{{{every}}}", "exchanges on UART, I2C, CAN"),
+                    *(each.on(bus) for each in after),
+                ],
                 assumed if bus is None else (),
             )
             links.append(LinkTable(f"{bus}_link" if bus else "link", bus, table))
         return links
 
-    def parts(self) -> list[_Part]:
-        """Return the members of a link up to the exchanges."""
+    def before_exchanges(self) -> list[_Part]:
+        """Return the members of a link up to the exchanges. Members that small clients
+        use come first: a processor reaches these with shorter instructions.
+        """
         link, facts = self.link, self.facts_of_link
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
-        codes = link.error_codes
         telecommand = (
             facts.stream.longest_request if facts.stream else facts.longest_telecommand
         )
         longest = f"{telecommand}u, {facts.longest_reply}u, {facts.longest}u"
-        settings = f"{{{self.values('client', facts.client)}}}"
-        checked = {
-            *(facts.checksum.telecommand_buses if facts.checksum else ()),
-            *(facts.checksum.telemetry_buses if facts.checksum else ()),
-        }
-        refusing = [
-            bus
-            for bus, exchanges in facts.bus_exchanges.items()
-            if exchanges.command
-            and any(each.reason for each in exchanges.command.responses)
-        ]
-        none = facts.errors.get("none", 0)
         nodes = (f'"{name}"' for name in facts.owners)
         sent = self.messages("telecommands", map(self.telecommand, telecommands))
         requested = self.messages(
@@ -208,27 +200,39 @@ class _Tables(TableSet):
                     "ids of telemetry",
                 )
             ),
-            _Part(Row(sent, "what can be sent")),
-            _Part(Row(requested, "what can be requested")),
+            _Part(
+                Row(f"{len(link.error_codes)}u", "how many error codes"),
+                self.refusing(),
+                "0u",
+            ),
+            _Part(
+                Row(f"{len(facts.unsolicited)}u", "how many unsolicited"), {UART}, "0u"
+            ),
             _Part(Row(_count(sent), "how many can be sent")),
             _Part(Row(_count(requested), "how many can be requested")),
+            _Part(Row(sent, "what can be sent")),
+            _Part(Row(requested, "what can be requested")),
             _Part(Row(longest, "longest telecommand, reply, any")),
             _Part(Row(f"{facts.longest_data}u", "longest without id and checksum")),
             _Part(Row(f"{received_bytes(link)}u", "buffer for what is received")),
-            _Part(Row(or_none(facts.node.node_type), "node type")),
-            _Part(Row(or_none(facts.node.interface_version), "interface version")),
-            _Part(Row(settings, "times and limits: icd_client_settings_t")),
+            _Part(Row(self.stream(), "framing"), ()),
+        ]
+
+    def after_exchanges(self) -> list[_Part]:
+        """Return the members of a link after the exchanges."""
+        link, facts = self.link, self.facts_of_link
+        settings = f"{{{self.values('client', facts.client)}}}"
+        checked = {
+            *(facts.checksum.telecommand_buses if facts.checksum else ()),
+            *(facts.checksum.telemetry_buses if facts.checksum else ()),
+        }
+        codes = map(_error_code, link.error_codes)
+        log_mask, log_file, log_message = self.optional("LOGS", self.logs())
+        return [
+            _Part(Row(self.checksum(), "checksums of messages"), checked),
             _Part(
-                Row(
-                    self.array("errors", "icd_error_code_t", map(_error_code, codes)),
-                    "error codes",
-                ),
-                refusing,
-            ),
-            _Part(
-                Row(f"{len(codes)}u, {none}u", "how many; no error"),
-                refusing,
-                f"0u, {none}u",
+                Row(self.array("errors", "icd_error_code_t", codes), "error codes"),
+                self.refusing(),
             ),
             _Part(
                 Row(self.part("framing", facts.framing), "framing of the UART"), {UART}
@@ -240,11 +244,13 @@ class _Tables(TableSet):
                 ),
                 {UART},
             ),
-            _Part(
-                Row(f"{self.unsolicited()}, {len(facts.unsolicited)}u", "unsolicited"),
-                {UART},
-                "NULL, 0u",
-            ),
+            _Part(Row(self.unsolicited(), "unsolicited"), {UART}),
+            log_message,
+            _Part(Row(self.can(), "CAN"), {CAN}),
+            _Part(Row(settings, "times and limits: icd_client_settings_t")),
+            _Part(Row(f"{facts.errors.get('none', 0)}u", "no error")),
+            _Part(Row(or_none(facts.node.node_type), "node type")),
+            _Part(Row(or_none(facts.node.interface_version), "interface version")),
             _Part(Row(or_none(facts.i2c_address), "I2C address")),
             _Part(
                 Row(
@@ -253,9 +259,8 @@ class _Tables(TableSet):
                 )
             ),
             _Part(Row(or_none(facts.boot_ms), "boot time in ms")),
-            _Part(Row(self.can(), "CAN"), {CAN}),
-            _Part(Row(self.checksum(), "checksums of messages"), checked),
-            *self.optional("LOGS", self.logs()),
+            log_mask,
+            log_file,
             *self.optional("FILES", self.of_files()),
             _Part(
                 Row(
@@ -263,6 +268,15 @@ class _Tables(TableSet):
                 ),
                 (),
             ),
+        ]
+
+    def refusing(self) -> list[str]:
+        """Return the buses on which a refusal has an error code."""
+        return [
+            bus
+            for bus, exchanges in self.facts_of_link.bus_exchanges.items()
+            if exchanges.command
+            and any(each.reason for each in exchanges.command.responses)
         ]
 
     def unsolicited(self) -> str:

@@ -155,7 +155,7 @@ static void client_script(void)
         }
         happen(client, now, what);
         put_output(client);
-        if (client->started != 0u && on->slot.state == ICD_SLOT_SENT) {
+        if (client->free != client->slots && on->slot.state == ICD_SLOT_SENT) {
             icd_client_tick(client, now, on_event, client);
         }
         if (icd_client_deadline(client, &deadline)) {
