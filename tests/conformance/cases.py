@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -60,6 +61,19 @@ def _is_among(name: str, parts: Sequence[dict], raw: dict) -> bool:
                 return False
             return _is_among(inner.removeprefix("."), one.get("nested", ()), raw)
     return True
+
+
+def of_arrays_first_and_last(fields: Iterable[dict]) -> Iterator[dict]:
+    """The fields; of the elements of an array the first and the last: what is between
+    them is of the same type and scale. The vectors hold values of each element.
+    """
+    groups: dict[str, list[dict]] = {}
+    for field in fields:
+        groups.setdefault(re.sub(r"\[\d+\]", "[]", field["name"]), []).append(field)
+    for group in groups.values():
+        yield group[0]
+        if len(group) > 1:
+            yield group[-1]
 
 
 class MessageCases:
@@ -128,9 +142,9 @@ class MessageCases:
         yield from self.routes()
         yield from self.refused_lengths()
         yield self.constants()
-        for field in self.fields:
+        for field in of_arrays_first_and_last(self.fields):
             yield from self.unfit(field)
-        for field in (*self.scaled, *self.texts):
+        for field in of_arrays_first_and_last((*self.scaled, *self.texts)):
             # Not every element can be in a frame: arrays in elements can share a counter.
             is_sent = self.is_sent(field["name"], self.full)
             if is_sent and field["name"] not in self.one_way:

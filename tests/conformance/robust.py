@@ -6,7 +6,7 @@ They need a node with any message.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from tests.conformance.cases import MessageCases
 
@@ -73,7 +73,7 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
             "field": strange,
         },
     )
-    for field in cases.fields:
+    for field in one_of_each_kind(cases.fields):
         if field["name"] in cases.views:
             continue  # see `MessageCases.set_views`
         yield from bad_field(cases, encode, field)
@@ -84,6 +84,17 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
             "error": "unknown-enum",
         },
     )
+
+
+def one_of_each_kind(fields: Iterable[dict]) -> list[dict]:
+    """The first of the fields of which the vectors say the same, but for names and
+    numbers: how a request is refused depends on nothing else.
+    """
+    kinds: dict[object, dict] = {}
+    for field in fields:
+        kind = (field["type"], field["bits"], frozenset(field), "[" in field["name"])
+        kinds.setdefault(kind, field)
+    return list(kinds.values())
 
 
 def bad_field(

@@ -76,6 +76,7 @@ def batches(
 ) -> Iterator[Batch]:
     """Everything that is asked of each testee."""
     enums = member_names(files)
+    yield _bad_lines()
     for node in icd.nodes:
         data = files[node.name]
         yield from _batch(f"node {node.name}", node_cases(data))
@@ -157,10 +158,14 @@ def _random(
             yield batch
 
 
-def _robust(data: dict, enums: dict) -> Iterator[Batch]:
+def _bad_lines() -> Batch:
     lines = list(robust.bad_lines())
     answers: list[dict] = [{"ok": False, "error": "request"}] * len(lines)
-    about = [f"bad line {line[:60]!r}" for line in lines]
+    return Batch(lines, answers, [f"bad line {line[:60]!r}" for line in lines])
+
+
+def _robust(data: dict, enums: dict) -> Iterator[Batch]:
+    lines, answers, about = [], [], []
     largest = max(data["messages"], key=lambda m: len({f["type"] for f in m["fields"]}))
     cases = MessageCases(
         data["node"], largest, enums, data["never_set"], shared_names(data)
