@@ -134,14 +134,14 @@ def frame_requests(icd: Icd, count: int, seed: int = 1) -> list[dict]:
 
 def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
     """Encoding with values at and beyond the ends of each field, and with physical
-    values near and at ties.
+    values near and at ties, of one field for each scale, width and sign.
 
     Messages of more than ``largest`` fields are left out: every request holds all of
     them.
     """
     source = random.Random(seed)
     reference = Reference(icd)
-    found = []
+    found, scaled = [], set()
     for node, message, kind, id in routes(icd):
         to = {"node": node.name, "kind": kind, "id": id}
         found.append({"op": "constants", **to})
@@ -154,7 +154,11 @@ def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
                 {"op": "encode", **to, "raw": {**fresh, field.name: value}}
                 for value in _raw_values(field)
             ]
-            for value in _doubles(field, source) if field.scale else ():
+            kind = (field.scale, field.bits, field.type)
+            if not field.scale or kind in scaled:
+                continue
+            scaled.add(kind)
+            for value in _doubles(field, source):
                 found.append(
                     {"op": "encode", **to, "raw": rest, "physical": {field.name: value}}
                 )

@@ -19,6 +19,7 @@ LENGTHS = (
     *range(50, 57),
     60,
 )  # where lines begin to be broken
+FEW = (1, 9, 60)  # of them, for what does not depend on where
 BORROWED = (
     "Core",
     "Alloc",
@@ -39,12 +40,13 @@ BORROWED = (
 
 def write(folder: Path) -> list[Path]:
     """The files, those that are included first."""
+    return [*write_names(folder, FEW), *of_c.write(folder)]
+
+
+def write_names(folder: Path, lengths: tuple[int, ...]) -> list[Path]:
+    """Names of these lengths for everything that has a name."""
     base = _write(folder / "base.yaml", _base())
-    return [
-        base,
-        _write(folder / "lengths.yaml", _lengths(LENGTHS)),
-        *of_c.write(folder),
-    ]
+    return [base, _write(folder / "lengths.yaml", _lengths(lengths))]
 
 
 def _write(path: Path, tree: dict) -> Path:
@@ -216,8 +218,7 @@ def _lengths(lengths: tuple[int, ...]) -> dict:
 
 def write_long(folder: Path) -> list[Path]:
     """Names longer than any line; they must compile all the same."""
-    base = _write(folder / "base.yaml", _base())
-    return [base, _write(folder / "lengths.yaml", _lengths((80, 120, 180)))]
+    return write_names(folder, (80, 120, 180))
 
 
 def write_clashing(folder: Path) -> Path:

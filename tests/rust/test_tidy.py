@@ -23,6 +23,11 @@ def test_rustfmt_leaves_it_as_it_is(subject, toolchain):
     toolchain.formatted(main_of_testee(subject.crate))
 
 
+def test_rustfmt_leaves_names_of_all_lengths_as_they_are(toolchain, tmp_path):
+    files = odd.write_names(tmp_path, odd.LENGTHS)
+    toolchain.formatted(harness.generate(harness.read(*files), tmp_path))
+
+
 def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
     toolchain.linted(
         subject.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd"
@@ -38,11 +43,15 @@ def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
     )
 
 
-def test_nor_with_the_standard_library(shipped, toolchain, tmp_path):
-    toolchain.linted(
-        shipped.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd", *STD
-    )
-    toolchain.documented(shipped.crate, tmp_path, *STD)
+def test_nor_with_the_standard_library(toolchain, tmp_path):
+    """Of a node that speaks on each bus; the messages of any node are the same without
+    it.
+    """
+    board = ROOT / "tests" / "protocol" / "keys" / "board.yaml"
+    crate = harness.generate(harness.read(board), tmp_path)
+    options = ("--crate-type", "lib", "--crate-name", "icd", *STD)
+    toolchain.linted(crate, tmp_path, *options)
+    toolchain.documented(crate, tmp_path, *STD)
 
 
 def test_rustdoc_has_nothing_to_say(subject, toolchain, tmp_path):
