@@ -330,99 +330,95 @@ icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8
     return ICD_OK;
 }
 
-static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
+#define ICDGEN_UART_KEEPS_ALL 3u
+
+/*
+ * Drop all bytes except the last `kept` ones: the two bytes of a start sequence, after which a message begins, or a
+ * single escape byte, which may start one.
+ */
+static inline void icdgen_uart_drop(icd_uart_decoder_t *decoder, size_t kept)
 {
-    decoder->discarded += ICDGEN_U32(decoder->pending - 2u); /* all except the two bytes of the start sequence */
-    decoder->pending = 2;
-    decoder->inside = true;
-    decoder->escaped = false;
+    decoder->discarded += ICDGEN_U32(decoder->pending - kept);
+    decoder->pending = kept;
+    decoder->inside = kept == 2u;
+    decoder->escaped = kept == 1u;
     decoder->length = 0;
 }
 
-/* Drop bytes that are not part of a message. A final escape byte is kept because it may start one. */
-static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
+/* Process a byte outside a message. Return the number of bytes to keep. */
+static inline size_t icdgen_uart_outside(const icd_uart_decoder_t *decoder, uint8_t byte)
 {
-    decoder->discarded += ICDGEN_U32(decoder->pending - (escaped ? 1u : 0u));
-    decoder->pending = escaped ? 1u : 0u;
-    decoder->inside = false;
-    decoder->escaped = escaped;
-    decoder->length = 0;
-}
-
-/* Process a byte of a message. Return whether there is an event, and set its kind. */
-static inline bool icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
-{
-    if (decoder->length < decoder->capacity) {
-        decoder->buffer[decoder->length] = byte;
-        decoder->length++;
-        return false;
+    if (decoder->escaped && byte == decoder->framing->start) {
+        return 2;
     }
-    *kind = ICD_EVENT_OVERRUN;
-    icdgen_uart_outside(decoder, false);
-    return true;
+    return byte == decoder->framing->escape ? 1u : 0u;
 }
 
-/* Process the byte after an escape byte within a message. Return whether there is an event, and set its kind. */
-static inline bool icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
+/* Process a control byte: the byte after an escape byte. See icdgen_uart_inside(). */
+static inline size_t icdgen_uart_control(const icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     const icd_framing_t *const framing = decoder->framing;
-    decoder->escaped = false;
-    if (byte == framing->escaped) {
-        return icdgen_uart_data(decoder, framing->escape, kind);
+    if (byte == framing->end) {
+        *kind = decoder->length != 0u ? ICD_EVENT_MESSAGE : ICD_EVENT_EMPTY;
+        return 0;
     }
     if (byte == framing->start) {
         *kind = ICD_EVENT_UNEXPECTED_START;
-        icdgen_uart_start(decoder);
-    } else if (byte == framing->end) {
-        *kind = decoder->length != 0u ? ICD_EVENT_MESSAGE : ICD_EVENT_EMPTY;
-        decoder->pending = decoder->length != 0u ? 0u : decoder->pending;
-        icdgen_uart_outside(decoder, false);
-    } else if (!framing->ignores_other) {
-        *kind = ICD_EVENT_PROTOCOL_ERROR;
-        icdgen_uart_outside(decoder, byte == framing->escape);
-    } else {
-        return false; /* both bytes are skipped */
+        return 2;
     }
-    return true;
+    if (framing->ignores_other) {
+        return ICDGEN_UART_KEEPS_ALL;
+    }
+    *kind = ICD_EVENT_PROTOCOL_ERROR;
+    return byte == framing->escape ? 1u : 0u;
 }
 
-/* Process a byte. Return whether there is an event, and set its kind. */
-static inline bool icdgen_uart_byte(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
+/* Process a byte within a message. Return the number of bytes to keep. If not all, there is an event of this kind. */
+static inline size_t icdgen_uart_inside(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     const icd_framing_t *const framing = decoder->framing;
-    decoder->pending++;
-    if (!decoder->inside) {
-        if (decoder->escaped && byte == framing->start) {
-            icdgen_uart_start(decoder);
-        } else {
-            icdgen_uart_outside(decoder, byte == framing->escape);
-        }
-    } else if (decoder->escaped) {
-        return icdgen_uart_escaped(decoder, byte, kind);
-    } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
-        decoder->escaped = true;
-    } else {
-        return icdgen_uart_data(decoder, byte, kind);
+    const bool escaped = decoder->escaped;
+    decoder->escaped = !escaped && byte == framing->escape && (decoder->length != 0u || framing->escapes_id);
+    if (decoder->escaped) {
+        return ICDGEN_UART_KEEPS_ALL;
     }
-    return false;
+    if (escaped && byte != framing->escaped) {
+        return icdgen_uart_control(decoder, byte, kind);
+    }
+    if (decoder->length < decoder->capacity) {
+        decoder->buffer[decoder->length] = escaped ? framing->escape : byte;
+        decoder->length++;
+        return ICDGEN_UART_KEEPS_ALL;
+    }
+    *kind = ICD_EVENT_OVERRUN;
+    return 0;
 }
 
 static inline void icdgen_uart_feed(
     icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
     for (size_t i = 0; i < count; ++i) {
-        const size_t length = decoder->length;
+        const bool inside = decoder->inside;
         icd_event_kind_t kind = ICD_EVENT_MESSAGE;
-        if (icdgen_uart_byte(decoder, bytes[i], &kind)) {
-            icd_event_t event;
-            icdgen_event_init(&event, kind);
-            if (kind == ICD_EVENT_MESSAGE) {
-                event.has_id = true;
-                event.id = decoder->buffer[0];
-                event.data = decoder->buffer;
-                event.length = length;
+        decoder->pending++;
+        const size_t kept =
+            inside ? icdgen_uart_inside(decoder, bytes[i], &kind) : icdgen_uart_outside(decoder, bytes[i]);
+        if (kept != ICDGEN_UART_KEEPS_ALL) {
+            const size_t length = decoder->length;
+            const bool is_message = inside && kind == ICD_EVENT_MESSAGE;
+            decoder->pending = is_message ? 0u : decoder->pending;
+            icdgen_uart_drop(decoder, kept);
+            if (inside) {
+                icd_event_t event;
+                icdgen_event_init(&event, kind);
+                if (is_message) {
+                    event.has_id = true;
+                    event.id = decoder->buffer[0];
+                    event.data = decoder->buffer;
+                    event.length = length;
+                }
+                icdgen_tell(listener, &event);
             }
-            icdgen_tell(listener, &event);
         }
     }
 }
@@ -459,10 +455,12 @@ static inline const icd_unsolicited_t *icdgen_unsolicited(const icd_link_t *link
     return NULL;
 }
 
-ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
+/* Return the kind of a message, and what it contains if it is ICD_UART_ARRIVED. */
+static inline icd_uart_kind_t icdgen_uart_kind(
+    const icd_link_t *link, const uint8_t *message, size_t length, const icd_unsolicited_t **contained)
 {
     const uint8_t id = message[0];
-    const icd_log_message_form_t *const log = link->log_message;
+    const icd_log_message_form_t *const log = ICDGEN_OF_LOGS(link->log_message);
     if (log != NULL && id == log->id) {
         const bool has_mask = length >= ICDGEN_SIZE(log->mask_at) + log->mask_bytes;
         const size_t slots = has_mask ? icdgen_log_slots(message + log->mask_at, log->mask_bytes) : 0u;
@@ -474,7 +472,14 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     if (link->acknowledge != NULL && length == link->acknowledge->length) {
         return ICD_UART_ACKNOWLEDGE;
     }
-    return icdgen_unsolicited(link, message, length) != NULL ? ICD_UART_ARRIVED : ICD_UART_OTHER;
+    *contained = icdgen_unsolicited(link, message, length);
+    return *contained != NULL ? ICD_UART_ARRIVED : ICD_UART_OTHER;
+}
+
+ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
+{
+    const icd_unsolicited_t *contained;
+    return icdgen_uart_kind(link, message, length, &contained);
 }
 
 #define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
@@ -1694,6 +1699,21 @@ ICDGEN_API uint32_t icd_message_checksum(const icd_link_t *link, uint8_t id, con
     return icdgen_check_result(&check);
 }
 
+/* Write id, data and checksum of a message. Return ICD_ERROR_RANGE if the checksum does not fit. */
+static inline icd_status_t icdgen_put_message(
+    const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length, bool checked, uint8_t *buffer)
+{
+    uint8_t *const rest = buffer + 1;
+    buffer[0] = id;
+    if (length != 0u) {
+        (void)memcpy(rest, data, length);
+    }
+    if (!checked) {
+        return ICD_OK;
+    }
+    return icdgen_put_number(link, rest + length, link->checksum->bytes, icd_message_checksum(link, id, rest, length));
+}
+
 ICDGEN_API icd_status_t icd_i2c_write(
     const icd_link_t *link,
     uint8_t id,
@@ -1714,14 +1734,8 @@ ICDGEN_API icd_status_t icd_i2c_write(
     if (capacity < extra + 1u || capacity - extra - 1u < length) {
         return ICD_ERROR_LENGTH;
     }
-    buffer[0] = id;
-    if (length != 0u) {
-        (void)memcpy(buffer + 1, data, length);
-    }
     *written = 1u + length + extra;
-    return checked
-        ? icdgen_put_number(link, buffer + 1u + length, extra, icd_message_checksum(link, id, buffer + 1, length))
-        : ICD_OK;
+    return icdgen_put_message(link, id, data, length, checked, buffer);
 }
 
 ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length)
@@ -2621,9 +2635,15 @@ static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
 static inline size_t icdgen_message_sources(const icd_awaited_t *awaited)
 {
-    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO)
-        ? ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count
-        : 0u;
+    const size_t in_header =
+        ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_HEADER_ECHO) ? ICDGEN_SIZE(awaited->exchange->header_count) : 0u;
+    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO) ? awaited->exchange->source_count - in_header : 0u;
+}
+
+/* Return whether the number that a response repeats is known before the packet is sent. */
+static inline bool icdgen_is_known(const icd_awaited_t *awaited, const icd_echo_t *echo)
+{
+    return !ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_HEADER_ECHO) || echo->source < icdgen_message_sources(awaited);
 }
 
 /* Return whether the responses to two requests have different numbers at the same place. */
@@ -2634,8 +2654,8 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < icdgen_echo_count(response_b); ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (echo->place == other->place && echo->source < icdgen_message_sources(a) &&
-                other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
+            if (echo->place == other->place && icdgen_is_known(a, echo) && icdgen_is_known(b, other) &&
+                a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
         }
@@ -3518,9 +3538,12 @@ static inline icd_status_t icdgen_bus_plan(const icd_client_t *client, const icd
 /* Store id, data and checksum. */
 static inline icd_status_t icdgen_bus_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
-    return icd_i2c_write(
-        client->link, ICDGEN_U8(slot->sent_id), data, slot->length, !slot->asks_by_id && client->checks_telecommands,
-        slot->data, ICDGEN_SIZE(client->link->longest_telecommand), &slot->length);
+    const bool checked = !slot->asks_by_id && client->checks_telecommands;
+    const size_t length = slot->length;
+    slot->length += 1u + (checked ? client->link->checksum->bytes : 0u);
+    return slot->length <= client->link->longest_telecommand
+        ? icdgen_put_message(client->link, ICDGEN_U8(slot->sent_id), data, length, checked, slot->data)
+        : ICD_ERROR_LENGTH;
 }
 
 /* Report what belongs to no request. */
@@ -3558,14 +3581,19 @@ static inline void icdgen_bus_telemetry(const icdgen_call_t *call, icd_event_t *
     }
     const bool is_checked = form != NULL && icdgen_on_bus(form->telemetry_buses, client->line->bus) &&
         event->length == ICDGEN_SIZE(message->length) + form->bytes;
+    icd_event_kind_t fault = ICD_EVENT_MESSAGE; /* none */
     if (is_checked && !icdgen_is_intact(client->link, message->id, event->data, message->length)) {
-        icdgen_bus_fault(call, ICD_EVENT_CHECKSUM, event);
+        fault = ICD_EVENT_CHECKSUM;
     } else if (!is_checked && event->length != message->length) {
-        icdgen_bus_fault(call, ICD_EVENT_LENGTH, event);
+        fault = ICD_EVENT_LENGTH;
     } else if (!is_checked && client->checks_telemetry) {
-        icdgen_bus_fault(call, ICD_EVENT_UNCHECKED, event);
+        fault = ICD_EVENT_UNCHECKED;
     } else {
         event->length = message->length;
+    }
+    if (fault != ICD_EVENT_MESSAGE) {
+        icdgen_bus_fault(call, fault, event);
+    } else {
         icdgen_client_arrived(call, event, ICD_EVENT_STRAY);
     }
 }
@@ -3595,7 +3623,8 @@ static inline void icdgen_uart_message(const icdgen_call_t *call, icd_event_t *e
     const icd_link_t *const link = call->client->link;
     const uint8_t *const message = event->data;
     const size_t length = event->length;
-    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
+    const icd_unsolicited_t *contained = NULL;
+    const icd_uart_kind_t kind = icdgen_uart_kind(link, message, length, &contained);
     if (kind == ICD_UART_LOG) {
         icdgen_bus_tell(call, ICD_EVENT_LOG, event);
         return;
@@ -3608,8 +3637,8 @@ static inline void icdgen_uart_message(const icdgen_call_t *call, icd_event_t *e
     event->length--;
     if (kind == ICD_UART_REPLY) {
         icdgen_bus_telemetry(call, event);
-    } else if (kind == ICD_UART_ARRIVED) {
-        event->id = icdgen_unsolicited(link, message, length)->telemetry;
+    } else if (contained != NULL) {
+        event->id = contained->telemetry;
         event->link = link;
         event->direction = ICD_TELEMETRY;
         icdgen_bus_tell(call, ICD_EVENT_ARRIVED, event);

@@ -67,9 +67,12 @@ static inline icd_status_t icdgen_bus_plan(const icd_client_t *client, const icd
 /* Store id, data and checksum. */
 static inline icd_status_t icdgen_bus_store(const icd_client_t *client, icd_slot_t *slot, const uint8_t *data)
 {
-    return icd_i2c_write(
-        client->link, ICDGEN_U8(slot->sent_id), data, slot->length, !slot->asks_by_id && client->checks_telecommands,
-        slot->data, ICDGEN_SIZE(client->link->longest_telecommand), &slot->length);
+    const bool checked = !slot->asks_by_id && client->checks_telecommands;
+    const size_t length = slot->length;
+    slot->length += 1u + (checked ? client->link->checksum->bytes : 0u);
+    return slot->length <= client->link->longest_telecommand
+        ? icdgen_put_message(client->link, ICDGEN_U8(slot->sent_id), data, length, checked, slot->data)
+        : ICD_ERROR_LENGTH;
 }
 
 /* Report what belongs to no request. */
@@ -107,14 +110,19 @@ static inline void icdgen_bus_telemetry(const icdgen_call_t *call, icd_event_t *
     }
     const bool is_checked = form != NULL && icdgen_on_bus(form->telemetry_buses, client->line->bus) &&
         event->length == ICDGEN_SIZE(message->length) + form->bytes;
+    icd_event_kind_t fault = ICD_EVENT_MESSAGE; /* none */
     if (is_checked && !icdgen_is_intact(client->link, message->id, event->data, message->length)) {
-        icdgen_bus_fault(call, ICD_EVENT_CHECKSUM, event);
+        fault = ICD_EVENT_CHECKSUM;
     } else if (!is_checked && event->length != message->length) {
-        icdgen_bus_fault(call, ICD_EVENT_LENGTH, event);
+        fault = ICD_EVENT_LENGTH;
     } else if (!is_checked && client->checks_telemetry) {
-        icdgen_bus_fault(call, ICD_EVENT_UNCHECKED, event);
+        fault = ICD_EVENT_UNCHECKED;
     } else {
         event->length = message->length;
+    }
+    if (fault != ICD_EVENT_MESSAGE) {
+        icdgen_bus_fault(call, fault, event);
+    } else {
         icdgen_client_arrived(call, event, ICD_EVENT_STRAY);
     }
 }

@@ -142,9 +142,15 @@ static inline const icd_response_t *icdgen_matching(const icd_awaited_t *awaited
 /* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
 static inline size_t icdgen_message_sources(const icd_awaited_t *awaited)
 {
-    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO)
-        ? ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count
-        : 0u;
+    const size_t in_header =
+        ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_HEADER_ECHO) ? ICDGEN_SIZE(awaited->exchange->header_count) : 0u;
+    return ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_ECHO) ? awaited->exchange->source_count - in_header : 0u;
+}
+
+/* Return whether the number that a response repeats is known before the packet is sent. */
+static inline bool icdgen_is_known(const icd_awaited_t *awaited, const icd_echo_t *echo)
+{
+    return !ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_HEADER_ECHO) || echo->source < icdgen_message_sources(awaited);
 }
 
 /* Return whether the responses to two requests have different numbers at the same place. */
@@ -155,8 +161,8 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < icdgen_echo_count(response_b); ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (echo->place == other->place && echo->source < icdgen_message_sources(a) &&
-                other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
+            if (echo->place == other->place && icdgen_is_known(a, echo) && icdgen_is_known(b, other) &&
+                a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
         }

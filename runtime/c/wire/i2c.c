@@ -15,6 +15,21 @@ ICDGEN_API uint32_t icd_message_checksum(const icd_link_t *link, uint8_t id, con
     return icdgen_check_result(&check);
 }
 
+/* Write id, data and checksum of a message. Return ICD_ERROR_RANGE if the checksum does not fit. */
+static inline icd_status_t icdgen_put_message(
+    const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length, bool checked, uint8_t *buffer)
+{
+    uint8_t *const rest = buffer + 1;
+    buffer[0] = id;
+    if (length != 0u) {
+        (void)memcpy(rest, data, length);
+    }
+    if (!checked) {
+        return ICD_OK;
+    }
+    return icdgen_put_number(link, rest + length, link->checksum->bytes, icd_message_checksum(link, id, rest, length));
+}
+
 ICDGEN_API icd_status_t icd_i2c_write(
     const icd_link_t *link,
     uint8_t id,
@@ -35,14 +50,8 @@ ICDGEN_API icd_status_t icd_i2c_write(
     if (capacity < extra + 1u || capacity - extra - 1u < length) {
         return ICD_ERROR_LENGTH;
     }
-    buffer[0] = id;
-    if (length != 0u) {
-        (void)memcpy(buffer + 1, data, length);
-    }
     *written = 1u + length + extra;
-    return checked
-        ? icdgen_put_number(link, buffer + 1u + length, extra, icd_message_checksum(link, id, buffer + 1, length))
-        : ICD_OK;
+    return icdgen_put_message(link, id, data, length, checked, buffer);
 }
 
 ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length)

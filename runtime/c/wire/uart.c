@@ -81,99 +81,95 @@ icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8
     return ICD_OK;
 }
 
-static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
+#define ICDGEN_UART_KEEPS_ALL 3u
+
+/*
+ * Drop all bytes except the last `kept` ones: the two bytes of a start sequence, after which a message begins, or a
+ * single escape byte, which may start one.
+ */
+static inline void icdgen_uart_drop(icd_uart_decoder_t *decoder, size_t kept)
 {
-    decoder->discarded += ICDGEN_U32(decoder->pending - 2u); /* all except the two bytes of the start sequence */
-    decoder->pending = 2;
-    decoder->inside = true;
-    decoder->escaped = false;
+    decoder->discarded += ICDGEN_U32(decoder->pending - kept);
+    decoder->pending = kept;
+    decoder->inside = kept == 2u;
+    decoder->escaped = kept == 1u;
     decoder->length = 0;
 }
 
-/* Drop bytes that are not part of a message. A final escape byte is kept because it may start one. */
-static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
+/* Process a byte outside a message. Return the number of bytes to keep. */
+static inline size_t icdgen_uart_outside(const icd_uart_decoder_t *decoder, uint8_t byte)
 {
-    decoder->discarded += ICDGEN_U32(decoder->pending - (escaped ? 1u : 0u));
-    decoder->pending = escaped ? 1u : 0u;
-    decoder->inside = false;
-    decoder->escaped = escaped;
-    decoder->length = 0;
-}
-
-/* Process a byte of a message. Return whether there is an event, and set its kind. */
-static inline bool icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
-{
-    if (decoder->length < decoder->capacity) {
-        decoder->buffer[decoder->length] = byte;
-        decoder->length++;
-        return false;
+    if (decoder->escaped && byte == decoder->framing->start) {
+        return 2;
     }
-    *kind = ICD_EVENT_OVERRUN;
-    icdgen_uart_outside(decoder, false);
-    return true;
+    return byte == decoder->framing->escape ? 1u : 0u;
 }
 
-/* Process the byte after an escape byte within a message. Return whether there is an event, and set its kind. */
-static inline bool icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
+/* Process a control byte: the byte after an escape byte. See icdgen_uart_inside(). */
+static inline size_t icdgen_uart_control(const icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     const icd_framing_t *const framing = decoder->framing;
-    decoder->escaped = false;
-    if (byte == framing->escaped) {
-        return icdgen_uart_data(decoder, framing->escape, kind);
+    if (byte == framing->end) {
+        *kind = decoder->length != 0u ? ICD_EVENT_MESSAGE : ICD_EVENT_EMPTY;
+        return 0;
     }
     if (byte == framing->start) {
         *kind = ICD_EVENT_UNEXPECTED_START;
-        icdgen_uart_start(decoder);
-    } else if (byte == framing->end) {
-        *kind = decoder->length != 0u ? ICD_EVENT_MESSAGE : ICD_EVENT_EMPTY;
-        decoder->pending = decoder->length != 0u ? 0u : decoder->pending;
-        icdgen_uart_outside(decoder, false);
-    } else if (!framing->ignores_other) {
-        *kind = ICD_EVENT_PROTOCOL_ERROR;
-        icdgen_uart_outside(decoder, byte == framing->escape);
-    } else {
-        return false; /* both bytes are skipped */
+        return 2;
     }
-    return true;
+    if (framing->ignores_other) {
+        return ICDGEN_UART_KEEPS_ALL;
+    }
+    *kind = ICD_EVENT_PROTOCOL_ERROR;
+    return byte == framing->escape ? 1u : 0u;
 }
 
-/* Process a byte. Return whether there is an event, and set its kind. */
-static inline bool icdgen_uart_byte(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
+/* Process a byte within a message. Return the number of bytes to keep. If not all, there is an event of this kind. */
+static inline size_t icdgen_uart_inside(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_kind_t *kind)
 {
     const icd_framing_t *const framing = decoder->framing;
-    decoder->pending++;
-    if (!decoder->inside) {
-        if (decoder->escaped && byte == framing->start) {
-            icdgen_uart_start(decoder);
-        } else {
-            icdgen_uart_outside(decoder, byte == framing->escape);
-        }
-    } else if (decoder->escaped) {
-        return icdgen_uart_escaped(decoder, byte, kind);
-    } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
-        decoder->escaped = true;
-    } else {
-        return icdgen_uart_data(decoder, byte, kind);
+    const bool escaped = decoder->escaped;
+    decoder->escaped = !escaped && byte == framing->escape && (decoder->length != 0u || framing->escapes_id);
+    if (decoder->escaped) {
+        return ICDGEN_UART_KEEPS_ALL;
     }
-    return false;
+    if (escaped && byte != framing->escaped) {
+        return icdgen_uart_control(decoder, byte, kind);
+    }
+    if (decoder->length < decoder->capacity) {
+        decoder->buffer[decoder->length] = escaped ? framing->escape : byte;
+        decoder->length++;
+        return ICDGEN_UART_KEEPS_ALL;
+    }
+    *kind = ICD_EVENT_OVERRUN;
+    return 0;
 }
 
 static inline void icdgen_uart_feed(
     icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
     for (size_t i = 0; i < count; ++i) {
-        const size_t length = decoder->length;
+        const bool inside = decoder->inside;
         icd_event_kind_t kind = ICD_EVENT_MESSAGE;
-        if (icdgen_uart_byte(decoder, bytes[i], &kind)) {
-            icd_event_t event;
-            icdgen_event_init(&event, kind);
-            if (kind == ICD_EVENT_MESSAGE) {
-                event.has_id = true;
-                event.id = decoder->buffer[0];
-                event.data = decoder->buffer;
-                event.length = length;
+        decoder->pending++;
+        const size_t kept =
+            inside ? icdgen_uart_inside(decoder, bytes[i], &kind) : icdgen_uart_outside(decoder, bytes[i]);
+        if (kept != ICDGEN_UART_KEEPS_ALL) {
+            const size_t length = decoder->length;
+            const bool is_message = inside && kind == ICD_EVENT_MESSAGE;
+            decoder->pending = is_message ? 0u : decoder->pending;
+            icdgen_uart_drop(decoder, kept);
+            if (inside) {
+                icd_event_t event;
+                icdgen_event_init(&event, kind);
+                if (is_message) {
+                    event.has_id = true;
+                    event.id = decoder->buffer[0];
+                    event.data = decoder->buffer;
+                    event.length = length;
+                }
+                icdgen_tell(listener, &event);
             }
-            icdgen_tell(listener, &event);
         }
     }
 }
@@ -210,10 +206,12 @@ static inline const icd_unsolicited_t *icdgen_unsolicited(const icd_link_t *link
     return NULL;
 }
 
-ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
+/* Return the kind of a message, and what it contains if it is ICD_UART_ARRIVED. */
+static inline icd_uart_kind_t icdgen_uart_kind(
+    const icd_link_t *link, const uint8_t *message, size_t length, const icd_unsolicited_t **contained)
 {
     const uint8_t id = message[0];
-    const icd_log_message_form_t *const log = link->log_message;
+    const icd_log_message_form_t *const log = ICDGEN_OF_LOGS(link->log_message);
     if (log != NULL && id == log->id) {
         const bool has_mask = length >= ICDGEN_SIZE(log->mask_at) + log->mask_bytes;
         const size_t slots = has_mask ? icdgen_log_slots(message + log->mask_at, log->mask_bytes) : 0u;
@@ -225,7 +223,14 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     if (link->acknowledge != NULL && length == link->acknowledge->length) {
         return ICD_UART_ACKNOWLEDGE;
     }
-    return icdgen_unsolicited(link, message, length) != NULL ? ICD_UART_ARRIVED : ICD_UART_OTHER;
+    *contained = icdgen_unsolicited(link, message, length);
+    return *contained != NULL ? ICD_UART_ARRIVED : ICD_UART_OTHER;
+}
+
+ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
+{
+    const icd_unsolicited_t *contained;
+    return icdgen_uart_kind(link, message, length, &contained);
 }
 
 #endif /* ICDGEN_WIRE_UART_C */

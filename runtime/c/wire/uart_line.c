@@ -29,7 +29,8 @@ static inline void icdgen_uart_message(const icdgen_call_t *call, icd_event_t *e
     const icd_link_t *const link = call->client->link;
     const uint8_t *const message = event->data;
     const size_t length = event->length;
-    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
+    const icd_unsolicited_t *contained = NULL;
+    const icd_uart_kind_t kind = icdgen_uart_kind(link, message, length, &contained);
     if (kind == ICD_UART_LOG) {
         icdgen_bus_tell(call, ICD_EVENT_LOG, event);
         return;
@@ -42,8 +43,8 @@ static inline void icdgen_uart_message(const icdgen_call_t *call, icd_event_t *e
     event->length--;
     if (kind == ICD_UART_REPLY) {
         icdgen_bus_telemetry(call, event);
-    } else if (kind == ICD_UART_ARRIVED) {
-        event->id = icdgen_unsolicited(link, message, length)->telemetry;
+    } else if (contained != NULL) {
+        event->id = contained->telemetry;
         event->link = link;
         event->direction = ICD_TELEMETRY;
         icdgen_bus_tell(call, ICD_EVENT_ARRIVED, event);
