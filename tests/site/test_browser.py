@@ -248,15 +248,14 @@ def test_axe_finds_nothing(browser, site, path, scheme):
 
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
-@pytest.mark.parametrize("width", measure.WIDTHS)
-def test_nothing_is_cut_and_nothing_endless(browser, site, path, width):
+def test_nothing_is_cut_and_nothing_endless(browser, site, path):
     """No page is wider than the screen, or longer than 8,000 pixels before anything is
     unfolded.
     """
-    with opened(
-        browser, site.as_uri() + "/", path, viewport={"width": width, "height": 900}
-    ) as page:
-        assert measure.faults(page, width) == []
+    with opened(browser, site.as_uri() + "/", path) as page:
+        for width in measure.WIDTHS:
+            page.set_viewport_size({"width": width, "height": 900})
+            assert (width, measure.faults(page, width)) == (width, [])
 
 
 def test_dark_mode_follows_the_system_and_the_button(browser, served):
@@ -305,6 +304,9 @@ def test_without_javascript_everything_but_search_and_decoder_is_there(browser, 
 def test_hostile_texts_are_shown_and_do_nothing(browser, strange):
     top = strange.as_uri() + "/"
     paths = sorted(str(p.relative_to(strange)) for p in strange.rglob("*.html"))
+    # The documents of icdgen have no word of the ICDs.
+    paths = [path for path in paths if not path.startswith("icdgen-docs/")]
+    assert len(paths) > 8
     with opened(browser, top, paths[0]) as page:
         for path in paths:
             page.goto(top + path)
