@@ -26,7 +26,7 @@ static icd_event_t done(int port, icd_status_t started)
     }
     /* Sends, waits, and repeats requests of telemetry. */
     end = port_ask(port, &acp.client, frame, sizeof frame);
-    /* The meaning of the code is end.reason, such as ICD_REASON_LENGTH. */
+    /* cubeacp_refusal(&end, &reason) gets the code as a value of its enumeration. */
     if (end.kind == ICD_EVENT_REFUSED) {
         fprintf(stderr, "refused, code %u\n", (unsigned)end.code);
         exit(EXIT_FAILURE);

@@ -48,7 +48,7 @@ def main(place: str) -> None:
             control(Session(LINK, port))
     except (
         RefusedError
-    ) as error:  # error.event has the code, and as `reason` what the ICD says of it
+    ) as error:  # error.event has the code, and as `reason` its name in the ICD
         sys.exit(f"refused, code {error.event.code}")
     except ReplyTimeoutError as error:
         sys.exit(f"no response, attempts: {error.event.attempts}")

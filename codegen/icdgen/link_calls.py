@@ -14,9 +14,8 @@ from typing import Any
 
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.icd.model import Message
-from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.exchange import BusExchanges, Exchange, NumberPlace, Response
 from icdgen.protocol.packet_formats import (
     MESSAGE,
     Escaping,
@@ -130,7 +129,7 @@ class _LinkBuilder:
         time = {name: _flat("TimePart", part) for name, part in facts.time.items()}
         optional = {
             "framing": self.part(facts.framing),
-            "acknowledge": self.part(facts.acknowledge),
+            "acknowledge_bytes": self.acknowledge(),
             "i2c_address": facts.i2c_address,
             # True is the default of the runtime.
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
@@ -197,6 +196,13 @@ class _LinkBuilder:
             if value is not None:
                 values[fact.name] = _explained(value, self.assumed.why_fact(part, fact))
         return values
+
+    def acknowledge(self) -> object:
+        """Return the length of the acknowledge on the UART."""
+        packet = self.facts.acknowledge
+        return packet and self.commented_rest(
+            packet.overhead, f"link.packets.{packet.name}"
+        )
 
     def can(self) -> object:
         """Return the call for the link over CAN."""

@@ -469,7 +469,7 @@ static inline icd_uart_kind_t icdgen_uart_kind(
     if (id >= link->telemetry_first && id <= link->telemetry_last) {
         return ICD_UART_REPLY;
     }
-    if (link->acknowledge != NULL && length == link->acknowledge->length) {
+    if (length > 0u && length == link->acknowledge_bytes) {
         return ICD_UART_ACKNOWLEDGE;
     }
     *contained = icdgen_unsolicited(link, message, length);
@@ -3127,10 +3127,9 @@ static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_
     if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_REASON) && response->reason != NULL) {
         event->has_code = true;
         event->code = icdgen_stream_number(response->reason, event->id, event->data, event->length);
-        for (size_t i = link->error_count; i > 0u; --i) {
-            if (link->errors[i - 1u].code == event->code) {
-                event->reason = link->errors[i - 1u].reason;
-            }
+        event->may_be_damaged = link->reason_count > 0u;
+        for (size_t i = 0; i < link->reason_count; ++i) {
+            event->may_be_damaged = event->may_be_damaged && link->reasons[i] != event->code;
         }
     }
     if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_DETAIL) && response->detail != NULL) {
@@ -4634,10 +4633,8 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
         icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
         icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
-    } else if (
-        event->kind == ICD_EVENT_REFUSED && procedure->link->stream == NULL && event->has_code &&
-        event->reason == ICD_REASON_UNKNOWN) {
-        icdgen_damaged(procedure); /* the messages of framed links have a checksum */
+    } else if (event->kind == ICD_EVENT_REFUSED && event->may_be_damaged) {
+        icdgen_damaged(procedure);
     } else if (event->kind == ICD_EVENT_REFUSED) {
         icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
     } else if (event->kind == ICD_EVENT_BUSY) {

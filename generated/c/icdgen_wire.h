@@ -74,38 +74,12 @@ typedef struct {
     bool ignores_other;
 } icd_framing_t;
 
-/** The acknowledge on the UART: its length, and where the id of the telecommand and the error code stand. */
-typedef struct {
-    /** Length of the message. */
-    uint16_t length;
-    /** Offset of the id of the telecommand. */
-    uint16_t id_at;
-    /** Offset of the error code. */
-    uint16_t error_at;
-} icd_acknowledge_t;
-
 /** Telemetry that arrives unsolicited on the UART: id at the head of the message, and what it contains. */
 typedef struct {
     uint8_t id;
     uint8_t telemetry;
     uint16_t length; /**< Of the telemetry. */
 } icd_unsolicited_t;
-
-/** What an error code means. */
-typedef enum {
-    ICD_REASON_UNKNOWN = 0,
-    ICD_REASON_NONE = 1,
-    ICD_REASON_UNKNOWN_ID = 2,
-    ICD_REASON_LENGTH = 3,
-    ICD_REASON_VALUE = 4,
-    ICD_REASON_CHECKSUM = 5
-} icd_reason_t;
-
-/** An error code and its meaning. */
-typedef struct {
-    icd_reason_t reason;
-    uint32_t code;
-} icd_error_code_t;
 
 /* A compiler that optimizes for size leaves out the lookup tables of CRCs. */
 #if defined(__OPTIMIZE_SIZE__) && !defined(ICDGEN_TABLES) && !defined(ICDGEN_NO_TABLES)
@@ -802,7 +776,7 @@ typedef struct {
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
-    uint8_t error_count;
+    uint16_t reason_count;
     uint8_t unsolicited_count;
     uint16_t telecommand_count, telemetry_count;
     const icd_message_t *telecommands; /**< In ascending order of the ids. */
@@ -815,14 +789,13 @@ typedef struct {
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
     const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
     const icd_checksum_form_t *checksum;
-    const icd_error_code_t *errors;
+    const uint32_t *reasons; /**< Codes of refusals on UART and I2C that the enumeration of the codes has. */
     const icd_framing_t *framing;
-    const icd_acknowledge_t *acknowledge;
+    uint16_t acknowledge_bytes;           /**< Length of the acknowledge on the UART; 0 without one. */
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
     const icd_log_message_form_t *log_message;
     const icd_can_form_t *can;
     icd_client_settings_t client;
-    uint32_t no_error;
     int32_t node_type; /**< -1 if the ICD has none. */
     int32_t interface_version;
     int16_t i2c_address;     /**< 7-bit address, -1 if the ICD has none. */
@@ -899,7 +872,7 @@ typedef struct {
     bool has_reply;      /**< Events of a request: whether telemetry `reply` led to the event. */
     bool has_code;       /**< REFUSED, BUSY: whether the response has a reason `code`. */
     bool has_detail;     /**< REFUSED on I2C: whether the response has the index `detail` of a parameter. */
-    icd_reason_t reason; /**< REFUSED: meaning of `code` on UART and I2C. */
+    bool may_be_damaged; /**< REFUSED on UART and I2C: the enumeration of the codes does not have `code`. */
     bool is_packet;      /**< Whether the packet or the response contains no message. `data` are all its bytes. */
     uint8_t packet;      /**< Framed links: index of the packet format. */
     icd_direction_t direction;

@@ -289,10 +289,10 @@ const icdgenRecognize = ((frames, pasted, stream, packets, framedPackets) => {
     if (!apart) return;
     const [id] = apart;
     yield* withId(index, speaker, ...apart);
-    const [size, idAt, errorAt] = speaker.acknowledge ?? [];
+    const [size, idAt, errorAt, names] = speaker.acknowledge ?? [];
     if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
       const error = body[errorAt];
-      const told = `error ${error}${speaker.errors[error] ? ` (${speaker.errors[error]})` : ""}`;
+      const told = `error ${error}${names[error] ? ` (${names[error]})` : ""}`;
       yield noted(reading(index, speaker, "acknowledge", speaker.telecommands[body[idAt]], body[idAt]), told);
     }
   }

@@ -56,11 +56,11 @@ def source(icd: Icd, node_name: str = NODE) -> str:
             key=lambda plan: plan.model.expects_reset,
         ),
         log=plans[icd.protocol_of(node)["unsolicited_log"]["configured_by"]["message"]],
-        last=plans[known.polled.message.name],
+        last=plans[known.polled.name],
         last_id=next(
             m.name
-            for m in plans[known.polled.message.name].fields
-            if m.model.name == known.polled.id
+            for m in plans[known.polled.name].fields
+            if m.model.name == "Last TC ID"
         ),
         identification=plans[known.identification.message.name],
         restarted=starters[0],

@@ -115,7 +115,7 @@ static inline const icd_event_t *session_send(session_t *session, uint8_t id, co
     uint32_t left = session->link.client.retries;
     do {
         outcome = session_ask(session, &request);
-    } while (outcome->kind == ICD_EVENT_REFUSED && outcome->reason == ICD_REASON_UNKNOWN && left-- != 0);
+    } while (outcome->kind == ICD_EVENT_REFUSED && outcome->may_be_damaged && left-- != 0);
     return outcome;
 }
 

@@ -14,6 +14,7 @@ from icdgen_runtime.wire.procedures import Procedure
 from icdgen_runtime.wire.session import Session
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
+from icdgen.runtime_objects.links import responses_on
 from icdgen.runtime_objects.procedures import procedure_of, row_of
 from tests.hostile.bounds import most_of
 from tests.hostile.devices import Device, Kind
@@ -145,10 +146,12 @@ class Line:
 
     def _lines(self, events: list[Event]) -> Iterator[bytes]:
         """Return the messages that make the client report the events."""
-        link, form = self.link, self.link.acknowledge
-        assert form
-        (response,) = link.bus_exchanges["uart"].command.responses
-        success, refusal = response.meanings[0][0], response.reasons[0][0]
+        link = self.link
+        assert link.acknowledge_bytes
+        (response,) = responses_on(link, "uart")
+        listed = dict(response.meanings)
+        success = next(code for code, says in listed.items() if says == "ack")
+        refusal = next(code for code, _ in response.reasons if code not in listed)
         for event in events:
             if isinstance(event, Arrived):
                 heads = {telemetry: id for id, telemetry in link.unsolicited.items()}
@@ -162,9 +165,9 @@ class Line:
                 ):
                     continue
                 code = success if isinstance(event, Done) else event.code
-                acknowledge = bytearray(form.length)
-                acknowledge[form.id_at] = event.id
-                acknowledge[form.error_at] = refusal if code is None else code
+                acknowledge = bytearray(link.acknowledge_bytes)
+                response.echoes[0].place.put(event.id, acknowledge)
+                response.status.put(refusal if code is None else code, acknowledge)
                 yield uart_encode(link, bytes(acknowledge))
 
 

@@ -14,6 +14,8 @@ from icdgen_runtime.wire.events import OUTCOMES, Event
 from icdgen_runtime.wire.link import Bus, Link
 from icdgen_runtime.wire.uart import uart_encode
 
+from icdgen.runtime_objects.links import responses_on
+
 Row = dict[str, Any]
 OTHER_KINDS: tuple[CanKind, ...] = (
     "acknowledge",
@@ -103,12 +105,13 @@ def end_of_request(link: Link[Any], bus: Bus, seed: int) -> Ended:
 
 def _message(link: Link[Any], id: int, source: Random) -> bytes:
     """Return a message of another id, or of a wrong length."""
-    form = link.acknowledge
-    assert form
+    assert link.acknowledge_bytes
+    (response,) = responses_on(link, "uart")
     if source.random() < 0.5:
-        acknowledge = bytearray(source.randbytes(form.length))
+        acknowledge = bytearray(source.randbytes(link.acknowledge_bytes))
         acknowledge[0] = 0
-        acknowledge[form.id_at] = (id + source.randrange(1, 256)) % 256
+        other_id = (id + source.randrange(1, 256)) % 256
+        response.echoes[0].place.put(other_id, acknowledge)
         return bytes(acknowledge)
     other = source.choice(sorted(link.frames))
     return bytes((other,)) + source.randbytes(link.frames[other] + (other == id))

@@ -87,7 +87,7 @@ def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(link):
     client.tick(210)
     assert client.output() == line(link, 31, 2)
     assert client.received(220, line(link, 31, 3)) == [
-        Refused(31, 1, 3, "value", None, b"\3")
+        Refused(31, 1, 3, "Incorrect Parameter", None, b"\3")
     ]
 
 

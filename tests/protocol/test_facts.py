@@ -164,14 +164,14 @@ def test_a_wrong_checksum_is_the_only_refusal_after_which_a_telecommand_is_sent_
         (response,) = command.responses
         assert (response.verdict, dict(response.meanings)) == (
             "nak",
-            {known.errors["none"]: "ack", known.errors["checksum"]: "again"},
+            {0: "ack", known.reasons["checksum"]: "again"},
         )
 
 
 def test_only_i2c_polls_for_the_response(known):
     polls = {bus: each.command.poll for bus, each in known.bus_exchanges.items()}
     assert (polls["uart"], polls["can"]) == (None, None)
-    assert polls["i2c"].telemetry == known.polled.message.telemetry_id
+    assert polls["i2c"].telemetry == known.polled.telemetry_id
 
 
 @pytest.mark.parametrize(
@@ -221,10 +221,10 @@ def test_several_values_of_a_status_can_confirm_and_a_refusal_needs_no_detail(tm
     loaded = load([tmp_path])
     assert loaded.findings == []
     known = facts.of(loaded.icd, loaded.icd.node("demo"))
-    assert known.errors == {"none": 0, "length": 2}
+    assert known.reasons == {"length": 2}
     (response,) = known.bus_exchanges["i2c"].command.responses
     assert response.meanings == ((0, "ack"), (1, "ack"))
-    assert response.reasons == ((2, "length"),)
+    assert response.reasons == ((0, "Fine"), (1, "Slow"), (2, "Length"))
     assert response.detail is None
     client = Client(links.link(loaded.icd, "demo"), "i2c")
     client.start(0, Request("telecommand", 7))

@@ -126,7 +126,7 @@ def test_a_time_out_can_count_as_done(link):
 
 
 def test_a_damaged_refusal_repeats_the_request_only_if_it_may_be_repeated(link):
-    damaged = Refused(0, 1, 200)
+    damaged = Refused(0, 1, 200, may_be_damaged=True)
     procedure = of(link, Send(1, b"", repeats=True))
     for _ in range(1 + link.settings.retries):
         assert procedure.next(0).id == 1

@@ -87,7 +87,7 @@ def test_every_telecommand_has_an_outcome(shipped, wire):
                 talking.send(message())
             except wire.RefusedError as error:
                 assert error.event.reason == (
-                    "unknown_id" if message.NAME in uploads else "value"
+                    "Invalid TC" if message.NAME in uploads else "Incorrect Parameter"
                 )
     assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
 
@@ -232,7 +232,7 @@ def test_a_refusal_that_the_icd_knows_is_not_asked_again(shipped, wire):
         caught.value.event.reason,
         heard,
         port.acknowledged,
-    ) == (2, "length", [], 1)
+    ) == (2, "Incorrect Length", [], 1)
 
 
 def test_logs_that_come_unasked_are_told(shipped, wire):

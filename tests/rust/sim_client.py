@@ -85,9 +85,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
             allowed_values,
         ),
         resets=of((m for m in commands if m.expects_reset), allowed_values),
-        last=Place(
-            _type(rows[last.message.name]), _field(rows[last.message.name], last.id)
-        ),
+        last=Place(_type(rows[last.name]), _field(rows[last.name], "Last TC ID")),
         identification=_type(rows[known.identification.message.name]),
         log=log and _type(rows[log]),
         restarted=starters[0],

@@ -3,10 +3,10 @@
 use icd::common::Reset;
 use icd::cubeacp::enums::{ConModeSelect, EstimModeSelect};
 use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, EstimatedAttitudeAngles, SetAttitudeControlMode, Telecommand, Telemetry};
-use icd::common::enums::FileType;
+use icd::common::enums::{FileType, TcErrorReason};
 use icd::cubeacp::procedures::{Download, DOWNLOAD_MEMORY};
 use icd::wire::procedure::End;
-use icd::wire::{can, checksum, identify, uart, Client, Crc, Direction, Event, Link, Reason, Table};
+use icd::wire::{can, checksum, identify, uart, Client, Crc, Direction, Event, Link, Table};
 
 type Uart = Client<icd::cubeacp::Node, uart::Line<{ icd::cubeacp::LONGEST }>, 1>;
 
@@ -175,11 +175,10 @@ fn sending() {
     assert_eq!(sent.map(<[u8]>::len), Some(4 + 1 + 3 + 1));
     let mut seen = Vec::new();
     client.received(20, &[0x1f, 0x7f, 13, 3, 0x1f, 0xff], |event| {
-        if let Event::Refused { id, code, reason, .. } = *event {
-            seen.push((id, code, reason));
-        }
+        let is_damaged = matches!(*event, Event::Refused { may_be_damaged: true, .. });
+        seen.push((event.reason(), is_damaged));
     });
-    assert_eq!(seen, [(13, Some(3), Some(Reason::Value))]);
+    assert_eq!(seen, [(Some(TcErrorReason::IncorrectParameter), false)]);
 }
 
 /// The packets of a message are taken one by one; nothing comes between them.

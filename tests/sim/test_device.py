@@ -21,6 +21,7 @@ from icdgen.icd.model import CONFIGURATION
 from icdgen.procedures.run import steps_of
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Send
+from icdgen.runtime_objects.links import responses_on
 from icdgen.sim.run import Options, build
 from icdgen.sim.serve import Server
 from icdgen.sim.values import allowed_values
@@ -92,7 +93,7 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
         done = client.telecommand(client.known.telecommands[17], bytes(6))
         assert isinstance(done, Done)
         wrong = bytes([17]) + bytes(6) + b"\x01"
-        assert raw_exchange(client, wrong) == client.known.errors["checksum"]
+        assert raw_exchange(client, wrong) == client.known.reasons["checksum"]
 
 
 @pytest.mark.parametrize(
@@ -105,15 +106,12 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
 )
 def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
     with session() as client:
-        assert raw_exchange(client, message) == client.known.errors[reason]
-        frame = codec.decode(
-            client.node,
-            client.known.polled.message,
-            client.telemetry(client.known.polled.message),
-        )
-        assert frame[client.known.polled.id] == message[0]
-        assert frame[client.known.polled.error] == client.known.errors[reason]
-        assert frame[client.known.polled.processed] == 1
+        assert raw_exchange(client, message) == client.known.reasons[reason]
+        polled = client.known.polled
+        frame = codec.decode(client.node, polled, client.telemetry(polled))
+        assert frame["Last TC ID"] == message[0]
+        assert frame["TC error status"] == client.known.reasons[reason]
+        assert frame["Processed flag"] == 1
 
 
 def raw_exchange(client, message: bytes) -> int:
@@ -123,7 +121,8 @@ def raw_exchange(client, message: bytes) -> int:
     end = time.monotonic() + 5
     while time.monotonic() < end:
         for event in decoder.feed(client.port.read(0.5)):
-            return event.message[client.link.acknowledge.error_at]
+            (response,) = responses_on(client.link, "uart")
+            return response.status.of(event.message)
     raise AssertionError("no acknowledge")
 
 
@@ -318,7 +317,7 @@ def test_a_refused_telecommand_is_not_executed():
         )
         before = client.telemetry(message)
         outcome = client.telecommand(message, bytes([1] * message.length))
-        assert isinstance(outcome, Refused) and outcome.reason == "value"
+        assert isinstance(outcome, Refused) and outcome.reason == "Incorrect Parameter"
         assert client.telemetry(message) == before
 
 

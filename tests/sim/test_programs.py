@@ -14,7 +14,7 @@ from tests import links
 from tests.sim.device import ICD
 
 BOOT = facts.of(ICD, ICD.node("bootloader"))
-REASONS = BOOT.errors
+REASONS = {"none": 0, **BOOT.reasons}
 PROCEDURES = {procedure.name: procedure for procedure in BOOT.procedures}
 INITIATE, BEGIN, PACKET, FINALIZE = (
     step.message.telecommand_id for step in steps_of(PROCEDURES["upload"], Send)

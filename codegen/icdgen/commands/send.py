@@ -162,10 +162,10 @@ def _outcome_text(
     from icdgen.link.outcomes import attempts_text, failure_text
 
     if isinstance(outcome, Refused):
-        return failure_text(icd, node, outcome)
+        return failure_text(outcome)
     if isinstance(outcome, Busy):
         attempts = attempts_text(outcome)
-        return f"{failure_text(icd, node, outcome)}{attempts}"
+        return f"{failure_text(outcome)}{attempts}"
     if isinstance(outcome, Timeout):
         attempts = attempts_text(outcome)
         return f"no answer{attempts}; whether it was executed is not known"

@@ -19,9 +19,6 @@ from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Crc, Index, Report, TimePart
 
-REASONS = ("none", "unknown_id", "length", "value", "checksum")
-"""Meanings of error codes that the runtimes support."""
-
 # The orders of these tuples are those of the members in the structs of the C runtime,
 # which are initialised by position.
 CAN_PARTS = ("type", "channel", "source", "destination")
@@ -189,13 +186,16 @@ class LinkDescription:
         )
 
     @property
-    def error_codes(self) -> list[tuple[str, int]]:
-        """Meanings of error codes that the runtimes support, and the codes."""
-        return [
-            (reason, code)
-            for reason, code in self.facts.errors.items()
-            if reason in REASONS
-        ]
+    def reasons(self) -> list[int]:
+        """Codes that the enumerations of refusals on UART and I2C have."""
+        commands = (each.command for each in self.facts.bus_exchanges.values())
+        codes = {
+            code
+            for command in commands
+            for response in (command.responses if command else ())
+            for code, _ in response.reasons
+        }
+        return sorted(codes)
 
     @property
     def can(self) -> Can | None:
@@ -210,22 +210,14 @@ class LinkDescription:
 
     @cached_property
     def reason_enum(self) -> EnumDescription | None:
-        """Enumeration of the reasons of refusals in packets.
+        """Enumeration of the reasons of refusals.
 
         None without reasons, or if they are not all of one enumeration without negative
         values: clients compare numbers without sign.
         """
-        exchanges = self.facts.stream.exchanges if self.facts.stream else ()
-        enums = [
-            self.description.enum(response.enum)
-            for exchange in exchanges
-            for response in exchange.responses
-            if response.enum is not None
-        ]
-        first = enums[0] if enums else None
-        if first is None or first.storage.signed:
-            return None
-        return first if all(enum is first for enum in enums) else None
+        enums = self.facts.reason_enums
+        reasons = self.description.enum(enums[0]) if len(enums) == 1 else None
+        return None if reasons is None or reasons.storage.signed else reasons
 
     @property
     def buses(self) -> list[str]:
@@ -300,8 +292,9 @@ class LinkDescription:
         """Messages that the wire layer requests by itself, whichever messages a program
         uses.
         """
-        reports = (self.facts.polled, self.facts.identification)
-        return [report.message for report in reports if report]
+        report = self.facts.identification
+        messages = (self.facts.polled, report and report.message)
+        return [message for message in messages if message]
 
     @cached_property
     def in_procedures(self) -> list[Message]:

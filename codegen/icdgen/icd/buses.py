@@ -10,8 +10,8 @@ from collections.abc import Mapping
 
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY
-from icdgen.icd.packets import Packet, Packets, declared_packets
-from icdgen.icd.responses import ACK, NAK, Section, responses_in
+from icdgen.icd.packets import ID_ROLE, Packet, Packets, declared_packets
+from icdgen.icd.responses import ACK, ID, NAK, Section, responses_in
 
 UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 
@@ -22,6 +22,7 @@ class BusLink(NamedTuple):
     packets: Packets
     commands: Mapping[str, Section]  # responses to telecommands, by kind
     requests: Mapping[str, Section]  # responses to requests of telemetry, by kind
+    reasons: Section  # of refusals, by cause
 
     def carrying(self, direction: str) -> Packet | None:
         """Return the packet of the messages of a direction that no packet lists; None
@@ -35,6 +36,16 @@ class BusLink(NamedTuple):
     def responding(self, response: Section | None) -> Packet | None:
         """Return the packet of a response; None without one."""
         return self.packets.by_name((response or {}).get("packet"))
+
+    @property
+    def responses(self) -> Packets:
+        """Return the packets without a message in the order in which the runtimes number
+        them: acknowledge, refusal, refusal of a request. One that the bus does not have
+        is blank.
+        """
+        rows = self.commands.get(ACK), self.commands.get(NAK), self.requests.get(NAK)
+        packets = (self.responding(row) or Packet("", {}, (), ()) for row in rows)
+        return self.packets._replace(all=tuple(packets))
 
     def segment_of(self, packet: Packet | None) -> Packet | None:
         """Return the packet with a part of a message that needs several packets; None
@@ -70,11 +81,27 @@ def bus_link(link: Section, bus: str) -> BusLink:
     for key in ("commands", "requests"):
         if key in link or key in own:
             section[key] = {**_mapping(link, key), **_mapping(own, key)}
-    return BusLink(
+    commands = section.get("commands", {})
+    link_on_bus = BusLink(
         declared_packets(section),
-        responses_in(section.get("commands", {})),
+        responses_in(commands),
         responses_in(section.get("requests", {})),
+        _mapping(commands, "reasons"),
     )
+    return _with_ids(link_on_bus) if bus == CAN else link_on_bus
+
+
+def _with_ids(link: BusLink) -> BusLink:
+    """Return a link on CAN with the id, which the identifier of a packet has, in front of
+    the data, and with responses that repeat it.
+    """
+    header = ({"at": 0, "bits": 8, "role": ID_ROLE},)
+    packets = tuple(packet._replace(header=header) for packet in link.packets.all)
+    commands, requests = (
+        {kind: {"echo": ID, **row} for kind, row in rows.items()}
+        for rows in (link.commands, link.requests)
+    )
+    return BusLink(link.packets._replace(all=packets), commands, requests, link.reasons)
 
 
 def can_packets(link: BusLink) -> dict[str, Packet]:

@@ -154,7 +154,7 @@ class Monitor:
             return
         self.silent.add(message.name)
         if isinstance(outcome, Refused | Busy):
-            text = failure_text(self.icd, self.node, outcome)
+            text = failure_text(outcome)
             self.failures[message.name] = text
             refusal = None
             if isinstance(outcome, Refused) and outcome.type:

@@ -6,26 +6,12 @@ from typing import Any
 
 from icdgen_runtime.wire.events import Busy, Outcome, Refused, Timeout
 
-from icdgen.icd.model import Icd, Message, Node, framed_link
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.responses import declared_responses, echoes_of, reason_of
-from icdgen.protocol import facts
 from icdgen.values.frame import Frame
 
 
-def reason_name(icd: Icd, node: Node, outcome: Outcome) -> str | None:
-    """Return the name that the ICD has for the reason of a refusal or of a busy device;
-    None without one.
-    """
-    if not isinstance(outcome, Refused | Busy) or outcome.code is None:
-        return None
-    if framed_link(icd.protocol_of(node)):
-        return outcome.reason
-    enum = facts.of(icd, node).error_enum
-    member = enum.member_of(outcome.code) if enum else None
-    return member.name if member else None
-
-
-def failure_text(icd: Icd, node: Node, outcome: Refused | Busy) -> str:
+def failure_text(outcome: Refused | Busy) -> str:
     """Return a refusal or a busy device with its reason, such as ``refused: Bad length
     (code 2)``.
     """
@@ -34,7 +20,7 @@ def failure_text(icd: Icd, node: Node, outcome: Refused | Busy) -> str:
     # A busy device often has no reason: its field is 0 then, such as `Nothing`.
     if outcome.code is None or not (is_refusal or outcome.code):
         return word
-    name = reason_name(icd, node, outcome) or "unknown error"
+    name = outcome.reason or "unknown error"
     return f"{word}: {name} (code {outcome.code})"
 
 

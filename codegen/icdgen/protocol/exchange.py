@@ -95,3 +95,15 @@ class Exchange:
     def reply(self) -> int | None:
         """Id of the telemetry that the telecommand requests; None without a reply."""
         return next((row.telemetry for row in self.responses if row.is_reply), None)
+
+
+@dataclass(frozen=True, slots=True)
+class BusExchanges:
+    """Exchanges on UART, I2C or CAN.
+
+    ``command``: of all telecommands that are acknowledged; None if nothing responds to
+    them. ``request``: of telemetry.
+    """
+
+    command: Exchange | None
+    request: Exchange

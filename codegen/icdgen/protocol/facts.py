@@ -10,14 +10,14 @@ from __future__ import annotations
 from typing import TypeVar
 
 from icdgen.frozen import dataclass
+from icdgen.icd.buses import CAN, I2C, UART
 from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
-from icdgen.protocol.bus_exchanges import BusExchanges, bus_exchanges
-from icdgen.protocol.packet_formats import Stream
+from icdgen.protocol.exchange import BusExchanges, Exchange
+from icdgen.protocol.packet_formats import PacketFormat, Stream
 from icdgen.protocol.procedures import Procedure, VerifyChecksum
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
-    Acknowledge,
     Can,
     Checksum,
     ChecksumAlgorithm,
@@ -27,7 +27,6 @@ from icdgen.protocol.sections import (
     LogFile,
     LogMask,
     LogMessage,
-    Polled,
     Report,
     Settings,
     TimePart,
@@ -51,14 +50,12 @@ class Facts:
     telemetry: dict[int, Message]
     client: Settings
     framing: Framing | None
-    acknowledge: Acknowledge | None
-    polled: Polled | None
+    acknowledge: PacketFormat | None  # on the UART
     i2c_address: int | None
     i2c_repeated_start: bool  # otherwise a read is a separate transaction
     can: Can | None
-    # On UART and I2C: none, unknown_id, length, value, checksum, busy
-    errors: dict[str, int]
-    error_enum: Enum | None  # names of the error codes
+    bus_exchanges: dict[str, BusExchanges]  # on UART, I2C and CAN; not framed links
+    reasons: dict[str, int]  # codes of refusals on buses by cause, such as `checksum`
     checksums: dict[str, ChecksumAlgorithm]  # all, in the order of the ICD
     checksum: Checksum | None  # of messages on UART, I2C and CAN
     mask: LogMask | None
@@ -90,17 +87,33 @@ class Facts:
         )
 
     @property
-    def bus_exchanges(self) -> dict[str, BusExchanges]:
-        """Responses on UART, I2C and CAN, by bus; empty on a framed link."""
-        return bus_exchanges(
-            self.node,
-            self.errors,
-            self.framing,
-            self.acknowledge,
-            self.i2c_address,
-            self.polled,
-            self.can,
+    def exchanges(self) -> tuple[Exchange, ...]:
+        """Exchanges on all links."""
+        on_buses = (
+            exchange
+            for each in self.bus_exchanges.values()
+            for exchange in (each.command, each.request)
+            if exchange
         )
+        return (*(self.stream.exchanges if self.stream else ()), *on_buses)
+
+    @property
+    def reason_enums(self) -> list[Enum]:
+        """Enumerations of the reasons of refusals, each once."""
+        enums = [
+            response.enum
+            for exchange in self.exchanges
+            for response in exchange.responses
+            if response.enum is not None
+        ]
+        return list({enum.name: enum for enum in enums}.values())
+
+    @property
+    def polled(self) -> Message | None:
+        """Telemetry that is polled on I2C for the response to a telecommand."""
+        on = self.bus_exchanges.get(I2C)
+        poll = on.command.poll if on and on.command else None
+        return self.telemetry[poll.telemetry] if poll else None
 
     @property
     def parts(self) -> dict[str, object]:
@@ -112,8 +125,6 @@ class Facts:
             "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
             "index_file": self.index,
         }  # fmt: skip
-        if self.acknowledge:
-            parts[self.acknowledge.section] = self.acknowledge
         return {section: part for section, part in parts.items() if part is not None}
 
     @property
@@ -143,7 +154,7 @@ class Facts:
         # The leading 1 is the id byte.
         sizes = [1 + extra + m.length for m in self.telemetry.values()]
         if self.acknowledge:
-            sizes.append(self.acknowledge.length)
+            sizes.append(self.acknowledge.overhead)
         # Positions count from the id, and each bit of the mask can select a slot.
         if self.log_message and self.mask:
             sizes.append(
@@ -191,6 +202,12 @@ def of(icd: Icd, node: Node) -> Facts:
     """Return the protocol facts of a node."""
     reader = Reader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
+    framing = reader.part("link.buses.uart.framing", Framing)
+    address, can = reader.i2c_address(), reader.can()
+    described = {UART: framing, I2C: address, CAN: can}
+    exchanges = reader.bus_exchanges(
+        bus for bus, part in described.items() if part is not None
+    )
     return Facts(
         node=node,
         little=node.byte_order == "little",
@@ -198,14 +215,13 @@ def of(icd: Icd, node: Node) -> Facts:
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
         client=reader.part("link.client", Settings) or Settings(),
-        framing=reader.part("link.buses.uart.framing", Framing),
+        framing=framing,
         acknowledge=reader.acknowledge(),
-        polled=reader.polled(),
-        i2c_address=reader.i2c_address(),
+        i2c_address=address,
         i2c_repeated_start=reader.i2c_repeated_start(),
-        can=reader.can(),
-        errors=reader.errors(),
-        error_enum=reader.error_enum(),
+        can=can,
+        bus_exchanges=exchanges,
+        reasons=reader.reasons(exchanges),
         checksums=reader.checksums,
         checksum=reader.checksum(),
         mask=reader.mask(),

@@ -9,7 +9,6 @@ from icdgen.protocol import sections
 PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("link.client", sections.Settings),
     ("link.buses.uart.framing", sections.Framing),
-    ("link.packets.*", sections.Acknowledge),
     ("link.buses.can", sections.Can),
     ("link.buses.can.segments", sections.Extended),
     ("link.packets", sections.Checksum),

@@ -14,7 +14,6 @@ from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import (
     BUSES,
     CAN,
-    I2C,
     UART,
     BusLink,
     bus_link,
@@ -31,17 +30,18 @@ from icdgen.icd.model import (
     framed_link,
 )
 from icdgen.icd.packets import ID_ROLE, declared_packets, value_of
-from icdgen.icd.responses import ACK, field_of, number_of
+from icdgen.icd.responses import ACK, number_of
 from icdgen.icd.variants import ids_of
 from icdgen.once import cached_property
 from icdgen.protocol.declared import read
-from icdgen.protocol.framed_links import bytes_of, stream_of
-from icdgen.protocol.packet_formats import Stream
+from icdgen.protocol.exchange import BusExchanges
+from icdgen.protocol.framed_links import packet_of, stream_of
+from icdgen.protocol.packet_formats import PacketFormat, Stream
 from icdgen.protocol.procedure_steps import ProcedureReader
 from icdgen.protocol.procedures import Procedure
+from icdgen.protocol.responding import Sources, bus_exchanges
 from icdgen.protocol.sections import (
     CAN_WITH_DATA,
-    Acknowledge,
     Can,
     CanPart,
     Checksum,
@@ -55,7 +55,6 @@ from icdgen.protocol.sections import (
     LogFile,
     LogMask,
     LogMessage,
-    Polled,
     Report,
     TimePart,
 )
@@ -127,82 +126,41 @@ class Reader:
         link = self.section("link")
         return {bus: bus_link(link, bus) for bus in BUSES if self.bus(bus)}
 
-    def acknowledge(self) -> Acknowledge | None:
-        """Return the acknowledge on the UART; None without one."""
-        bus = self.buses.get(UART)
-        packet = bus.responding(bus.commands.get(ACK)) if bus else None
-        if bus is None or packet is None:
-            return None
-        row = bus.commands[ACK]
-        id, status = (packet.named(row[key]) for key in ("echo", "status"))
-        assert id and status, "rule ICD105 checks the fields"
-        return Acknowledge(
-            packet.name,
-            self._successes(row, self._enum_of(UART, row)),
-            bytes_of((each["at"], each["bits"]) for each in packet.header),
-            id["at"] // 8,
-            status["at"] // 8,
-        )
-
-    def polled(self) -> Polled | None:
-        """Return the telemetry that is polled on I2C; None without it."""
-        bus = self.buses.get(I2C)
-        row = bus.commands.get(ACK, {}) if bus else {}
-        message = self.messages.get(row.get("message", ""))
-        if message is None:
-            return None
-        success = self._successes(row, self._enum_of(I2C, row))
-        return Polled(
-            message,
-            success,
-            row["echo"],
-            row["until"],
-            row["status"],
-            row.get("detail"),
-        )
-
-    def errors(self) -> dict[str, int]:
-        """Return the error codes in responses on UART and I2C, by their meaning; empty
-        without such responses.
-        """
-        responses = [self.acknowledge(), self.polled()]
-        success = next((each.success for each in responses if each), ())
-        if not success:
-            return {}
-        codes, enum = {"none": success[0]}, self.error_enum()
-        for cause, value in self.section("link", "commands", "reasons").items():
-            code = None if cause == "assumptions" else number_of(value, enum)
-            if code is not None:  # otherwise rule ICD105 reports it
-                codes[cause] = code
-        return codes
-
-    def error_enum(self) -> Enum | None:
-        """Return the enumeration of the error codes on UART and I2C; None without one."""
-        enums = (
-            self._enum_of(bus, self.buses[bus].commands.get(ACK, {}))
-            for bus in (UART, I2C)
-            if bus in self.buses
-        )
-        return next((enum for enum in enums if enum), None)
-
-    def _enum_of(self, bus: str, row: Mapping[str, Any]) -> Enum | None:
-        """Return the enumeration of the status of a response on a bus; None without
+    def acknowledge(self) -> PacketFormat | None:
+        """Return the packet that acknowledges telecommands on the UART; None without
         one.
         """
-        name, packet = row.get("status"), self.buses[bus].responding(row)
-        if name is None:
-            return None
-        if packet is not None:
-            declared = packet.named(name) or {}
-            return self.enums.get(declared.get("enum", ""))
-        message = self.messages.get(row.get("message", ""))
-        field = field_of(message, name) if message else None
-        return field.scalar.enum if field else None
+        bus = self.buses.get(UART)
+        is_packet = bus and bus.responding(bus.commands.get(ACK))
+        return self._sources(bus).formats[0] if bus and is_packet else None
 
-    def _successes(self, row: Mapping[str, Any], enum: Enum | None) -> tuple[int, ...]:
-        """Return the numbers of the status that confirm a telecommand."""
-        numbers = (number_of(value, enum) for value in row["success"])
-        return tuple(number for number in numbers if number is not None)
+    def bus_exchanges(self, buses: Iterable[str]) -> dict[str, BusExchanges]:
+        """Return the exchanges on buses."""
+        links = {bus: self.buses[bus] for bus in buses}
+        return {
+            bus: bus_exchanges(self._sources(link), link) for bus, link in links.items()
+        }
+
+    def _sources(self, bus: BusLink) -> Sources:
+        """Return the messages and packets that respond on a bus."""
+        packets = bus.responses
+        return Sources(
+            self.node,
+            packets,
+            tuple(packet_of(self.node, packets, each, {}) for each in packets.all),
+            self.enums,
+            {message.name: (id, message) for id, message in self.telemetry.items()},
+        )
+
+    def reasons(self, exchanges: Mapping[str, BusExchanges]) -> dict[str, int]:
+        """Return the codes of refusals on buses by their causes."""
+        commands = (each.command for each in exchanges.values() if each.command)
+        responses = [each for command in commands for each in command.responses]
+        enum = next((each.enum for each in responses if each.enum), None)
+        reasons = self.section("link", "commands", "reasons") if responses else {}
+        codes = {cause: number_of(value, enum) for cause, value in reasons.items()}
+        # Rule ICD105 reports a value that is no member.
+        return {cause: code for cause, code in codes.items() if code is not None}
 
     @cached_property
     def enums(self) -> dict[str, Enum]:

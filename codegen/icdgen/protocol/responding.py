@@ -1,5 +1,5 @@
-"""Reader of the responses of a checked ICD (`icdgen.icd.responses`), into the classes of
-`icdgen.protocol.exchange`.
+"""Reader of the responses of a checked ICD (`icdgen.icd.responses`) on framed links, on
+UART, I2C and CAN, into the classes of `icdgen.protocol.exchange`.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from icdgen.frozen import NamedTuple
+from icdgen.icd.buses import BusLink
 from icdgen.icd.enumeration import Enum
 from icdgen.icd.model import TELECOMMAND, Message, Node
 from icdgen.icd.packets import ID_ROLE, Packets
@@ -34,7 +35,14 @@ from icdgen.icd.responses import (
     responses_in,
     status_of,
 )
-from icdgen.protocol.exchange import Echo, Exchange, NumberPlace, Response
+from icdgen.protocol.exchange import (
+    BusExchanges,
+    Echo,
+    Exchange,
+    NumberPlace,
+    Poll,
+    Response,
+)
 from icdgen.protocol.packet_formats import PacketField, PacketFormat
 
 
@@ -150,13 +158,30 @@ def request_exchange(sources: Sources, requests: Section) -> Exchange:
     """Return the exchange of a request of telemetry by a packet with its id: the
     requested telemetry, and what ``requests`` declares.
     """
-    exchange = _exchange(
-        sources,
-        responses_in(requests),
-        partial(_id_source, sources.node),
-        requests.get("timeout_ms", 0),
-        sources.packets.number_of(sources.packets.requesting) or 0,
+    return _with_reply(
+        _exchange(
+            sources,
+            responses_in(requests),
+            partial(_id_source, sources.node),
+            requests.get("timeout_ms", 0),
+            sources.packets.number_of(sources.packets.requesting) or 0,
+        )
     )
+
+
+def bus_exchanges(sources: Sources, bus: BusLink) -> BusExchanges:
+    """Return the exchanges on UART, I2C or CAN. ``sources`` has the packets of
+    `BusLink.responses`.
+    """
+    id_of = partial(_id_source, sources.node)
+    damage = bus.reasons.get("checksum")
+    command = _exchange(sources, bus.commands, id_of, reason_of_damage=damage)
+    request = _exchange(sources, bus.requests, id_of)
+    return BusExchanges(command if command.responses else None, _with_reply(request))
+
+
+def _with_reply(exchange: Exchange) -> Exchange:
+    """Return an exchange to which the requested telemetry responds, too."""
     requested = Response(None, REPLY, (), None, (), None, ())
     return replace(exchange, responses=(requested, *exchange.responses))
 
@@ -165,8 +190,8 @@ def _exchange(
     sources: Sources,
     rows: Mapping[str, Section],
     source_of: Callable[[str], NumberPlace | None],
-    timeout: int,
-    sent_in: int,
+    timeout: int = 0,
+    sent_in: int = 0,
     reason_of_damage: object = None,
 ) -> Exchange:
     """Return an exchange.
@@ -177,7 +202,7 @@ def _exchange(
     """
     # Whether it is a place in the header, and the place.
     every: list[tuple[bool, NumberPlace]] = []
-    responses = []
+    responses, poll = [], None
     for kind, row in rows.items():
         packet = sources.packet_of(row)
         if packet is None and row.get("message") not in sources.telemetry:
@@ -203,6 +228,11 @@ def _exchange(
                 if (in_header, source) not in every:
                     every.append((in_header, source))
                 echoes.append(Echo(place, every.index((in_header, source))))
+        telemetry = None if packet is not None else sources.telemetry[row["message"]][0]
+        until = sources.number(row, row.get("until"))
+        if until and telemetry is not None:
+            poll = Poll(telemetry, until.place)
+        detail = sources.number(row, row.get("detail"))
         status = sources.number(row, status_of(kind, row))
         reason = sources.number(row, reason_of(row))
         damage = (
@@ -217,7 +247,7 @@ def _exchange(
             meanings.setdefault(damage, AGAIN)
         responses.append(
             Response(
-                None if packet is not None else sources.telemetry[row["message"]][0],
+                telemetry,
                 # A status that no set lists refuses the telecommand.
                 NAK if status else kind,
                 tuple(echoes),
@@ -227,6 +257,7 @@ def _exchange(
                 reason.names if reason else (),
                 packet,
                 reason.enum if reason else None,
+                detail and detail.place,
             )
         )
     assert len(every) <= MOST_SOURCES, "rule ICD177 checks the number"
@@ -243,7 +274,7 @@ def _exchange(
     )
     places = tuple(every[source][1] for source in order)
     count = sum(is_in_header for is_in_header, _ in every)
-    return Exchange(places, renumbered, timeout, count)
+    return Exchange(places, renumbered, timeout, count, poll)
 
 
 def _id_source(node: Node, name: str) -> NumberPlace | None:

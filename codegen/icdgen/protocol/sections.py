@@ -12,7 +12,6 @@ from dataclasses import field
 
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message
-from icdgen.icd.responses import field_of
 from icdgen.protocol.declared import (
     BYTE,
     U32,
@@ -68,45 +67,6 @@ class Framing:
         "other", "whether an escape byte and an unknown byte are skipped; otherwise it is an error", False,
         ("error", "ignore"), key_about="handling of any other byte after the escape byte",
     )  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Acknowledge:
-    """Acknowledge message on the UART. Positions count from its first byte."""
-
-    packet: str  # name of its packet
-    success: tuple[int, ...]  # error codes that confirm the telecommand
-    length: int = octets("", "length of the message")
-    id_at: int = octets("", "offset of the id of the telecommand")
-    error_at: int = octets("", "offset of the error code")
-
-    @property
-    def section(self) -> str:
-        """Section of the ICD that declares it."""
-        return f"link.packets.{self.packet}"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Polled:
-    """Telemetry frame that reports the outcome of a telecommand, with the names of its
-    fields.
-    """
-
-    message: Message
-    success: tuple[int, ...]  # error codes that confirm the telecommand
-    id: str
-    processed: str
-    error: str
-    parameter: str | None
-
-    def detail(self, number: int) -> dict[str, int]:
-        """Return the raw value of `parameter` for the index of a wrong parameter, limited
-        to what the field can hold; empty without such a field.
-        """
-        place = field_of(self.message, self.parameter)
-        if place is None:
-            return {}
-        return {place.name: min(number, place.scalar.raw_max)}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -12,6 +12,7 @@ from icdgen import codec
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.errors import UserError
 from icdgen.icd import wire_ids
+from icdgen.icd.buses import UART
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.variants import Variant
 from icdgen.recognize.reading import (
@@ -23,6 +24,7 @@ from icdgen.recognize.reading import (
     Reading,
 )
 from icdgen.recognize.selection import Selection
+from icdgen.runtime_objects.links import responses_on
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from icdgen.values.find import KINDS, describe
 
@@ -99,19 +101,15 @@ def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[Reading]:
     if parts is None:
         return
     yield from _with_id(endpoint, *parts)
-    form = facts.acknowledge
+    packet = facts.acknowledge
     # The bytes of an acknowledge have no mark of their own, so an id of telemetry has
     # precedence.
-    if form and len(body) == form.length and parts[0] not in facts.telemetry:
-        acknowledged, error = body[form.id_at], body[form.error_at]
-        if acknowledged in facts.telecommands:
-            yield Reading(
-                endpoint,
-                ACKNOWLEDGE,
-                facts.telecommands[acknowledged],
-                acknowledged,
-                error=error,
-            )
+    if packet and len(body) == packet.overhead and parts[0] not in facts.telemetry:
+        for response in responses_on(endpoint.link, UART):
+            id = response.echoes[0].place.of(body)
+            if response.reason and id in facts.telecommands:
+                message, code = facts.telecommands[id], response.reason.of(body)
+                yield Reading(endpoint, ACKNOWLEDGE, message, id, error=code)
 
 
 def _with_id(endpoint: Endpoint, id: int, data: bytes) -> Iterator[Reading]:

@@ -8,12 +8,13 @@ from functools import cached_property
 from icdgen_runtime.wire.link import Link
 
 from icdgen.icd import wire_ids
+from icdgen.icd.buses import UART
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.variants import Ids, ids_of
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of, responses_on
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
 
@@ -109,16 +110,13 @@ class Reading:
         described = f"`{self.message.name}` ({describe(self.message, self.endpoint.facts.stream)}) of {self.endpoint.node.name}"
         if self.what in KINDS:
             return described
+        text = f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"
         if self.error is None:
-            return f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"
-        labels = [
-            key.replace("_", " ")
-            for key, code in self.endpoint.facts.errors.items()
-            if code == self.error
-        ]
-        return f"{self.what} of {described}: error {self.error}" + (
-            f" ({labels[0]})" if labels else ""
-        )
+            return text
+        responses = responses_on(self.endpoint.link, UART)
+        names = {code: name for each in responses for code, name in each.reasons}
+        name = f" ({names[self.error]})" if self.error in names else ""
+        return f"{text}: error {self.error}{name}"
 
     @property
     def has_wrong_constant(self) -> bool:

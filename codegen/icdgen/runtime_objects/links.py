@@ -6,9 +6,11 @@ from collections.abc import Mapping
 
 from icdgen_runtime.wire import link as types
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.packet_formats import Response
 
 from icdgen.describe import describe
 from icdgen.describe.links import LinkDescription
+from icdgen.icd.buses import I2C
 from icdgen.icd.model import Icd
 from icdgen.link_calls import Call, Commented, Verbatim, link_call
 from icdgen.protocol.facts import Facts
@@ -28,6 +30,33 @@ def link_of(icd: Icd, facts: Facts) -> Link:
     link = _evaluate(link_call(LinkDescription(description, facts)), names)
     assert isinstance(link, Link)
     return link
+
+
+def responses_on(link: Link, bus: str) -> tuple[Response, ...]:
+    """Return the responses to telecommands on UART, I2C or CAN."""
+    exchanges = link.bus_exchanges.get(bus)
+    return exchanges.command.responses if exchanges and exchanges.command else ()
+
+
+def with_outcome(
+    link: Link, frame: bytes, id: int, is_processed: bool, code: int, parameter: int
+) -> bytes:
+    """Return the telemetry that is polled on I2C with the outcome of a telecommand.
+
+    ``parameter``: index of a wrong parameter, which is limited to what its field can
+    hold.
+    """
+    command = link.bus_exchanges[I2C].command
+    assert command and command.poll
+    (response,), data = command.responses, bytearray(frame)
+    response.echoes[0].place.put(id, data)
+    command.poll.until.put(int(is_processed), data)
+    if response.status:
+        response.status.put(code, data)
+    if response.detail:
+        most = (1 << response.detail.bits) - 1
+        response.detail.put(min(parameter, most), data)
+    return bytes(data)
 
 
 def _evaluate(value: object, names: Mapping[str, object]) -> object:

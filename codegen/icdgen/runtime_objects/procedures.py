@@ -24,7 +24,6 @@ from icdgen.runtime_objects.request_keys import (
 from icdgen.runtime_objects.scripts import BUSES
 
 LONGEST = 1 << 20  # maximum repetitions of the bytes to send
-UNKNOWN_CODE = 255  # code of a refusal that the ICD does not define
 
 Row = dict[str, Any]
 
@@ -76,7 +75,7 @@ def event_of(row: object) -> events.Event:
         case dict(), "refused":
             return events.Refused(0, 1)
         case dict(), "damaged":
-            return events.Refused(0, 1, UNKNOWN_CODE)
+            return events.Refused(0, 1, may_be_damaged=True)
         case dict(), "timeout":
             return events.Timeout(0, 1)
         case dict(), "arrived":

@@ -155,7 +155,8 @@ def _row_of(tested_client: Client[Any], event: events.Event) -> Row:
     if isinstance(event, events.Arrived):
         row["event"] = "arrived"
     if isinstance(event, events.Refused):
-        row |= {"reason": event.reason, "parameter": event.parameter}
+        row["parameter"] = event.parameter
+        row |= {"may_be_damaged": True} if event.may_be_damaged else {}
     row.pop("reply", None)  # on a bus, a request names its reply
     return row
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from icdgen_runtime.wire.device import PacketData, response_of, response_to
-from icdgen_runtime.wire.packet_formats import Response, Stream, Verdict
+from icdgen_runtime.wire.packet_formats import Stream, Verdict
 from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder
 
@@ -23,7 +23,7 @@ from icdgen.protocol.packet_formats import DATAGRAM
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
-from icdgen.values import numbers
+from icdgen.sim.refusals import refusal_code, refusal_names
 
 Cause = Literal["unknown_id", "length", "value", "checksum", "busy"]
 """Why a telecommand is refused: a key of `reasons` in `link: commands`."""
@@ -112,24 +112,18 @@ class FramedLine(DeviceLine):
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        names = (
-            name
-            for response in self._refusals.values()
-            for value, name in response.reasons
-            if _refuses_with(response, value)
-        )
-        return tuple(dict.fromkeys(names))
+        names = [refusal_names(response) for response in self._refusals.values()]
+        return tuple(dict.fromkeys(name for each in names for name in each))
 
     def is_reason(self, text: str) -> bool:
-        return any(
-            _reason(response, text) is not None for response in self._refusals.values()
-        )
+        responses = self._refusals.values()
+        return any(refusal_code(each, text) is not None for each in responses)
 
     def without(self, reason: str) -> list[str]:
         return [
             variant.message.name
             for id, response in self._refusals.items()
-            if _reason(response, reason) is None
+            if refusal_code(response, reason) is None
             for variant in self.ids.telecommand[id]
         ]
 
@@ -279,7 +273,7 @@ class FramedLine(DeviceLine):
             return
         response = response_of(self.form, id, "nak", is_request)
         if response is not None:
-            number = None if name is None else _reason(response, name)
+            number = None if name is None else refusal_code(response, name)
             self._respond(now, id, data, "nak", number, is_request)
 
     def _defer(self, now: int, id: int, data: bytes, is_request: bool = False) -> bool:
@@ -323,24 +317,3 @@ class FramedLine(DeviceLine):
 
     def _send(self, now: int, on: str, id: int, data: bytes) -> None:
         self.queue(now, on, self.sender.encode(id, data))
-
-
-def _refuses_with(response: Response, number: int) -> bool:
-    """Return whether a reason fits into its field and does not mean anything else."""
-    place = response.reason
-    if place is None or not 0 <= number < 1 << place.bits:
-        return False
-    is_status = place == response.status
-    verdict = dict(response.meanings).get(number, "nak")
-    return not is_status or verdict in ("nak", "again")
-
-
-def _reason(response: Response, text: str) -> int | None:
-    """Return the number of a reason, given as a name or a number; None if the response
-    cannot have it.
-    """
-    # Of a range, the first value counts.
-    named = {name: value for value, name in reversed(response.reasons)}
-    number = named.get(text, numbers.integer(text))
-    is_possible = number is not None and _refuses_with(response, number)
-    return number if is_possible else None

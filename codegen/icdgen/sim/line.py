@@ -6,11 +6,12 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen.icd.buses import UART
+from icdgen.runtime_objects.links import responses_on
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
-from icdgen.values import numbers
+from icdgen.sim.refusals import refusal_code, refusal_names
 
 # Event of the decoder -> role in the statistics.
 FLAGS: dict[str, str] = {
@@ -31,7 +32,8 @@ class Line(DeviceLine):
             self.link, computer.program.facts.longest_telecommand
         )
         program = computer.program
-        is_acknowledged = program.facts.acknowledge is not None and any(
+        self._acknowledge = next(iter(responses_on(self.link, UART)), None)
+        is_acknowledged = self._acknowledge is not None and any(
             each.acknowledge for each in program.facts.telecommands.values()
         )
         if not is_acknowledged and program.facts.polled is None:
@@ -39,30 +41,15 @@ class Line(DeviceLine):
                 "it needs an `ack` of the UART, and telecommands that are acknowledged"
             )
         self.no_busy_response = "only a framed link (`link: framing`) can have one"
-        self._no_error = program.facts.errors.get("none", 0)
-        enum = program.facts.error_enum
-        self._codes = {
-            member.name: member.value
-            for member in (enum.members if enum else ())
-            if member.value != self._no_error
-        }
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        return tuple(self._codes)
+        response = self.computer.program.refusal
+        return refusal_names(response) if response else ()
 
     def is_reason(self, text: str) -> bool:
-        return self._code(text) is not None
-
-    def _code(self, text: str | None) -> int | None:
-        """Return an error code, given as a name or a number; None if it is no code of
-        an error.
-        """
-        if text is None:
-            return None
-        code = self._codes.get(text, numbers.integer(text))
-        is_error = code is not None and 0 <= code <= 255 and code != self._no_error
-        return code if is_error else None
+        response = self.computer.program.refusal
+        return response is not None and refusal_code(response, text) is not None
 
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
@@ -120,18 +107,19 @@ class Line(DeviceLine):
         outcome: Outcome | None
         fault = self.faults.fault("nak", "telecommand")
         if fault is not None:
-            outcome = program.refuse(message, self._code(fault.reason))
+            outcome = program.refuse(message, fault.reason)
         else:
             outcome = self.computer.take(now, message, UART)
         if outcome is None:
             return
-        form = program.facts.acknowledge
+        response = self._acknowledge
         is_silent = self.faults.hits("silence", "telecommand")
-        if outcome.acknowledge and form and not is_silent:
-            acknowledge = bytearray(form.length)
+        if outcome.acknowledge and response and response.status and not is_silent:
+            acknowledge = bytearray(self.link.acknowledge_bytes or 0)
             is_foreign = self.faults.hits("foreign", "telecommand")
-            acknowledge[form.id_at] = message[0] ^ 1 if is_foreign else message[0]
-            acknowledge[form.error_at] = outcome.code
+            id = message[0] ^ 1 if is_foreign else message[0]
+            response.echoes[0].place.put(id, acknowledge)
+            response.status.put(outcome.code, acknowledge)
             self._send(
                 now + self.computer.settings.processing_ms,
                 "acknowledge",

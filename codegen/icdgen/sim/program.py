@@ -16,7 +16,8 @@ from icdgen.procedures.counterpart import Counterpart, Device, Refused
 from icdgen.procedures.effects import effect_of
 from icdgen.protocol import facts
 from icdgen.protocol.exchange import NumberPlace
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of, responses_on, with_outcome
+from icdgen.sim.refusals import refusal_code
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
 from icdgen.sim.values import Values, number_places
@@ -56,8 +57,16 @@ class Program:
         storage.provide_index(self.link, next(kinds, None), checksum)
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
-        # Id, processed, code and parameter of the last telecommand.
-        self.last = (0, True, 0, 0)
+        responses = [
+            row
+            for bus in self.link.bus_exchanges
+            for row in responses_on(self.link, bus)
+        ]
+        # Response with the code of a refusal; None without one.
+        self.refusal = next((row for row in responses if row.reason), None)
+        meanings = self.refusal.meanings if self.refusal else ()
+        self.success = next((code for code, says in meanings if says == "ack"), 0)
+        self.last = (0, 0, 0)  # id, code and parameter of the last telecommand
         self.free_at = now  # end of processing of the last telecommand
         self.log_at: int | None = None
         self._identify()
@@ -81,21 +90,22 @@ class Program:
         self.count("telecommands")
         outcome = self._take(now, message, bus)
         self.free_at = now + self.settings.processing_ms
-        self.last = (message[0], True, outcome.code, outcome.parameter)
+        self.last = (message[0], outcome.code, outcome.parameter)
         return outcome
 
-    def refuse(self, message: bytes, code: int | None = None) -> Outcome:
+    def refuse(self, message: bytes, reason: str | None = None) -> Outcome:
         """Reject a telecommand without processing it.
 
-        ``code`` is the error code; None for that of a wrong parameter.
+        ``reason`` is the name or number of a code; None for that of a wrong parameter.
         """
         self.count("telecommands")
         telecommand = self.facts.telecommands.get(message[0])
         is_acknowledged = telecommand is None or telecommand.acknowledge
         outcome = self._refusal("value", acknowledge=is_acknowledged)
-        if code is not None:
-            outcome = replace(outcome, code=code)
-        self.last = (message[0], True, outcome.code, outcome.parameter)
+        if reason is not None and self.refusal:
+            code = refusal_code(self.refusal, reason)
+            outcome = replace(outcome, code=outcome.code if code is None else code)
+        self.last = (message[0], outcome.code, outcome.parameter)
         return outcome
 
     def frame(self, now: int, id: int) -> bytes | None:
@@ -108,13 +118,14 @@ class Program:
 
     def current(self, now: int, message: Message) -> bytes:
         """Return the current frame of a message."""
-        raw = self._statistics(message) | self._acknowledged(now, message)
+        raw = self._statistics(message)
         data = (
             self.values.encode(message, {**self.values.raw(message), **raw})
             if raw
             else self.values.frame(message)
         )
-        return self.counterpart.frame(now, message, data)
+        data = self.counterpart.frame(now, message, data)
+        return self._with_outcome(now, message, data)
 
     def log_due(self, now: int) -> bytes | None:
         """Return an unsolicited log message if it is due."""
@@ -192,13 +203,9 @@ class Program:
             return self._refusal("value", self._index(telecommand, refused.place))
         if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
-        code, reset = (
-            self.facts.errors.get("none", 0),
-            (telecommand if telecommand.expects_reset else None),
-        )
-        return Outcome(
-            code, acknowledge=telecommand.acknowledge and not reset, reset=reset
-        )
+        reset = telecommand if telecommand.expects_reset else None
+        is_acknowledged = telecommand.acknowledge and not reset
+        return Outcome(self.success, acknowledge=is_acknowledged, reset=reset)
 
     def _index(self, message: Message, place: NumberPlace | None) -> int:
         """Return the index of the field at a place; 0 without one."""
@@ -213,7 +220,7 @@ class Program:
     def _refusal(
         self, reason: str, parameter: int = 0, acknowledge: bool = True
     ) -> Outcome:
-        return Outcome(self.facts.errors.get(reason, 1), parameter, acknowledge)
+        return Outcome(self.facts.reasons.get(reason, 1), parameter, acknowledge)
 
     def _identify(self) -> None:
         report = self.facts.identification
@@ -246,18 +253,13 @@ class Program:
             )
         return result
 
-    def _acknowledged(self, now: int, message: Message) -> Raw:
-        polled = self.facts.polled
-        if polled is None or polled.message.name != message.name:
-            return {}
-        id, _, code, parameter = self.last
-        processed = int(now >= self.free_at)
-        return {
-            polled.id: id,
-            polled.processed: processed,
-            polled.error: code,
-            **polled.detail(parameter),
-        }
+    def _with_outcome(self, now: int, message: Message, data: bytes) -> bytes:
+        """Return a frame with the outcome of the last telecommand, if it reports it."""
+        if message != self.facts.polled:
+            return data
+        id, code, parameter = self.last
+        is_processed = now >= self.free_at
+        return with_outcome(self.link, data, id, is_processed, code, parameter)
 
     def _log_role(self) -> dict[str, Any]:
         role: dict[str, Any] = (

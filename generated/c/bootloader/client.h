@@ -1171,4 +1171,14 @@ static inline icd_status_t bootloader_receive_copy_to_internal_flash_progress(
 }
 #endif
 
+/** Get the reason why the device refused a request or was busy. Return false for other events, and without a reason. */
+static inline bool bootloader_refusal(const icd_event_t *event, common_tc_error_reason_t *reason)
+{
+    if (!event->has_code || event->link == NULL || !icd_has_messages_of(event->link, BOOTLOADER_NODE)) {
+        return false;
+    }
+    *reason = ICDGEN_CAST(common_tc_error_reason_t, event->code);
+    return true;
+}
+
 #endif /* BOOTLOADER_CLIENT_H */

@@ -54,10 +54,10 @@ static const icd_checksum_algorithm_t icdgen_node_bootloader_checksum_crc16 = {
      NULL, ICDGEN_TABLE(icdgen_node_bootloader_checksum_crc16_table)},
 };
 static const icd_number_place_t icdgen_node_bootloader_sources_0[] = {
-    {0u, 4u, 0u, 32u, false},
+    {0u, 4u, 0u, 8u, false},
 };
 static const icd_number_place_t icdgen_node_bootloader_place_0[] = {
-    {4u, 1u, 0u, 8u, false},
+    {4u, 1u, 0u, 8u, true},
 };
 static const icd_echo_t icdgen_node_bootloader_echoes_0[] = {
     {icdgen_node_bootloader_place_0, 0u},
@@ -67,7 +67,7 @@ static const icd_meaning_t icdgen_node_bootloader_meanings_0[] = {
     {0x4u, ICD_VERDICT_AGAIN},
 };
 static const icd_number_place_t icdgen_node_bootloader_place_1[] = {
-    {5u, 1u, 0u, 8u, false},
+    {5u, 1u, 0u, 8u, true},
 };
 static const icd_response_t icdgen_node_bootloader_responses_0[] = {
     {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
@@ -75,38 +75,35 @@ static const icd_response_t icdgen_node_bootloader_responses_0[] = {
         icdgen_node_bootloader_place_1, icdgen_node_bootloader_place_1, NULL},
 };
 static const icd_exchange_t icdgen_node_bootloader_uart_exchanges[] = {
-    {icdgen_node_bootloader_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
+    {NULL, NULL,
+        0u, 0u, 0u, true, 0u, NULL},
     {icdgen_node_bootloader_sources_0, icdgen_node_bootloader_responses_0,
         1u, 0u, 1u, false, 0u, NULL},
 };
 static const icd_bus_exchanges_t icdgen_node_bootloader_on_uart = {
     &icdgen_node_bootloader_uart_exchanges[1], &icdgen_node_bootloader_uart_exchanges[0],
 };
+static const icd_number_place_t icdgen_node_bootloader_sources_1[] = {
+    {0u, 4u, 0u, 32u, false},
+};
 static const icd_number_place_t icdgen_node_bootloader_place_2[] = {
-    {4u, 1u, 0u, 8u, true},
-};
-static const icd_echo_t icdgen_node_bootloader_echoes_1[] = {
-    {icdgen_node_bootloader_place_2, 0u},
-};
-static const icd_number_place_t icdgen_node_bootloader_place_3[] = {
     {6u, 1u, 0u, 8u, true},
 };
-static const icd_number_place_t icdgen_node_bootloader_place_4[] = {
+static const icd_number_place_t icdgen_node_bootloader_place_3[] = {
     {7u, 1u, 0u, 8u, true},
 };
 static const icd_response_t icdgen_node_bootloader_responses_1[] = {
     {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
-        icdgen_node_bootloader_echoes_1, icdgen_node_bootloader_meanings_0,
-        icdgen_node_bootloader_place_3, icdgen_node_bootloader_place_3, icdgen_node_bootloader_place_4},
+        icdgen_node_bootloader_echoes_0, icdgen_node_bootloader_meanings_0,
+        icdgen_node_bootloader_place_2, icdgen_node_bootloader_place_2, icdgen_node_bootloader_place_3},
 };
 static const icd_outcome_poll_t icdgen_node_bootloader_outcome_poll = {
     240u, {5u, 1u, 0u, 1u, true},
 };
 static const icd_exchange_t icdgen_node_bootloader_i2c_exchanges[] = {
-    {icdgen_node_bootloader_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_bootloader_sources_0, icdgen_node_bootloader_responses_1,
+    {NULL, NULL,
+        0u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_bootloader_sources_1, icdgen_node_bootloader_responses_1,
         1u, 0u, 1u, false, 0u, &icdgen_node_bootloader_outcome_poll},
 };
 static const icd_bus_exchanges_t icdgen_node_bootloader_on_i2c = {
@@ -424,12 +421,8 @@ static const char *const icdgen_node_bootloader_nodes[] = {
     "bootloader",
     "common",
 };
-static const icd_error_code_t icdgen_node_bootloader_errors[] = {
-    {ICD_REASON_NONE, 0u},
-    {ICD_REASON_UNKNOWN_ID, 1u},
-    {ICD_REASON_LENGTH, 2u},
-    {ICD_REASON_VALUE, 3u},
-    {ICD_REASON_CHECKSUM, 4u},
+static const uint32_t icdgen_node_bootloader_reasons[] = {
+    0u, 1u, 2u, 3u, 4u,
 };
 /**
  * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
@@ -442,15 +435,6 @@ static const icd_framing_t icdgen_node_bootloader_framing = {
     0x1fu, /* escaped */
     true, /* escapes_id */
     false, /* ignores_other */
-};
-/**
- * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
- * and that no other id heads the message, stood in a figure.
- */
-static const icd_acknowledge_t icdgen_node_bootloader_acknowledge = {
-    2u, /* length */
-    0u, /* id_at */
-    1u, /* error_at */
 };
 static const icd_unsolicited_t icdgen_node_bootloader_unsolicited[] = {
     {119u, 241u, 22u}, /* File Download Buffer with File Contents */
@@ -512,11 +496,13 @@ static const icd_report_t icdgen_node_bootloader_identification = {
 ICDGEN_API const icd_link_t *bootloader_link(void)
 {
     /**
-     * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
-     * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One
-     * attempt and two more are announced. But the status is raised before each start, so it reads 3 Failed boot
-     * attempts before the third, and at that value no start is said to follow.
+     * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
+     * and that no other id heads the message, stood in a figure. Assumed reply_timeout_ms: No time is given. The
+     * longest message takes 90 ms on the UART. Assumed retries: Nothing is said about trying again. Assumed
+     * poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is given. Assumed late_ms: No time is given.
+     * It is ten times the longest message on the UART. Assumed attempts: One attempt and two more are announced. But
+     * the status is raised before each start, so it reads 3 Failed boot attempts before the third, and at that value no
+     * start is said to follow.
      */
     static const icd_link_t link = {
         icdgen_node_bootloader_nodes, /* whose messages */
@@ -524,7 +510,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_bootloader_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_bootloader_telemetry), /* how many can be requested */
@@ -538,14 +524,13 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
             &icdgen_node_bootloader_on_i2c,
             &icdgen_node_bootloader_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        icdgen_node_bootloader_errors, /* error codes */
+        icdgen_node_bootloader_reasons, /* codes of refusals */
         &icdgen_node_bootloader_framing, /* framing of the UART */
-        &icdgen_node_bootloader_acknowledge, /* acknowledges on the UART */
+        2u, /* bytes of an acknowledge */
         icdgen_node_bootloader_unsolicited, /* unsolicited */
         NULL, /* unsolicited logs */
         &icdgen_node_bootloader_can, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         110, /* node type */
         3, /* interface version */
         87, /* I2C address */
@@ -568,7 +553,7 @@ ICDGEN_API const icd_link_t *bootloader_uart_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_bootloader_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_bootloader_telemetry), /* how many can be requested */
@@ -582,14 +567,13 @@ ICDGEN_API const icd_link_t *bootloader_uart_link(void)
             NULL,
             NULL}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        icdgen_node_bootloader_errors, /* error codes */
+        icdgen_node_bootloader_reasons, /* codes of refusals */
         &icdgen_node_bootloader_framing, /* framing of the UART */
-        &icdgen_node_bootloader_acknowledge, /* acknowledges on the UART */
+        2u, /* bytes of an acknowledge */
         icdgen_node_bootloader_unsolicited, /* unsolicited */
         NULL, /* unsolicited logs */
         NULL, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         110, /* node type */
         3, /* interface version */
         87, /* I2C address */
@@ -612,7 +596,7 @@ ICDGEN_API const icd_link_t *bootloader_i2c_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_bootloader_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_bootloader_telemetry), /* how many can be requested */
@@ -626,14 +610,13 @@ ICDGEN_API const icd_link_t *bootloader_i2c_link(void)
             &icdgen_node_bootloader_on_i2c,
             NULL}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        icdgen_node_bootloader_errors, /* error codes */
+        icdgen_node_bootloader_reasons, /* codes of refusals */
         NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
+        0u, /* bytes of an acknowledge */
         NULL, /* unsolicited */
         NULL, /* unsolicited logs */
         NULL, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         110, /* node type */
         3, /* interface version */
         87, /* I2C address */
@@ -656,7 +639,7 @@ ICDGEN_API const icd_link_t *bootloader_can_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        0u, /* how many error codes */
+        0u, /* how many codes of refusals */
         0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_bootloader_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_bootloader_telemetry), /* how many can be requested */
@@ -670,14 +653,13 @@ ICDGEN_API const icd_link_t *bootloader_can_link(void)
             NULL,
             &icdgen_node_bootloader_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        NULL, /* error codes */
+        NULL, /* codes of refusals */
         NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
+        0u, /* bytes of an acknowledge */
         NULL, /* unsolicited */
         NULL, /* unsolicited logs */
         &icdgen_node_bootloader_can, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         110, /* node type */
         3, /* interface version */
         87, /* I2C address */

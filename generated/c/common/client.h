@@ -1057,4 +1057,14 @@ static inline icd_status_t common_receive_hole_map_8(common_hole_map_8_t *messag
 }
 #endif
 
+/** Get the reason why the device refused a request or was busy. Return false for other events, and without a reason. */
+static inline bool common_refusal(const icd_event_t *event, common_tc_error_reason_t *reason)
+{
+    if (!event->has_code || event->link == NULL || !icd_has_messages_of(event->link, COMMON_NODE)) {
+        return false;
+    }
+    *reason = ICDGEN_CAST(common_tc_error_reason_t, event->code);
+    return true;
+}
+
 #endif /* COMMON_CLIENT_H */

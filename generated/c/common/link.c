@@ -54,10 +54,10 @@ static const icd_checksum_algorithm_t icdgen_node_common_checksum_crc16 = {
      NULL, ICDGEN_TABLE(icdgen_node_common_checksum_crc16_table)},
 };
 static const icd_number_place_t icdgen_node_common_sources_0[] = {
-    {0u, 4u, 0u, 32u, false},
+    {0u, 4u, 0u, 8u, false},
 };
 static const icd_number_place_t icdgen_node_common_place_0[] = {
-    {4u, 1u, 0u, 8u, false},
+    {4u, 1u, 0u, 8u, true},
 };
 static const icd_echo_t icdgen_node_common_echoes_0[] = {
     {icdgen_node_common_place_0, 0u},
@@ -67,7 +67,7 @@ static const icd_meaning_t icdgen_node_common_meanings_0[] = {
     {0x4u, ICD_VERDICT_AGAIN},
 };
 static const icd_number_place_t icdgen_node_common_place_1[] = {
-    {5u, 1u, 0u, 8u, false},
+    {5u, 1u, 0u, 8u, true},
 };
 static const icd_response_t icdgen_node_common_responses_0[] = {
     {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
@@ -75,38 +75,35 @@ static const icd_response_t icdgen_node_common_responses_0[] = {
         icdgen_node_common_place_1, icdgen_node_common_place_1, NULL},
 };
 static const icd_exchange_t icdgen_node_common_uart_exchanges[] = {
-    {icdgen_node_common_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
+    {NULL, NULL,
+        0u, 0u, 0u, true, 0u, NULL},
     {icdgen_node_common_sources_0, icdgen_node_common_responses_0,
         1u, 0u, 1u, false, 0u, NULL},
 };
 static const icd_bus_exchanges_t icdgen_node_common_on_uart = {
     &icdgen_node_common_uart_exchanges[1], &icdgen_node_common_uart_exchanges[0],
 };
+static const icd_number_place_t icdgen_node_common_sources_1[] = {
+    {0u, 4u, 0u, 32u, false},
+};
 static const icd_number_place_t icdgen_node_common_place_2[] = {
-    {4u, 1u, 0u, 8u, true},
-};
-static const icd_echo_t icdgen_node_common_echoes_1[] = {
-    {icdgen_node_common_place_2, 0u},
-};
-static const icd_number_place_t icdgen_node_common_place_3[] = {
     {6u, 1u, 0u, 8u, true},
 };
-static const icd_number_place_t icdgen_node_common_place_4[] = {
+static const icd_number_place_t icdgen_node_common_place_3[] = {
     {7u, 1u, 0u, 8u, true},
 };
 static const icd_response_t icdgen_node_common_responses_1[] = {
     {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
-        icdgen_node_common_echoes_1, icdgen_node_common_meanings_0,
-        icdgen_node_common_place_3, icdgen_node_common_place_3, icdgen_node_common_place_4},
+        icdgen_node_common_echoes_0, icdgen_node_common_meanings_0,
+        icdgen_node_common_place_2, icdgen_node_common_place_2, icdgen_node_common_place_3},
 };
 static const icd_outcome_poll_t icdgen_node_common_outcome_poll = {
     240u, {5u, 1u, 0u, 1u, true},
 };
 static const icd_exchange_t icdgen_node_common_i2c_exchanges[] = {
-    {icdgen_node_common_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_common_sources_0, icdgen_node_common_responses_1,
+    {NULL, NULL,
+        0u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_common_sources_1, icdgen_node_common_responses_1,
         1u, 0u, 1u, false, 0u, &icdgen_node_common_outcome_poll},
 };
 static const icd_bus_exchanges_t icdgen_node_common_on_i2c = {
@@ -379,12 +376,8 @@ static const icd_message_t icdgen_node_common_telemetry[] = {
 static const char *const icdgen_node_common_nodes[] = {
     "common",
 };
-static const icd_error_code_t icdgen_node_common_errors[] = {
-    {ICD_REASON_NONE, 0u},
-    {ICD_REASON_UNKNOWN_ID, 1u},
-    {ICD_REASON_LENGTH, 2u},
-    {ICD_REASON_VALUE, 3u},
-    {ICD_REASON_CHECKSUM, 4u},
+static const uint32_t icdgen_node_common_reasons[] = {
+    0u, 1u, 2u, 3u, 4u,
 };
 /**
  * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
@@ -397,15 +390,6 @@ static const icd_framing_t icdgen_node_common_framing = {
     0x1fu, /* escaped */
     true, /* escapes_id */
     false, /* ignores_other */
-};
-/**
- * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
- * and that no other id heads the message, stood in a figure.
- */
-static const icd_acknowledge_t icdgen_node_common_acknowledge = {
-    2u, /* length */
-    0u, /* id_at */
-    1u, /* error_at */
 };
 static const icd_unsolicited_t icdgen_node_common_unsolicited[] = {
     {119u, 241u, 22u}, /* File Download Buffer with File Contents */
@@ -467,11 +451,13 @@ static const icd_report_t icdgen_node_common_identification = {
 ICDGEN_API const icd_link_t *common_link(void)
 {
     /**
-     * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
-     * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One
-     * attempt and two more are announced. But the status is raised before each start, so it reads 3 Failed boot
-     * attempts before the third, and at that value no start is said to follow.
+     * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
+     * and that no other id heads the message, stood in a figure. Assumed reply_timeout_ms: No time is given. The
+     * longest message takes 90 ms on the UART. Assumed retries: Nothing is said about trying again. Assumed
+     * poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is given. Assumed late_ms: No time is given.
+     * It is ten times the longest message on the UART. Assumed attempts: One attempt and two more are announced. But
+     * the status is raised before each start, so it reads 3 Failed boot attempts before the third, and at that value no
+     * start is said to follow.
      */
     static const icd_link_t link = {
         icdgen_node_common_nodes, /* whose messages */
@@ -479,7 +465,7 @@ ICDGEN_API const icd_link_t *common_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
@@ -493,14 +479,13 @@ ICDGEN_API const icd_link_t *common_link(void)
             &icdgen_node_common_on_i2c,
             &icdgen_node_common_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        icdgen_node_common_errors, /* error codes */
+        icdgen_node_common_reasons, /* codes of refusals */
         &icdgen_node_common_framing, /* framing of the UART */
-        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
+        2u, /* bytes of an acknowledge */
         icdgen_node_common_unsolicited, /* unsolicited */
         NULL, /* unsolicited logs */
         &icdgen_node_common_can, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         -1, /* node type */
         -1, /* interface version */
         87, /* I2C address */
@@ -523,7 +508,7 @@ ICDGEN_API const icd_link_t *common_uart_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
@@ -537,14 +522,13 @@ ICDGEN_API const icd_link_t *common_uart_link(void)
             NULL,
             NULL}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        icdgen_node_common_errors, /* error codes */
+        icdgen_node_common_reasons, /* codes of refusals */
         &icdgen_node_common_framing, /* framing of the UART */
-        &icdgen_node_common_acknowledge, /* acknowledges on the UART */
+        2u, /* bytes of an acknowledge */
         icdgen_node_common_unsolicited, /* unsolicited */
         NULL, /* unsolicited logs */
         NULL, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         -1, /* node type */
         -1, /* interface version */
         87, /* I2C address */
@@ -567,7 +551,7 @@ ICDGEN_API const icd_link_t *common_i2c_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
@@ -581,14 +565,13 @@ ICDGEN_API const icd_link_t *common_i2c_link(void)
             &icdgen_node_common_on_i2c,
             NULL}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        icdgen_node_common_errors, /* error codes */
+        icdgen_node_common_reasons, /* codes of refusals */
         NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
+        0u, /* bytes of an acknowledge */
         NULL, /* unsolicited */
         NULL, /* unsolicited logs */
         NULL, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         -1, /* node type */
         -1, /* interface version */
         87, /* I2C address */
@@ -611,7 +594,7 @@ ICDGEN_API const icd_link_t *common_can_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        0u, /* how many error codes */
+        0u, /* how many codes of refusals */
         0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_common_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_common_telemetry), /* how many can be requested */
@@ -625,14 +608,13 @@ ICDGEN_API const icd_link_t *common_can_link(void)
             NULL,
             &icdgen_node_common_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        NULL, /* error codes */
+        NULL, /* codes of refusals */
         NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
+        0u, /* bytes of an acknowledge */
         NULL, /* unsolicited */
         NULL, /* unsolicited logs */
         &icdgen_node_common_can, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         -1, /* node type */
         -1, /* interface version */
         87, /* I2C address */

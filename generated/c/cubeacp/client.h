@@ -3980,4 +3980,14 @@ static inline icd_status_t cubeacp_receive_inertial_pointing_reference_vector(
 }
 #endif
 
+/** Get the reason why the device refused a request or was busy. Return false for other events, and without a reason. */
+static inline bool cubeacp_refusal(const icd_event_t *event, common_tc_error_reason_t *reason)
+{
+    if (!event->has_code || event->link == NULL || !icd_has_messages_of(event->link, CUBEACP_NODE)) {
+        return false;
+    }
+    *reason = ICDGEN_CAST(common_tc_error_reason_t, event->code);
+    return true;
+}
+
 #endif /* CUBEACP_CLIENT_H */

@@ -96,10 +96,10 @@ static const icd_checksum_algorithm_t icdgen_node_cubeacp_checksum_crc8 = {
      ICDGEN_TABLE(icdgen_node_cubeacp_checksum_crc8_table), NULL},
 };
 static const icd_number_place_t icdgen_node_cubeacp_sources_0[] = {
-    {0u, 4u, 0u, 32u, false},
+    {0u, 4u, 0u, 8u, false},
 };
 static const icd_number_place_t icdgen_node_cubeacp_place_0[] = {
-    {4u, 1u, 0u, 8u, false},
+    {4u, 1u, 0u, 8u, true},
 };
 static const icd_echo_t icdgen_node_cubeacp_echoes_0[] = {
     {icdgen_node_cubeacp_place_0, 0u},
@@ -109,7 +109,7 @@ static const icd_meaning_t icdgen_node_cubeacp_meanings_0[] = {
     {0x4u, ICD_VERDICT_AGAIN},
 };
 static const icd_number_place_t icdgen_node_cubeacp_place_1[] = {
-    {5u, 1u, 0u, 8u, false},
+    {5u, 1u, 0u, 8u, true},
 };
 static const icd_response_t icdgen_node_cubeacp_responses_0[] = {
     {0x0u, ICD_VERDICT_NAK, 1u, true, 0x25u, 2u,
@@ -117,38 +117,35 @@ static const icd_response_t icdgen_node_cubeacp_responses_0[] = {
         icdgen_node_cubeacp_place_1, icdgen_node_cubeacp_place_1, NULL},
 };
 static const icd_exchange_t icdgen_node_cubeacp_uart_exchanges[] = {
-    {icdgen_node_cubeacp_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
+    {NULL, NULL,
+        0u, 0u, 0u, true, 0u, NULL},
     {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_0,
         1u, 0u, 1u, false, 0u, NULL},
 };
 static const icd_bus_exchanges_t icdgen_node_cubeacp_on_uart = {
     &icdgen_node_cubeacp_uart_exchanges[1], &icdgen_node_cubeacp_uart_exchanges[0],
 };
+static const icd_number_place_t icdgen_node_cubeacp_sources_1[] = {
+    {0u, 4u, 0u, 32u, false},
+};
 static const icd_number_place_t icdgen_node_cubeacp_place_2[] = {
-    {4u, 1u, 0u, 8u, true},
-};
-static const icd_echo_t icdgen_node_cubeacp_echoes_1[] = {
-    {icdgen_node_cubeacp_place_2, 0u},
-};
-static const icd_number_place_t icdgen_node_cubeacp_place_3[] = {
     {6u, 1u, 0u, 8u, true},
 };
-static const icd_number_place_t icdgen_node_cubeacp_place_4[] = {
+static const icd_number_place_t icdgen_node_cubeacp_place_3[] = {
     {7u, 1u, 0u, 8u, true},
 };
 static const icd_response_t icdgen_node_cubeacp_responses_1[] = {
     {0xf0u, ICD_VERDICT_NAK, 1u, false, 0x25u, 2u,
-        icdgen_node_cubeacp_echoes_1, icdgen_node_cubeacp_meanings_0,
-        icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_3, icdgen_node_cubeacp_place_4},
+        icdgen_node_cubeacp_echoes_0, icdgen_node_cubeacp_meanings_0,
+        icdgen_node_cubeacp_place_2, icdgen_node_cubeacp_place_2, icdgen_node_cubeacp_place_3},
 };
 static const icd_outcome_poll_t icdgen_node_cubeacp_outcome_poll = {
     240u, {5u, 1u, 0u, 1u, true},
 };
 static const icd_exchange_t icdgen_node_cubeacp_i2c_exchanges[] = {
-    {icdgen_node_cubeacp_sources_0, NULL,
-        1u, 0u, 0u, true, 0u, NULL},
-    {icdgen_node_cubeacp_sources_0, icdgen_node_cubeacp_responses_1,
+    {NULL, NULL,
+        0u, 0u, 0u, true, 0u, NULL},
+    {icdgen_node_cubeacp_sources_1, icdgen_node_cubeacp_responses_1,
         1u, 0u, 1u, false, 0u, &icdgen_node_cubeacp_outcome_poll},
 };
 static const icd_bus_exchanges_t icdgen_node_cubeacp_on_i2c = {
@@ -1117,12 +1114,8 @@ static const icd_checksum_form_t icdgen_node_cubeacp_checksum = {
     1u, /* bytes */
     &icdgen_node_cubeacp_checksum_crc8, /* algorithm */
 };
-static const icd_error_code_t icdgen_node_cubeacp_errors[] = {
-    {ICD_REASON_NONE, 0u},
-    {ICD_REASON_UNKNOWN_ID, 1u},
-    {ICD_REASON_LENGTH, 2u},
-    {ICD_REASON_VALUE, 3u},
-    {ICD_REASON_CHECKSUM, 4u},
+static const uint32_t icdgen_node_cubeacp_reasons[] = {
+    0u, 1u, 2u, 3u, 4u,
 };
 /**
  * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
@@ -1135,15 +1128,6 @@ static const icd_framing_t icdgen_node_cubeacp_framing = {
     0x1fu, /* escaped */
     true, /* escapes_id */
     false, /* ignores_other */
-};
-/**
- * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
- * and that no other id heads the message, stood in a figure.
- */
-static const icd_acknowledge_t icdgen_node_cubeacp_acknowledge = {
-    2u, /* length */
-    0u, /* id_at */
-    1u, /* error_at */
 };
 static const icd_unsolicited_t icdgen_node_cubeacp_unsolicited[] = {
     {119u, 241u, 22u}, /* File Download Buffer with File Contents */
@@ -1205,15 +1189,16 @@ static const icd_report_t icdgen_node_cubeacp_identification = {
 ICDGEN_API const icd_link_t *cubeacp_link(void)
 {
     /**
-     * Assumed trailer: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
-     * cover the frame only. Assumed buses: The checksum is offered for commands in general, CAN included. None is sent
-     * there by choice, for in an extended message the receiver could not tell the checksum from the fill. Assumed
-     * reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing is said
-     * about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is given.
-     * Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One attempt
-     * and two more are announced. But the status is raised before each start, so it reads 3 Failed boot attempts before
-     * the third, and at that value no start is said to follow. Assumed period_unit_ms: No unit is given. The control
-     * loop runs once a second.
+     * Assumed header: Two bytes are announced, the last being the error. That the first is the id of the telecommand,
+     * and that no other id heads the message, stood in a figure. Assumed trailer: Whether the id counts among the bytes
+     * of a command is not said. The extra byte of a frame can cover the frame only. Assumed buses: The checksum is
+     * offered for commands in general, CAN included. None is sent there by choice, for in an extended message the
+     * receiver could not tell the checksum from the fill. Assumed reply_timeout_ms: No time is given. The longest
+     * message takes 90 ms on the UART. Assumed retries: Nothing is said about trying again. Assumed poll_interval_ms:
+     * No time is given. Assumed poll_timeout_ms: No time is given. Assumed late_ms: No time is given. It is ten times
+     * the longest message on the UART. Assumed attempts: One attempt and two more are announced. But the status is
+     * raised before each start, so it reads 3 Failed boot attempts before the third, and at that value no start is said
+     * to follow. Assumed period_unit_ms: No unit is given. The control loop runs once a second.
      */
     static const icd_link_t link = {
         icdgen_node_cubeacp_nodes, /* whose messages */
@@ -1221,7 +1206,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
@@ -1235,14 +1220,13 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
             &icdgen_node_cubeacp_on_i2c,
             &icdgen_node_cubeacp_on_can}, /* exchanges on UART, I2C, CAN */
         &icdgen_node_cubeacp_checksum, /* checksums of messages */
-        icdgen_node_cubeacp_errors, /* error codes */
+        icdgen_node_cubeacp_reasons, /* codes of refusals */
         &icdgen_node_cubeacp_framing, /* framing of the UART */
-        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
+        2u, /* bytes of an acknowledge */
         icdgen_node_cubeacp_unsolicited, /* unsolicited */
         ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
         &icdgen_node_cubeacp_can, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         10, /* node type */
         7, /* interface version */
         87, /* I2C address */
@@ -1265,7 +1249,7 @@ ICDGEN_API const icd_link_t *cubeacp_uart_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         1u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
@@ -1279,14 +1263,13 @@ ICDGEN_API const icd_link_t *cubeacp_uart_link(void)
             NULL,
             NULL}, /* exchanges on UART, I2C, CAN */
         &icdgen_node_cubeacp_checksum, /* checksums of messages */
-        icdgen_node_cubeacp_errors, /* error codes */
+        icdgen_node_cubeacp_reasons, /* codes of refusals */
         &icdgen_node_cubeacp_framing, /* framing of the UART */
-        &icdgen_node_cubeacp_acknowledge, /* acknowledges on the UART */
+        2u, /* bytes of an acknowledge */
         icdgen_node_cubeacp_unsolicited, /* unsolicited */
         ICDGEN_OF_LOGS(&icdgen_node_cubeacp_log_message), /* unsolicited logs */
         NULL, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         10, /* node type */
         7, /* interface version */
         87, /* I2C address */
@@ -1309,7 +1292,7 @@ ICDGEN_API const icd_link_t *cubeacp_i2c_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        5u, /* how many error codes */
+        5u, /* how many codes of refusals */
         0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
@@ -1323,14 +1306,13 @@ ICDGEN_API const icd_link_t *cubeacp_i2c_link(void)
             &icdgen_node_cubeacp_on_i2c,
             NULL}, /* exchanges on UART, I2C, CAN */
         &icdgen_node_cubeacp_checksum, /* checksums of messages */
-        icdgen_node_cubeacp_errors, /* error codes */
+        icdgen_node_cubeacp_reasons, /* codes of refusals */
         NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
+        0u, /* bytes of an acknowledge */
         NULL, /* unsolicited */
         NULL, /* unsolicited logs */
         NULL, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         10, /* node type */
         7, /* interface version */
         87, /* I2C address */
@@ -1353,7 +1335,7 @@ ICDGEN_API const icd_link_t *cubeacp_can_link(void)
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        0u, /* how many error codes */
+        0u, /* how many codes of refusals */
         0u, /* how many unsolicited */
         ICDGEN_ROWS(icdgen_node_cubeacp_telecommands), /* how many can be sent */
         ICDGEN_ROWS(icdgen_node_cubeacp_telemetry), /* how many can be requested */
@@ -1367,14 +1349,13 @@ ICDGEN_API const icd_link_t *cubeacp_can_link(void)
             NULL,
             &icdgen_node_cubeacp_on_can}, /* exchanges on UART, I2C, CAN */
         NULL, /* checksums of messages */
-        NULL, /* error codes */
+        NULL, /* codes of refusals */
         NULL, /* framing of the UART */
-        NULL, /* acknowledges on the UART */
+        0u, /* bytes of an acknowledge */
         NULL, /* unsolicited */
         NULL, /* unsolicited logs */
         &icdgen_node_cubeacp_can, /* CAN */
         {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
-        0u, /* no error */
         10, /* node type */
         7, /* interface version */
         87, /* I2C address */

@@ -634,10 +634,9 @@ static inline void icdgen_set_reason(const icd_link_t *link, const icd_response_
     if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_REASON) && response->reason != NULL) {
         event->has_code = true;
         event->code = icdgen_stream_number(response->reason, event->id, event->data, event->length);
-        for (size_t i = link->error_count; i > 0u; --i) {
-            if (link->errors[i - 1u].code == event->code) {
-                event->reason = link->errors[i - 1u].reason;
-            }
+        event->may_be_damaged = link->reason_count > 0u;
+        for (size_t i = 0; i < link->reason_count; ++i) {
+            event->may_be_damaged = event->may_be_damaged && link->reasons[i] != event->code;
         }
     }
     if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_DETAIL) && response->detail != NULL) {

@@ -52,7 +52,7 @@ typedef struct {
     bool has_reply;      /**< Events of a request: whether telemetry `reply` led to the event. */
     bool has_code;       /**< REFUSED, BUSY: whether the response has a reason `code`. */
     bool has_detail;     /**< REFUSED on I2C: whether the response has the index `detail` of a parameter. */
-    icd_reason_t reason; /**< REFUSED: meaning of `code` on UART and I2C. */
+    bool may_be_damaged; /**< REFUSED on UART and I2C: the enumeration of the codes does not have `code`. */
     bool is_packet;      /**< Whether the packet or the response contains no message. `data` are all its bytes. */
     uint8_t packet;      /**< Framed links: index of the packet format. */
     icd_direction_t direction;

@@ -42,38 +42,12 @@ typedef struct {
     bool ignores_other;
 } icd_framing_t;
 
-/** The acknowledge on the UART: its length, and where the id of the telecommand and the error code stand. */
-typedef struct {
-    /** Length of the message. */
-    uint16_t length;
-    /** Offset of the id of the telecommand. */
-    uint16_t id_at;
-    /** Offset of the error code. */
-    uint16_t error_at;
-} icd_acknowledge_t;
-
 /** Telemetry that arrives unsolicited on the UART: id at the head of the message, and what it contains. */
 typedef struct {
     uint8_t id;
     uint8_t telemetry;
     uint16_t length; /**< Of the telemetry. */
 } icd_unsolicited_t;
-
-/** What an error code means. */
-typedef enum {
-    ICD_REASON_UNKNOWN = 0,
-    ICD_REASON_NONE = 1,
-    ICD_REASON_UNKNOWN_ID = 2,
-    ICD_REASON_LENGTH = 3,
-    ICD_REASON_VALUE = 4,
-    ICD_REASON_CHECKSUM = 5
-} icd_reason_t;
-
-/** An error code and its meaning. */
-typedef struct {
-    icd_reason_t reason;
-    uint32_t code;
-} icd_error_code_t;
 
 /* A compiler that optimizes for size leaves out the lookup tables of CRCs. */
 #if defined(__OPTIMIZE_SIZE__) && !defined(ICDGEN_TABLES) && !defined(ICDGEN_NO_TABLES)

@@ -40,7 +40,7 @@ typedef struct {
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
-    uint8_t error_count;
+    uint16_t reason_count;
     uint8_t unsolicited_count;
     uint16_t telecommand_count, telemetry_count;
     const icd_message_t *telecommands; /**< In ascending order of the ids. */
@@ -53,14 +53,13 @@ typedef struct {
     const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
     const icd_bus_exchanges_t *exchanges[ICD_BUSES]; /**< By icd_bus_t; NULL: the node is not on the bus. */
     const icd_checksum_form_t *checksum;
-    const icd_error_code_t *errors;
+    const uint32_t *reasons; /**< Codes of refusals on UART and I2C that the enumeration of the codes has. */
     const icd_framing_t *framing;
-    const icd_acknowledge_t *acknowledge;
+    uint16_t acknowledge_bytes;           /**< Length of the acknowledge on the UART; 0 without one. */
     const icd_unsolicited_t *unsolicited; /**< UART: telemetry that arrives unsolicited. */
     const icd_log_message_form_t *log_message;
     const icd_can_form_t *can;
     icd_client_settings_t client;
-    uint32_t no_error;
     int32_t node_type; /**< -1 if the ICD has none. */
     int32_t interface_version;
     int16_t i2c_address;     /**< 7-bit address, -1 if the ICD has none. */

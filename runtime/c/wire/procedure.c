@@ -666,10 +666,8 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
         icdgen_outcome(procedure, ICD_DONE, event->data, event->length);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
         icdgen_outcome(procedure, ICD_TIMED_OUT, NULL, 0);
-    } else if (
-        event->kind == ICD_EVENT_REFUSED && procedure->link->stream == NULL && event->has_code &&
-        event->reason == ICD_REASON_UNKNOWN) {
-        icdgen_damaged(procedure); /* the messages of framed links have a checksum */
+    } else if (event->kind == ICD_EVENT_REFUSED && event->may_be_damaged) {
+        icdgen_damaged(procedure);
     } else if (event->kind == ICD_EVENT_REFUSED) {
         icdgen_outcome(procedure, ICD_REFUSED, NULL, 0);
     } else if (event->kind == ICD_EVENT_BUSY) {

@@ -220,7 +220,7 @@ static inline icd_uart_kind_t icdgen_uart_kind(
     if (id >= link->telemetry_first && id <= link->telemetry_last) {
         return ICD_UART_REPLY;
     }
-    if (link->acknowledge != NULL && length == link->acknowledge->length) {
+    if (length > 0u && length == link->acknowledge_bytes) {
         return ICD_UART_ACKNOWLEDGE;
     }
     *contained = icdgen_unsolicited(link, message, length);

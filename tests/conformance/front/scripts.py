@@ -21,7 +21,7 @@ from tests.conformance.front.wire import MOST, Answer, Asking, Request, event, t
 BUSES = ("uart", "i2c", "can")
 MOST_TIMES = 1 << 20
 ABSENT = {
-    "refused": {"code": None, "reason": None, "parameter": None}
+    "refused": {"code": None, "parameter": None}
 }  # what an event says where nothing is known
 WITHOUT_CODE = {"refused": {"code": None}, "busy": {"code": None}}  # on framed links
 

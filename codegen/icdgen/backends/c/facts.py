@@ -13,7 +13,7 @@ from icdgen.protocol.declared import Fact, Kind
 MOST_SIGNED = 0x7FFF_FFFF
 TYPES: dict[type, str] = {
     sections.Settings: "icd_client_settings_t", sections.Framing: "icd_framing_t",
-    sections.Acknowledge: "icd_acknowledge_t", sections.Crc: "icd_crc_form_t",
+    sections.Crc: "icd_crc_form_t",
     sections.Checksum: "icd_checksum_form_t", sections.Can: "icd_can_form_t", sections.Extended: "icd_can_extended_t",
     sections.LogMask: "icd_log_mask_form_t", sections.LogFile: "icd_log_file_form_t",
     sections.LogMessage: "icd_log_message_form_t", sections.Index: "icd_index_form_t",

@@ -201,7 +201,7 @@ class _Tables(TableSet):
                 )
             ),
             _Part(
-                Row(f"{len(link.error_codes)}u", "how many error codes"),
+                Row(f"{len(link.reasons)}u", "how many codes of refusals"),
                 self.refusing(),
                 "0u",
             ),
@@ -226,29 +226,27 @@ class _Tables(TableSet):
             *(facts.checksum.telecommand_buses if facts.checksum else ()),
             *(facts.checksum.telemetry_buses if facts.checksum else ()),
         }
-        codes = map(_error_code, link.error_codes)
+        codes = (f"{code}u" for code in link.reasons)
+        packet = facts.acknowledge
         log_mask, log_file, log_message = self.optional("LOGS", self.logs())
         return [
             _Part(Row(self.checksum(), "checksums of messages"), checked),
             _Part(
-                Row(self.array("errors", "icd_error_code_t", codes), "error codes"),
+                Row(self.numbers("reasons", "uint32_t", codes, 8), "codes of refusals"),
                 self.refusing(),
             ),
             _Part(
                 Row(self.part("framing", facts.framing), "framing of the UART"), {UART}
             ),
             _Part(
-                Row(
-                    self.part("acknowledge", facts.acknowledge),
-                    "acknowledges on the UART",
-                ),
+                Row(f"{packet.overhead if packet else 0}u", "bytes of an acknowledge"),
                 {UART},
+                "0u",
             ),
             _Part(Row(self.unsolicited(), "unsolicited"), {UART}),
             log_message,
             _Part(Row(self.can(), "CAN"), {CAN}),
             _Part(Row(settings, "times and limits: icd_client_settings_t")),
-            _Part(Row(f"{facts.errors.get('none', 0)}u", "no error")),
             _Part(Row(or_none(facts.node.node_type), "node type")),
             _Part(Row(or_none(facts.node.interface_version), "interface version")),
             _Part(Row(or_none(facts.i2c_address), "I2C address")),
@@ -642,10 +640,6 @@ class _Tables(TableSet):
 def _in_lines(values: Iterable[str]) -> str:
     """Return values of a row with one of them per line."""
     return f",\n{STEP * 3}".join(values)
-
-
-def _error_code(code: tuple[str, int]) -> str:
-    return f"{{ICD_REASON_{code[0].upper()}, {code[1]}u}}"
 
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:

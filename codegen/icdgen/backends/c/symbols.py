@@ -95,9 +95,9 @@ class CNames(NamingPolicy):
         kinds = (
             [name for bus in _BUSES for name in (f"client_{bus}", f"{bus}_link")]
             if node.has_client
-            else ["client_init", "sender_t", "sender_init", "refusal"]
+            else ["client_init", "sender_t", "sender_init"]
         )
-        for end in ("link", "client_t", *kinds):
+        for end in ("link", "client_t", "refusal", *kinds):
             yield Identifier(FILE, f"{node.name}_{end}", owner, source, end)
         for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
             yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source, end)

@@ -75,7 +75,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
             for packet in bus_link(section.get("link", {}), CAN).packets.all
             if "type" in packet.section
         ],
-        "errors": errors(relations, node, node_facts, section),
+        "errors": errors(relations, node_facts),
         "responses": responses.of_node(relations, node),
         "acknowledges": sequences.acknowledges(relations, node, node_facts),
         "procedures": sequences.procedures(relations, node, node_facts),
@@ -193,22 +193,20 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
     ])  # fmt: skip
 
 
-def errors(
-    relations: Relations, node: Node, node_facts: Facts, section: dict[str, Any]
-) -> list[tuple[int, str, str, str]]:
+def errors(relations: Relations, node_facts: Facts) -> list[tuple[int, str, str, str]]:
     """Return code, name, role in the protocol, and link of each error."""
-    enum = node_facts.error_enum
-    roles = {code: key.replace("_", " ") for key, code in node_facts.errors.items()}
-    if enum is None:
+    roles = {code: key.replace("_", " ") for key, code in node_facts.reasons.items()}
+    enums = [] if node_facts.stream else node_facts.reason_enums
+    if not enums:
         return [(code, role, "", "") for code, role in sorted(roles.items())]
-    url = relations.links.enum(enum)
     return [
         (
             m.value,
             m.name,
             roles.get(m.value, ""),
-            f"{url}#{relations.links.anchor(enum, str(m.value))}",
+            f"{relations.links.enum(enum)}#{relations.links.anchor(enum, str(m.value))}",
         )
+        for enum in enums
         for m in enum.members
     ]
 
@@ -270,7 +268,12 @@ def entries(
             "Responses to telecommands",
             "responses",
         ),
-        (node_facts.errors, "error codes reasons nack", "Error codes", "errors"),
+        (
+            errors(relations, node_facts),
+            "error codes reasons nack",
+            "Error codes",
+            "errors",
+        ),
         (
             sequences.acknowledges(relations, node, node_facts),
             "acknowledge ack nak nack handshake sequence",

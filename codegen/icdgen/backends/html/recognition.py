@@ -12,6 +12,7 @@ from icdgen.backends.html import packet_formats, wire
 from icdgen.backends.html.relations import Relations
 from icdgen.frame_bits import constant_bytes
 from icdgen.icd import wire_ids
+from icdgen.icd.buses import UART
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import places_in
 from icdgen.icd.variants import Variant, ids_of
@@ -109,9 +110,6 @@ def _speaker(
         "telemetry": numbers_of(ids.telemetry, numbers),
         "id_bytes": wire_ids.size(node.id_bits),
         "id_bits": node.id_bits,
-        "errors": {
-            str(code): key.replace("_", " ") for key, code in node_facts.errors.items()
-        },
     }
     speaker_data |= wire.framing_facts(node_facts)
     if node_facts.stream:
@@ -123,7 +121,10 @@ def _speaker(
         speaker_data["crc"] = wire.crc_facts(node_facts)
     if node_facts.can:
         speaker_data["can"] = wire.can_facts(node_facts.can)
-    if node_facts.acknowledge:
-        form = node_facts.acknowledge
-        speaker_data["acknowledge"] = [form.length, form.id_at, form.error_at]
+    uart = node_facts.bus_exchanges.get(UART)
+    for response in uart.command.responses if uart and uart.command else ():
+        size = node_facts.acknowledge and node_facts.acknowledge.overhead
+        if size and response.reason:
+            places = response.echoes[0].place.at, response.reason.at
+            speaker_data["acknowledge"] = [size, *places, dict(response.reasons)]
     return speaker_data

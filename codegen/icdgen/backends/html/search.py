@@ -187,11 +187,11 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
     """Return the names of enumerations of the node that contain error codes of a
     protocol.
     """
-    enums = (
-        facts.of(relations.icd, speaker).error_enum
+    return {
+        enum.name
         for speaker in relations.speakers[node.name]
-    )
-    return {enum.name for enum in enums if enum}
+        for enum in facts.of(relations.icd, speaker).reason_enums
+    }
 
 
 def _of_enum(

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from icdgen.backends.html import responses
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.texts import BUSES, capitalized, clip
+from icdgen.icd.buses import I2C, bus_link
 from icdgen.icd.model import Message, Node
 from icdgen.icd.responses import ACK, BUSY, NAK, PROGRESS
 from icdgen.protocol.facts import Facts
@@ -99,14 +100,13 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
     if node_facts.i2c_address is not None:
         arrows = [Arrow(True, f"write to {node_facts.i2c_address:02X}: id, parameters")]
         if node_facts.polled:
-            polled, url = (
-                node_facts.polled,
-                relations.links.message(node_facts.polled.message),
-            )
+            polled, url = node_facts.polled, relations.links.message(node_facts.polled)
+            link = relations.icd.protocol_of(node)["link"]
+            row = bus_link(link, I2C).commands[ACK]
             every = f"every {node_facts.client.poll_interval} ms, for {node_facts.client.poll_timeout} ms at most"
             arrows += [
-                Arrow(True, polled.message.name, every, url),
-                Arrow(False, f"until {polled.processed}", polled.error, url),
+                Arrow(True, polled.name, every, url),
+                Arrow(False, f"until {row['until']}", row["status"], url),
             ]
         sequences.append(Sequence("I²C, telecommand", node.title, arrows))
     if node_facts.can:

@@ -20,7 +20,6 @@ from icdgen.backends.rust.literals import (
     spelled,
     struct,
 )
-from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.streams import (
     algorithm_of,
     bus_exchanges_of,
@@ -41,7 +40,6 @@ from icdgen.describe.links import (
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.sections import CAN_KINDS
 
-_REASONS = {"none": "NoError"}
 _RENAMED = {"type": "kind", "channel": "id"}  # `type` is a keyword
 
 
@@ -95,12 +93,9 @@ class _Literal:
 
     def link(self) -> Brackets:
         facts, link = self.facts, self.description
+        packet = facts.acknowledge
         # Before the checksums: it shows the assumptions about its use.
         checksum = self.checksum()
-        codes = (
-            f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})"
-            for key, code in link.error_codes
-        )
         unsolicited = (
             f"({integer(first)}, {integer(id)})"
             for first, id in sorted(facts.unsolicited.items())
@@ -117,13 +112,13 @@ class _Literal:
             part("telecommands", rows(map(_form, link.telecommands))),
             part("telemetry", rows(map(_form, link.telemetry))),
             part("client", self.struct(facts.client) or ""),
-            part("errors", rows(codes)),
+            part("reasons", flat_rows(map(integer, link.reasons))),
             part("framing", some(self.struct(facts.framing))),
             part(
-                "acknowledge",
-                some(self.struct(facts.acknowledge)),
-                self.assumed.why(facts.acknowledge.section, "header")
-                if facts.acknowledge
+                "acknowledge_bytes",
+                some(packet.overhead if packet else None),
+                self.assumed.why(f"link.packets.{packet.name}", "header")
+                if packet
                 else "",
             ),
             part("i2c_address", some(facts.i2c_address)),

@@ -20,9 +20,14 @@ from icdgen.backends.rust.literals import (
 from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.text import mask, string
 from icdgen.icd.buses import BUSES
-from icdgen.protocol.bus_exchanges import BusExchanges
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.exchange import Exchange, NumberPlace, Poll, Response
+from icdgen.protocol.exchange import (
+    BusExchanges,
+    Exchange,
+    NumberPlace,
+    Poll,
+    Response,
+)
 from icdgen.protocol.packet_formats import (
     CRC,
     DIRECTIONS,

@@ -15,11 +15,10 @@ from icdgen_runtime.wire.link import CanKind
 from icdgen_runtime.wire.logs import LogMessage
 from icdgen_runtime.wire.uart import uart_encode
 
-from icdgen import codec
 from icdgen.icd.buses import CAN, I2C, UART
-from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.facts import Facts, need
+from icdgen.runtime_objects.links import responses_on, with_outcome
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests, Row, Script
 
@@ -74,10 +73,10 @@ class Sample:
 
     def acknowledge(self, message: Message, code: int = 0) -> str:
         """Return the bytes of an acknowledge on the UART, in hexadecimal."""
-        form = self.facts.acknowledge
-        assert form and message.telecommand_id is not None
-        data = bytearray(form.length)
-        data[form.id_at], data[form.error_at] = message.telecommand_id, code
+        (response,) = responses_on(self.link, UART)
+        data = bytearray(self.link.acknowledge_bytes or 0)
+        response.echoes[0].place.put(message.telecommand_id or 0, data)
+        need(response.status, "status").put(code, data)
         return self.line(bytes(data))
 
 
@@ -139,9 +138,8 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
             ack(40, plain),
         ],
     )
-    for name, code in facts.errors.items():
-        if name != "none":
-            yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
+    for name, code in facts.reasons.items():
+        yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
     yield "refused with a code that has no name", [s.ask(0, plain), ack(30, plain, 200)]
     yield (
         "the next before the acknowledge",
@@ -345,7 +343,7 @@ def _many_late(
 
 
 def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    code = facts.errors.get("checksum")
+    code = facts.reasons.get("checksum")
     if code is None:
         return
     bad = {"receive": s.acknowledge(s.plain, code)}
@@ -419,8 +417,8 @@ def _checked_frames(
 def _i2c(
     facts: Facts, s: Sample, checked: bool
 ) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    polled = facts.polled
-    assert polled
+    polled, (response,) = need(facts.polled, "polled"), responses_on(s.link, I2C)
+    success = next(code for code, says in response.meanings if says == "ack")
     checked_frames = bool(
         checked and facts.checksum and I2C in facts.checksum.telemetry_buses
     )
@@ -434,18 +432,10 @@ def _i2c(
     def state(
         at: int, message: Message, processed: int, code: int = 0
     ) -> dict[str, Any]:
-        raw: dict[str, Any] = {
-            field.name: 0
-            for field in frame_fields(polled.message.layout, facts.node.orders)
-        }
-        raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
-        raw |= {polled.error: code, **polled.detail(7 if code else 0)}
-        return {
-            "at": at,
-            "receive": frame(
-                polled.message, codec.encode(facts.node, polled.message, raw)
-            ),
-        }
+        id, parameter = message.telecommand_id or 0, 7 if code else 0
+        empty = bytes(polled.length)
+        data = with_outcome(s.link, empty, id, bool(processed), code, parameter)
+        return {"at": at, "receive": frame(polled, data)}
 
     plain, wide = s.plain, s.frame
     other = next((m for m in facts.telecommands.values() if m is not plain), plain)
@@ -456,7 +446,7 @@ def _i2c(
     yield "the acknowledge is still that of another telecommand", [
         s.ask(0, plain), written, {"at": 11}, state(12, other, 1), {"at": 22}, state(23, plain, 1),
     ]  # fmt: skip
-    for name, code in facts.errors.items():
+    for name, code in {"none": success, **facts.reasons}.items():
         yield (
             f"outcome {name}",
             [

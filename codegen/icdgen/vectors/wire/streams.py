@@ -169,11 +169,11 @@ def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, b
         for id in ids:
             yield (
                 f"the acknowledge of telecommand {id}",
-                bytes([id, *bytes(facts.acknowledge.length - 1)]),
+                bytes([id, *bytes(facts.acknowledge.overhead - 1)]),
             )
         yield (
             "an acknowledge that is too long",
-            bytes([ids[0], *bytes(facts.acknowledge.length)]),
+            bytes([ids[0], *bytes(facts.acknowledge.overhead)]),
         )
     for head, id in facts.unsolicited.items():
         for more in (-1, 0, 1):

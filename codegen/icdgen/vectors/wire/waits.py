@@ -13,6 +13,7 @@ from icdgen import codec
 from icdgen.icd.buses import CAN, I2C, UART
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects.links import with_outcome
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 
@@ -60,10 +61,9 @@ def _polls(
 ) -> Iterator[dict[str, Any]]:
     """Yield a telecommand that is not processed within its time limit."""
     assert facts.polled
-    polled, node = facts.polled.message, facts.node
-    values = codec.initial_values(node, polled)
-    values[facts.polled.id] = sent.telecommand_id or 0
-    data = codec.encode(node, polled, values)
+    polled, node = facts.polled, facts.node
+    initial = codec.encode(node, polled, codec.initial_values(node, polled))
+    data = with_outcome(link, initial, sent.telecommand_id or 0, False, 0, 0)
     state = i2c_write(link, polled.telemetry_id or 0, data, False)[1:].hex()
     yield {
         "at": 0,

@@ -39,7 +39,7 @@ fn main() -> ExitCode {
     let place = env::args().nth(1).unwrap_or_else(|| "4000".into());
     match run(&place) {
         Ok(()) => return ExitCode::SUCCESS,
-        // `reason` is what the ICD says of the code.
+        // `Failure::reason` gives the code as a value of its enumeration.
         Err(Failure::Refused { code, .. }) => eprintln!("refused, code {}", code.unwrap_or(0)),
         Err(Failure::Timeout { attempts, .. }) => eprintln!("no response, attempts: {attempts}"),
         Err(Failure::Port(error)) => eprintln!("{error}"),

@@ -112,11 +112,7 @@ LINK: link.Link[_Node] = link.Link(
     # Assumed, header: Two bytes are announced, the last being the error. That the
     #   first is the id of the telecommand, and that no other id heads the message,
     #   stood in a figure.
-    acknowledge=link.Acknowledge(
-        length=2,
-        id_at=0,
-        error_at=1,
-    ),
+    acknowledge_bytes=2,
     i2c_address=87,
     can=link.Can(
         node_address=1,
@@ -424,9 +420,7 @@ LINK: link.Link[_Node] = link.Link(
     bus_exchanges={
         "uart": link.BusExchanges(
             request=link.Exchange(
-                sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
-                ),
+                sources=(),
                 responses=(
                     link.Response(
                         telemetry=None,
@@ -436,19 +430,19 @@ LINK: link.Link[_Node] = link.Link(
             ),
             command=link.Exchange(
                 sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
+                    link.NumberPlace(0, 4, 0, 8, False),
                 ),
                 responses=(
                     link.Response(
                         telemetry=None,
                         verdict="nak",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
-                        status=link.NumberPlace(1, 1, 0, 8, False),
-                        reason=link.NumberPlace(1, 1, 0, 8, False),
+                        status=link.NumberPlace(1, 1, 0, 8, True),
+                        reason=link.NumberPlace(1, 1, 0, 8, True),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
+                        reasons=((0, "No Error"), (1, "Invalid TC"), (2, "Incorrect Length"), (3, "Incorrect Parameter"), (4, "CRC check failed")),
                         packet=0,
                     ),
                 ),
@@ -456,9 +450,7 @@ LINK: link.Link[_Node] = link.Link(
         ),
         "i2c": link.BusExchanges(
             request=link.Exchange(
-                sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
-                ),
+                sources=(),
                 responses=(
                     link.Response(
                         telemetry=None,
@@ -481,7 +473,7 @@ LINK: link.Link[_Node] = link.Link(
                         reason=link.NumberPlace(2, 1, 0, 8, True),
                         detail=link.NumberPlace(3, 1, 0, 8, True),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
+                        reasons=((0, "No Error"), (1, "Invalid TC"), (2, "Incorrect Length"), (3, "Incorrect Parameter"), (4, "CRC check failed")),
                     ),
                 ),
                 poll=link.ResponsePoll(240, link.NumberPlace(1, 1, 0, 1, True)),
@@ -490,7 +482,7 @@ LINK: link.Link[_Node] = link.Link(
         "can": link.BusExchanges(
             request=link.Exchange(
                 sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
+                    link.NumberPlace(0, 4, 0, 8, False),
                 ),
                 responses=(
                     link.Response(
@@ -501,7 +493,7 @@ LINK: link.Link[_Node] = link.Link(
                         telemetry=None,
                         verdict="nak",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
                         packet=2,
                     ),
@@ -509,14 +501,14 @@ LINK: link.Link[_Node] = link.Link(
             ),
             command=link.Exchange(
                 sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
+                    link.NumberPlace(0, 4, 0, 8, False),
                 ),
                 responses=(
                     link.Response(
                         telemetry=None,
                         verdict="ack",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
                         packet=0,
                     ),
@@ -524,7 +516,7 @@ LINK: link.Link[_Node] = link.Link(
                         telemetry=None,
                         verdict="nak",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
                         packet=1,
                     ),

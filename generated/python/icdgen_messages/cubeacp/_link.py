@@ -250,11 +250,7 @@ LINK: link.Link[_Node] = link.Link(
         escapes_id=True,
         ignores_other=False,
     ),
-    acknowledge=link.Acknowledge(
-        length=2,
-        id_at=0,
-        error_at=1,
-    ),
+    acknowledge_bytes=2,
     i2c_address=87,
     can=link.Can(
         node_address=1,
@@ -684,9 +680,7 @@ LINK: link.Link[_Node] = link.Link(
     bus_exchanges={
         "uart": link.BusExchanges(
             request=link.Exchange(
-                sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
-                ),
+                sources=(),
                 responses=(
                     link.Response(
                         telemetry=None,
@@ -696,19 +690,19 @@ LINK: link.Link[_Node] = link.Link(
             ),
             command=link.Exchange(
                 sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
+                    link.NumberPlace(0, 4, 0, 8, False),
                 ),
                 responses=(
                     link.Response(
                         telemetry=None,
                         verdict="nak",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
-                        status=link.NumberPlace(1, 1, 0, 8, False),
-                        reason=link.NumberPlace(1, 1, 0, 8, False),
+                        status=link.NumberPlace(1, 1, 0, 8, True),
+                        reason=link.NumberPlace(1, 1, 0, 8, True),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
+                        reasons=((0, "No Error"), (1, "Invalid TC"), (2, "Incorrect Length"), (3, "Incorrect Parameter"), (4, "CRC check failed")),
                         packet=0,
                     ),
                 ),
@@ -716,9 +710,7 @@ LINK: link.Link[_Node] = link.Link(
         ),
         "i2c": link.BusExchanges(
             request=link.Exchange(
-                sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
-                ),
+                sources=(),
                 responses=(
                     link.Response(
                         telemetry=None,
@@ -741,7 +733,7 @@ LINK: link.Link[_Node] = link.Link(
                         reason=link.NumberPlace(2, 1, 0, 8, True),
                         detail=link.NumberPlace(3, 1, 0, 8, True),
                         meanings=((0, "ack"), (4, "again")),
-                        reasons=((1, "unknown_id"), (2, "length"), (3, "value"), (4, "checksum")),
+                        reasons=((0, "No Error"), (1, "Invalid TC"), (2, "Incorrect Length"), (3, "Incorrect Parameter"), (4, "CRC check failed")),
                     ),
                 ),
                 poll=link.ResponsePoll(240, link.NumberPlace(1, 1, 0, 1, True)),
@@ -750,7 +742,7 @@ LINK: link.Link[_Node] = link.Link(
         "can": link.BusExchanges(
             request=link.Exchange(
                 sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
+                    link.NumberPlace(0, 4, 0, 8, False),
                 ),
                 responses=(
                     link.Response(
@@ -761,7 +753,7 @@ LINK: link.Link[_Node] = link.Link(
                         telemetry=None,
                         verdict="nak",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
                         packet=2,
                     ),
@@ -769,14 +761,14 @@ LINK: link.Link[_Node] = link.Link(
             ),
             command=link.Exchange(
                 sources=(
-                    link.NumberPlace(0, 4, 0, 32, False),
+                    link.NumberPlace(0, 4, 0, 8, False),
                 ),
                 responses=(
                     link.Response(
                         telemetry=None,
                         verdict="ack",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
                         packet=0,
                     ),
@@ -784,7 +776,7 @@ LINK: link.Link[_Node] = link.Link(
                         telemetry=None,
                         verdict="nak",
                         echoes=(
-                            link.Echo(link.NumberPlace(0, 1, 0, 8, False), 0),
+                            link.Echo(link.NumberPlace(0, 1, 0, 8, True), 0),
                         ),
                         packet=1,
                     ),

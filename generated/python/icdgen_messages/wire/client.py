@@ -300,9 +300,10 @@ class Client(Generic[N]):
         if verdict == "busy":
             return [Busy(id, slot.attempts, code, reason, handle)]
         detail = response.detail.of(content) if response.detail else None
-        return [
-            Refused(id, slot.attempts, code, reason, detail, data, type, handle),
-        ]
+        # The packets of framed links have a checksum: no refusal is damaged.
+        is_damaged = bool(self.bus and response.reasons) and reason is None
+        ended = id, slot.attempts, code, reason, detail, data, type, handle, is_damaged
+        return [Refused(*ended)]
 
     def _begin(
         self,

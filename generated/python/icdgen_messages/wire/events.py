@@ -52,10 +52,10 @@ class Done(Generic[R_co]):
 class Refused:
     """The node rejected a request.
 
-    ``reason`` is the role of the code in the ICD: ``unknown_id``, ``length``,
-    ``value`` or ``checksum``; on a framed link, the member of the enumeration of the
-    code. CAN has no code. Only I2C reports the parameter. ``data`` is that of the
-    response, of the class ``type`` if it is a message.
+    ``reason`` is the name of the code in its enumeration. CAN has no code. Only I2C
+    reports the parameter. ``data`` is that of the response, of the class ``type`` if it
+    is a message. ``may_be_damaged``: on UART and I2C, whether the enumeration does not
+    have the code.
     """
 
     id: int
@@ -66,11 +66,7 @@ class Refused:
     data: bytes = field(default=b"", repr=False)
     type: Optional[MessageClass] = field(default=None, repr=False)
     handle: int = field(default=0, compare=False, repr=False)
-
-    @property
-    def may_be_damaged(self) -> bool:
-        """Whether the ICD does not define the code."""
-        return self.code is not None and self.reason is None
+    may_be_damaged: bool = field(default=False, compare=False, repr=False)
 
     @property
     def message(self) -> Optional[Message]:

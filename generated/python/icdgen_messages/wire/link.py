@@ -119,17 +119,6 @@ class Framing(NamedTuple):
     error."""
 
 
-class Acknowledge(NamedTuple):
-    """The acknowledge on the UART. Offsets include the first byte of the message."""
-
-    length: int
-    """Length of the message."""
-    id_at: int
-    """Offset of the id of the telecommand."""
-    error_at: int
-    """Offset of the error code."""
-
-
 class Checksum(NamedTuple):
     """The optional checksum of telecommands and frames."""
 
@@ -296,7 +285,8 @@ class Facts(NamedTuple):
     TELECOMMANDS: Messages
     TELEMETRY: Messages
     framing: Optional[Framing] = None
-    acknowledge: Optional[Acknowledge] = None
+    acknowledge_bytes: Optional[int] = None
+    """Length of the acknowledge on the UART."""
     i2c_address: Optional[int] = None
     i2c_repeated_start: bool = True
     """Whether a read may follow its write without a stop."""

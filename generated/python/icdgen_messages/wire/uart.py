@@ -62,7 +62,7 @@ def uart_kind(link: Link, message: bytes) -> Kind:
         return "log" if len(message) == length else "other"
     if link.telemetry_ids[0] <= id <= link.telemetry_ids[1]:
         return "reply"
-    if link.acknowledge and len(message) == link.acknowledge.length:
+    if len(message) == link.acknowledge_bytes:
         return "acknowledge"
     if id in link.unsolicited:
         length = 1 + link.frames[link.unsolicited[id]]

@@ -62,6 +62,14 @@ pub use crate::wire::links::bootloader::{LINK, LONGEST};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
+impl crate::wire::Refusals for Node {
+    type Reason = crate::common::enums::TcErrorReason;
+
+    fn reason(code: u32) -> Self::Reason {
+        crate::common::enums::TcErrorReason::from(u8::try_from(code).unwrap_or(u8::MAX))
+    }
+}
+
 /// Type that the node reports.
 pub const NODE_TYPE: u8 = 110;
 /// Version of the interface described here.

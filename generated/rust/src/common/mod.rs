@@ -158,6 +158,14 @@ pub use crate::wire::links::common::{LINK, LONGEST};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
+impl crate::wire::Refusals for Node {
+    type Reason = enums::TcErrorReason;
+
+    fn reason(code: u32) -> Self::Reason {
+        enums::TcErrorReason::from(u8::try_from(code).unwrap_or(u8::MAX))
+    }
+}
+
 /// Any telecommand message of the node.
 ///
 /// ```

@@ -23,7 +23,7 @@ pub trait TelemetryOf<T>: Telemetry {
 /// Telecommand of node `T` or of a node that it includes. Implemented by the generated code.
 pub trait TelecommandOf<T>: Telecommand {}
 
-/// Node whose refusals on a link with header and trailer have reasons of one enumeration.
+/// Node whose refusals have reasons of one enumeration.
 /// Implemented by the generated code for the type `Node` of the module of the node.
 pub trait Refusals {
     /// The enumeration.

@@ -3,7 +3,7 @@
 //! Blocking client over a port that implements `Read` and `Write`. Feature `std`.
 
 use super::client::{LineBuffer, Transport};
-use super::link::{Reason, Settings};
+use super::link::Settings;
 use super::procedure::{End, Procedure, Sink};
 use super::stream::Values;
 use super::{
@@ -38,10 +38,8 @@ pub enum Failure {
     Refused {
         /// The id.
         id: u32,
-        /// The error code.
+        /// The error code; see [`Failure::reason`].
         code: Option<u32>,
-        /// UART: meaning of the code in the ICD. For framed links see [`Failure::reason`].
-        reason: Option<Reason>,
     },
     /// The device was busy each time, so the request was not executed.
     Busy {
@@ -98,10 +96,9 @@ impl fmt::Display for Failure {
         match self {
             Self::Port(error) => write!(out, "the port failed: {error}"),
             Self::Wire(error) => error.fmt(out),
-            Self::Refused { id, code, reason } => {
+            Self::Refused { id, code } => {
                 write!(out, "request {id} is refused")?;
-                code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;
-                reason.map_or(Ok(()), |reason| write!(out, ": {reason:?}"))
+                code.map_or(Ok(()), |code| write!(out, ", code {code}"))
             }
             Self::Busy { id, attempts, .. } => {
                 let times = if *attempts == 1 { "" } else { "s" };
@@ -427,9 +424,7 @@ impl Ending {
         let outcome = match *event {
             Event::Done { data, .. } => Ok((Outcome::Done, data.to_vec())),
             Event::Sent { .. } => Ok((Outcome::Sent, Vec::new())),
-            Event::Refused {
-                id, code, reason, ..
-            } => Err(Failure::Refused { id, code, reason }),
+            Event::Refused { id, code, .. } => Err(Failure::Refused { id, code }),
             Event::Busy {
                 id, attempts, code, ..
             } => Err(Failure::Busy { id, attempts, code }),

@@ -183,7 +183,7 @@ class Exchanges(Generic[N]):
                         continue
                     if isinstance(event, Refused):
                         refused = event
-                        if event.may_be_damaged and client.bus:
+                        if event.may_be_damaged:
                             self._report(event)
                     procedure.event(self._now(), event)
                 events = []

@@ -202,8 +202,7 @@ class Procedure:
         elif isinstance(event, (Done, Sent, Busy, Timeout)):
             self._process_outcome(event)
         elif isinstance(event, Refused):
-            # The frames of framed links have a checksum: no refusal is damaged.
-            if self.link.stream or not event.may_be_damaged:
+            if not event.may_be_damaged:
                 self._process_outcome(event)
             elif (
                 self._request.repeat and self._repetitions < self.link.settings.retries

@@ -1,6 +1,5 @@
 //! Events of a client.
 
-use super::link::Reason;
 use super::stream::Values;
 use super::{Direction, Refusals, TelemetryOf};
 use core::fmt;
@@ -61,11 +60,10 @@ pub enum Event<'a> {
         id: u32,
         /// Number of times the request was sent.
         attempts: u16,
-        /// The reason, if the response has one.
+        /// The reason, if the response has one; see [`NodeEvent::reason`].
         code: Option<u32>,
-        /// UART and I2C: meaning of the code in the ICD; None if it has none. For the reasons of
-        /// framed links see [`NodeEvent::reason`].
-        reason: Option<Reason>,
+        /// UART and I2C: whether the enumeration of the codes does not have the code.
+        may_be_damaged: bool,
         /// Number that says more: on I2C the index of the invalid parameter.
         detail: Option<u32>,
         /// Id of the response; 0 for a packet without id.

@@ -42,7 +42,7 @@ pub use self::crc::{Crc, Table};
 pub use self::error::Error;
 pub use self::event::{Event, NodeEvent};
 pub use self::identity::{identify, Identity};
-pub use self::link::{Bus, Link, Reason, Settings};
+pub use self::link::{Bus, Link, Settings};
 pub use self::message::{Linked, NodeLink, Refusals, TelecommandOf, TelemetryOf};
 #[cfg(feature = "embedded-io")]
 pub use self::port::PortError;

@@ -327,10 +327,8 @@ pub fn kind(link: &Link, message: &[u8]) -> Kind {
     if link.telemetry_ids.contains(id) {
         return Kind::Reply;
     }
-    if let Some(form) = &link.acknowledge {
-        if message.len() == form.length {
-            return Kind::Acknowledge;
-        }
+    if link.acknowledge_bytes == Some(message.len()) {
+        return Kind::Acknowledge;
     }
     match unsolicited(link, id) {
         Some(form) if message.len() == 1 + form.length => Kind::Packet,

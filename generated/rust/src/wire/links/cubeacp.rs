@@ -254,13 +254,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         in_flight: 1,
         progress_for_ms: 60_000,
     },
-    errors: &[
-        (0, link::Reason::NoError),
-        (1, link::Reason::UnknownId),
-        (2, link::Reason::Length),
-        (3, link::Reason::Value),
-        (4, link::Reason::Checksum),
-    ],
+    reasons: &[0, 1, 2, 3, 4],
     framing: Some(link::Framing {
         escape: 0x1f,
         start: 0x7f,
@@ -274,11 +268,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
     }),
     // Assumed. Two bytes are announced, the last being the error. That the first is the id of the
     // telecommand, and that no other id heads the message, stood in a figure.
-    acknowledge: Some(link::Acknowledge {
-        length: 2,
-        id_at: 0,
-        error_at: 1,
-    }),
+    acknowledge_bytes: Some(2),
     i2c_address: Some(87),
     i2c_repeated_start: true,
     can: Some(link::Can {
@@ -441,16 +431,16 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
     exchanges: link::PerBus {
         uart: Some(link::BusExchanges {
             command: Some(link::Exchange {
-                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 8, little: false }],
                 in_header: 0,
                 responses: &[
                     link::Response {
                         kind: link::ResponseKind::Packet(0),
                         verdict: link::Verdict::Nak,
-                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
-                        status: Some(link::NumberPlace { at: 1, size: 1, shift: 0, bits: 8, little: false }),
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: true }, source: 0 }],
+                        status: Some(link::NumberPlace { at: 1, size: 1, shift: 0, bits: 8, little: true }),
                         meanings: &[(0, link::Verdict::Ack), (4, link::Verdict::Again)],
-                        reason: Some(link::NumberPlace { at: 1, size: 1, shift: 0, bits: 8, little: false }),
+                        reason: Some(link::NumberPlace { at: 1, size: 1, shift: 0, bits: 8, little: true }),
                         detail: None,
                     },
                 ],
@@ -458,7 +448,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
                 poll: None,
             }),
             request: link::Exchange {
-                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                sources: &[],
                 in_header: 0,
                 responses: &[
                     link::Response {
@@ -494,7 +484,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
                 poll: Some(link::Poll { telemetry: 240, until: link::NumberPlace { at: 1, size: 1, shift: 0, bits: 1, little: true } }),
             }),
             request: link::Exchange {
-                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                sources: &[],
                 in_header: 0,
                 responses: &[
                     link::Response {
@@ -513,13 +503,13 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         }),
         can: Some(link::BusExchanges {
             command: Some(link::Exchange {
-                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 8, little: false }],
                 in_header: 0,
                 responses: &[
                     link::Response {
                         kind: link::ResponseKind::Packet(0),
                         verdict: link::Verdict::Ack,
-                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: true }, source: 0 }],
                         status: None,
                         meanings: &[],
                         reason: None,
@@ -528,7 +518,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
                     link::Response {
                         kind: link::ResponseKind::Packet(1),
                         verdict: link::Verdict::Nak,
-                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: true }, source: 0 }],
                         status: None,
                         meanings: &[],
                         reason: None,
@@ -539,7 +529,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
                 poll: None,
             }),
             request: link::Exchange {
-                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 32, little: false }],
+                sources: &[link::NumberPlace { at: 0, size: 4, shift: 0, bits: 8, little: false }],
                 in_header: 0,
                 responses: &[
                     link::Response {
@@ -554,7 +544,7 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
                     link::Response {
                         kind: link::ResponseKind::Packet(2),
                         verdict: link::Verdict::Nak,
-                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: false }, source: 0 }],
+                        echoes: &[link::Echo { place: link::NumberPlace { at: 0, size: 1, shift: 0, bits: 8, little: true }, source: 0 }],
                         status: None,
                         meanings: &[],
                         reason: None,

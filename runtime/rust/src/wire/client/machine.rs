@@ -563,7 +563,9 @@ impl<B: Buffer, const R: usize> Machine<B, R> {
                 id,
                 attempts,
                 code,
-                reason: code.and_then(|code| self.link.reason(code)),
+                may_be_damaged: code.map_or(false, |code| {
+                    !self.link.reasons.is_empty() && !self.link.reasons.contains(&code)
+                }),
                 detail: response.detail.map(number),
                 reply,
                 packet,

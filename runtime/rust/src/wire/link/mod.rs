@@ -41,12 +41,12 @@ pub struct Link {
     pub telemetry: &'static [Form],
     /// Default timeouts and retries of a client.
     pub client: Settings,
-    /// The error codes.
-    pub errors: &'static [(u32, Reason)],
+    /// Codes of refusals on UART and I2C that the enumeration of the codes has.
+    pub reasons: &'static [u32],
     /// How messages are delimited on the UART.
     pub framing: Option<Framing>,
-    /// The acknowledge on the UART.
-    pub acknowledge: Option<Acknowledge>,
+    /// Length of the acknowledge on the UART.
+    pub acknowledge_bytes: Option<usize>,
     /// The address on the I2C bus, of 7 bits.
     pub i2c_address: Option<u8>,
     /// Whether a read may follow its write on the I2C bus without a stop.
@@ -90,13 +90,6 @@ impl Link {
     #[must_use]
     pub fn telemetry(&self, id: u8) -> Option<&'static Form> {
         self.telemetry.iter().find(|form| form.id == id)
-    }
-
-    /// Return the meaning of an error code.
-    #[must_use]
-    pub fn reason(&self, code: u32) -> Option<Reason> {
-        let found = self.errors.iter().find(|(known, _)| *known == code);
-        found.map(|(_, reason)| *reason)
     }
 }
 
@@ -189,22 +182,6 @@ pub struct Settings {
     pub progress_for_ms: u32,
 }
 
-/// What an error code means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Reason {
-    /// No error.
-    NoError,
-    /// The node does not know the id.
-    UnknownId,
-    /// The message has a wrong length.
-    Length,
-    /// A value is not allowed.
-    Value,
-    /// Wrong checksum.
-    Checksum,
-}
-
 /// How messages are delimited on the UART. The escape byte comes before each of the other three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Framing {
@@ -220,17 +197,6 @@ pub struct Framing {
     pub escapes_id: bool,
     /// Whether an escape byte and an unknown byte are skipped; otherwise it is an error.
     pub ignores_other: bool,
-}
-
-/// The acknowledge as a message on the UART, which counts from its first byte.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Acknowledge {
-    /// Length of the message.
-    pub length: usize,
-    /// Offset of the id of the telecommand.
-    pub id_at: usize,
-    /// Offset of the error code.
-    pub error_at: usize,
 }
 
 /// Parameters of a CRC of up to 32 bits in the notation of the usual catalogues.

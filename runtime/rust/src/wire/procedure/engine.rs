@@ -339,9 +339,8 @@ impl<'a> Engine<'a> {
                 }
                 Ok(())
             }
-            Event::Refused { code, reason, .. } => {
-                // Packets of a framed link have a checksum: no refusal is damaged.
-                is_damaged = self.bus.is_some() && code.is_some() && reason.is_none();
+            Event::Refused { may_be_damaged, .. } => {
+                is_damaged = may_be_damaged;
                 Err(if is_damaged {
                     End::Timeout
                 } else {

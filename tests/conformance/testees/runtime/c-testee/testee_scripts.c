@@ -6,7 +6,6 @@
 
 static void on_event(void *context, const icd_event_t *event)
 {
-    static const char *const reasons[] = {"", "none", "unknown_id", "length", "value", "checksum"};
     const icd_event_kind_t kind = event->kind;
     const bool outcome = kind >= ICD_EVENT_DONE && kind <= ICD_EVENT_TIMEOUT;
     (void)context;
@@ -24,8 +23,8 @@ static void on_event(void *context, const icd_event_t *event)
     if (kind == ICD_EVENT_REFUSED) {
         put_known("code", event->has_code ? (int64_t)event->code : -1);
         put_known("parameter", event->has_detail ? (int64_t)event->detail : -1);
-        if (event->reason != ICD_REASON_UNKNOWN) {
-            put_word("reason", reasons[event->reason]);
+        if (event->may_be_damaged) {
+            put_number("may_be_damaged", 1u);
         }
     }
 }
@@ -250,10 +249,7 @@ static void take_event(icd_procedure_t *procedure, uint32_t now, const char *nam
         octets = i < 2u ? next_octets() : nothing;
         event.data = octets.data;
         event.length = octets.length;
-        if (is_word(name, "damaged")) {
-            event.has_code = true;
-            event.code = 255;
-        }
+        event.may_be_damaged = is_word(name, "damaged");
         icd_procedure_event(procedure, now, &event);
     }
 }

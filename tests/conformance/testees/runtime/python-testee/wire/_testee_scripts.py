@@ -156,9 +156,12 @@ def _shown(event: Event, tested: Client) -> str:
         return row("message", id=event.id, bytes=event.data, **event.values)
     hidden = ["type", "log", "handle", "values"] + ["reply"] * (not is_framed)
     if isinstance(event, (Refused, Busy)):
-        hidden += ["reason", "parameter", "data"] if is_framed else ["data"]
+        hidden += ["reason", "data"]
+        hidden += ["parameter"] if is_framed else []
     known = [one.name for one in fields(event) if one.name not in hidden]
     facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
+    if "may_be_damaged" in facts:
+        facts["may_be_damaged"] = 1 if facts["may_be_damaged"] else None
     return row(type(event).__name__.lower(), **facts)
 
 
@@ -210,5 +213,5 @@ def _told(name: str, words: Words) -> Optional[Event]:
     if name == "arrived":
         return Arrived(number(words), octets(words), {})
     if name == "damaged":
-        return Refused(0, 1, 255)
+        return Refused(0, 1, may_be_damaged=True)
     return _OUTCOMES[name](0, 1) if name in _OUTCOMES else None

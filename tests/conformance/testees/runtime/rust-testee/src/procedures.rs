@@ -5,7 +5,7 @@ use crate::nodes;
 use crate::wire::bus;
 use icd::wire::procedure::{End, Procedure, Sink};
 use icd::wire::stream::Values;
-use icd::wire::{Bus, Direction, Event, Reason};
+use icd::wire::{Bus, Direction, Event};
 use std::fmt::Write;
 
 /// What a procedure delivered.
@@ -108,7 +108,7 @@ fn step<S: Sink>(
             id,
             attempts,
             code: Some(1),
-            reason: Some(Reason::Value).filter(|_| name == "refused"),
+            may_be_damaged: name == "damaged",
             detail: None,
             reply: 0,
             packet: None,

@@ -6,7 +6,7 @@ use crate::stream::{chosen, SEQUENCES};
 use crate::wire::{bus, explained, packet, shown_packet};
 use icd::wire::{
     can, i2c, stream, uart, Bus, ByteLine, Client, Direction, Error, Event, Line, Link, NodeEvent,
-    Reason, Request, Settings,
+    Request, Settings,
 };
 use std::fmt::Write;
 
@@ -281,19 +281,17 @@ fn shown(event: &Event<'_>, bus: Option<Bus>) -> String {
             id,
             attempts,
             code,
-            reason,
+            may_be_damaged,
             detail,
             ..
         } => {
             let (code, detail) = (known("code", code), known("parameter", detail));
-            let reason = reason.map_or("", |reason| match reason {
-                Reason::NoError => " reason=none",
-                Reason::UnknownId => " reason=unknown_id",
-                Reason::Length => " reason=length",
-                Reason::Value => " reason=value",
-                Reason::Checksum => " reason=checksum",
-            });
-            format!(" refused id={id} attempts={attempts}{code}{reason}{detail}")
+            let damaged = if may_be_damaged {
+                " may_be_damaged=1"
+            } else {
+                ""
+            };
+            format!(" refused id={id} attempts={attempts}{code}{detail}{damaged}")
         }
         Event::Busy {
             id, attempts, code, ..
