@@ -10,7 +10,9 @@ sends, receives and decodes it. It is compiled once with its own functions and t
 and once with ICDGEN_SHARED, where `icdgen_wire.c` and `link.c` contain them. Complete
 programs of this kind follow for each bus, linked with --gc-sections, with the memory
 functions of the C library and without start-up code: with the tables of all messages,
-with lookup tables of checksums too, and with only the requested message.
+with lookup tables of checksums too, and with only the requested message; each as one
+unit, and with ICDGEN_SHARED. The last lines are a client of a framed link, which sends
+a request each second.
 """
 
 from __future__ import annotations
@@ -150,6 +152,7 @@ CHOSEN = (
     "-DICDGEN_NO_LOGS",
 )
 WAYS = {"header only": [], "ICDGEN_SHARED": ["-DICDGEN_SHARED"]}
+LIBRARY = {"memcpy", "memmove", "memset", "memcmp", "strlen"}
 
 
 def text_bytes(cc: str, folder: Path, source: str, *options: str) -> int:
@@ -172,20 +175,55 @@ def text_bytes(cc: str, folder: Path, source: str, *options: str) -> int:
         ],
         check=True,
     )
-    size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
-    output = subprocess.run(
-        [size, str(folder / "unit.o")], check=True, capture_output=True, text=True
-    ).stdout
-    return int(output.splitlines()[1].split()[0])
+    return int(tool(cc, "size", str(folder / "unit.o")).splitlines()[1].split()[0])
 
 
-def linked_bytes(cc: str, folder: Path, bus: str, *options: str) -> int:
-    """Return the bytes of code and constants of a linked program with a client on a
-    bus.
+def linked(cc: str, folder: Path, program: str, shared: str, *options: str) -> str:
+    """Return the bytes of code and constants of a linked program, and how many of them
+    are functions of the C library. `shared`: folder with `link.c`; empty: one unit.
     """
+    flags = [
+        "-std=c99",
+        "-Os",
+        "-ffunction-sections",
+        "-fdata-sections",
+        f"-I{folder}",
+        *options,
+        *(["-DICDGEN_SHARED"] if shared else []),
+    ]
+    target = (
+        ["-mcpu=cortex-m4", "-mthumb", "-nostartfiles"]
+        if "arm" in cc
+        else ["-nostartfiles", "-static"]
+    )
+    names = [program, *(["icdgen_wire.c", f"{shared}/link.c"] if shared else [])]
+    sources = [str(folder / name) for name in names]
+    out = str(folder / "program.elf")
+    subprocess.run(
+        [cc, *flags, *target, "-Wl,--gc-sections,-e,program", *sources, "-o", out],
+        check=True,
+    )
+    symbols = tool(cc, "nm", "-S", out).splitlines()
+    library = sum(
+        int(row.split()[1], 16) for row in symbols if row.split()[-1] in LIBRARY
+    )
+    text = int(tool(cc, "size", out).splitlines()[1].split()[0])
+    return f"{text} bytes, {library} of them functions of the C library"
+
+
+def tool(cc: str, name: str, *arguments: str) -> str:
+    """Return the output of a tool that belongs to a compiler."""
+    path = cc.removesuffix("gcc") + name if cc.endswith("-gcc") else name
+    return subprocess.run(
+        [path, *arguments], check=True, capture_output=True, text=True
+    ).stdout
+
+
+def bus_program(bus: str) -> str:
+    """Return a program with a client on a bus."""
     declared, output, used = OUTPUT[bus]
     address = "1, " if bus == "can" else ""
-    text = PROGRAM.format(
+    return PROGRAM.format(
         bus=bus,
         declared=declared,
         output=output,
@@ -193,34 +231,6 @@ def linked_bytes(cc: str, folder: Path, bus: str, *options: str) -> int:
         input=INPUT[bus],
         address=address,
     )
-    (folder / "program.c").write_text(text, encoding="utf-8")
-    flags = [
-        "-std=c99",
-        "-Os",
-        "-ffunction-sections",
-        "-fdata-sections",
-        "-DICDGEN_SHARED",
-        f"-I{folder}",
-        *options,
-    ]
-    target = (
-        ["-mcpu=cortex-m4", "-mthumb", "-nostartfiles"]
-        if "arm" in cc
-        else ["-nostartfiles", "-static"]
-    )
-    sources = [
-        str(folder / name) for name in ("program.c", "icdgen_wire.c", "cubeacp/link.c")
-    ]
-    out = str(folder / "program.elf")
-    subprocess.run(
-        [cc, *flags, *target, "-Wl,--gc-sections,-e,program", *sources, "-o", out],
-        check=True,
-    )
-    size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
-    size_output = subprocess.run(
-        [size, out], check=True, capture_output=True, text=True
-    ).stdout
-    return int(size_output.splitlines()[1].split()[0])
 
 
 def generate(icd: Path, folder: Path) -> None:
@@ -248,20 +258,20 @@ def main() -> None:
             if (folder / source).exists():
                 print(f"{source}, once: {text_bytes(cc, folder, source)} bytes")
         for bus in OUTPUT:
-            for options in (
-                (),
-                ("-DICDGEN_TABLES",),
-                CHOSEN,
-            ):
-                print(
-                    f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes"
-                )
+            (folder / "program.c").write_text(bus_program(bus), encoding="utf-8")
+            for options in ((), ("-DICDGEN_TABLES",), CHOSEN):
+                for way, shared in (("one unit", ""), ("ICDGEN_SHARED", "cubeacp")):
+                    size = linked(cc, folder, "program.c", shared, *options)
+                    print(f"a program on {bus}, {way} {' '.join(options)}: {size}")
         framed = folder / "framed"
         generate(BENCH.parent / "examples" / "links" / "ubx.yaml", framed)
         (framed / "program.c").write_text(FRAMED, encoding="utf-8")
         for option in ("-UICDGEN_TABLES", "-DICDGEN_TABLES"):
-            size = text_bytes(cc, framed, "program.c", option)
-            print(f"a client of a framed link {option}: {size} bytes")
+            bytes = text_bytes(cc, framed, "program.c", option)
+            print(f"a client of a framed link {option}: {bytes} bytes")
+        for way, shared in (("one unit", ""), ("ICDGEN_SHARED", "receiver")):
+            size = linked(cc, framed, "program.c", shared)
+            print(f"a program on a framed link, {way}: {size}")
 
 
 if __name__ == "__main__":

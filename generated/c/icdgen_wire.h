@@ -573,7 +573,7 @@ typedef struct {
      ICDGEN_BIT(ICD_BUS_UART))
 
 /* Holds the number of data bytes that any length field says. */
-typedef int32_t icdgen_length_t;
+typedef int_fast32_t icdgen_length_t;
 /* clang-format on */
 
 /* ---- description of the procedures of a node --------------------------------------------------------------------- */

@@ -116,7 +116,8 @@ def length_type(links: Iterable[LinkDescription]) -> str:
         default=0,
     )
     longest = max((stream.longest for stream in streams), default=0)
-    return "int32_t" if max(most, longest) <= MOST_SIGNED else "int64_t"
+    narrow = max(most, longest) <= MOST_SIGNED
+    return "int_fast32_t" if narrow else "int64_t"
 
 
 def _kinds(name: str, prefix: str, kinds: Iterable[str], type: str) -> Kinds:
