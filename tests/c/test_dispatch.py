@@ -113,7 +113,7 @@ def test_every_id_of_every_node_leads_to_its_message(tmp_path):
     program = harness.compile(
         source,
         "-std=c99",
-        "-O1",
+        "-O0",
         *harness.SANITIZERS,
         f"-I{tmp_path}",
         output=tmp_path / "d",
