@@ -7,8 +7,7 @@ import textwrap
 
 from icdgen.link_calls import type_name
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.places import PLACES
-from icdgen.protocol.sections import Settings
+from icdgen.protocol.sections import SECTIONS, Settings
 
 _TYPES = {
     Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
@@ -17,7 +16,7 @@ _TYPES = {
 
 def written(text: str) -> str:
     """Return the module with the members of all facts. Other members follow them."""
-    for part in dict.fromkeys(part for _, part in PLACES):
+    for part in SECTIONS:
         text = _with_facts(text, part)
     return text
 

@@ -7,7 +7,7 @@ import re
 from icdgen.backends.rust.facts import member_name, type_name
 from icdgen.backends.rust.text import doc
 from icdgen.protocol.declared import BYTE, Fact, Kind, facts_of
-from icdgen.protocol.places import PLACES
+from icdgen.protocol.sections import SECTIONS
 
 _TYPES = {
     Kind.SIZE: "usize", Kind.TIME: "u32", Kind.FLAG: "bool", Kind.BUSES: "PerBus<bool>", Kind.SPAN: "Span",
@@ -17,7 +17,7 @@ _FIELD = re.compile(r"(?:    ///.*\n)*    pub (\w+): .*,\n")
 
 def written(text: str) -> str:
     """Return the module with the fields of all facts. Other fields follow them."""
-    for part in dict.fromkeys(part for _, part in PLACES):
+    for part in SECTIONS:
         start = f"pub struct {type_name(part)} {{\n"
         before, separator, following = text.partition(start)
         if separator:

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.places import PLACES
+from icdgen.protocol.sections import SECTIONS
 
 Schema = dict[str, Any]
 _LAST = "assumptions"  # last key of a section; new keys are inserted before it
@@ -15,7 +15,7 @@ _LAST = "assumptions"  # last key of a section; new keys are inserted before it
 def written(text: str) -> str:
     """Return the schema with the keys of all facts; other keys are unchanged."""
     schema = json.loads(text)
-    for path, part in PLACES:
+    for part, path in SECTIONS.items():
         for fact in facts_of(part):
             if fact.key and fact.kind is not Kind.BUSES:
                 *sections, key = f"{path}.{fact.key}".split(".")

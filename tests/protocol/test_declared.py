@@ -10,10 +10,10 @@ import pytest
 
 from icdgen.icd import schema
 from icdgen.protocol.declared import Kind, facts_of, flag, number, octets, read, time
-from icdgen.protocol.places import PLACES
+from icdgen.protocol.sections import SECTIONS
 from scripts.protocol_facts import ROOT, out_of_date
 
-FACTS = [(path, fact) for path, part in PLACES for fact in facts_of(part)]
+FACTS = [(path, fact) for part, path in SECTIONS.items() for fact in facts_of(part)]
 
 
 def twice(known):

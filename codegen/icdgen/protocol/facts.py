@@ -18,6 +18,7 @@ from icdgen.protocol.packet_formats import PacketFormat, Stream
 from icdgen.protocol.procedures import Procedure, VerifyChecksum
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
+    SECTIONS,
     Can,
     Checksum,
     ChecksumAlgorithm,
@@ -118,14 +119,12 @@ class Facts:
     @property
     def parts(self) -> dict[str, object]:
         """Described parts with declared facts, by their sections of the ICD."""
-        parts: dict[str, object | None] = {
-            "link.client": self.client, "link.buses.uart.framing": self.framing,
-            "link.buses.can": self.can,
-            "link.buses.can.segments": self.can and self.can.extended, "link.packets": self.checksum,
-            "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
-            "index_file": self.index,
-        }  # fmt: skip
-        return {section: part for section, part in parts.items() if part is not None}
+        segments = self.can and self.can.extended
+        parts = (
+            *(self.client, self.framing, self.can, segments, self.checksum),
+            *(self.mask, self.log_file, self.log_message, self.index),
+        )
+        return {SECTIONS[type(part)]: part for part in parts if part is not None}
 
     @property
     def owners(self) -> list[str]:
@@ -202,7 +201,7 @@ def of(icd: Icd, node: Node) -> Facts:
     """Return the protocol facts of a node."""
     reader = Reader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
-    framing = reader.part("link.buses.uart.framing", Framing)
+    framing = reader.part(Framing)
     address, can = reader.i2c_address(), reader.can()
     described = {UART: framing, I2C: address, CAN: can}
     exchanges = reader.bus_exchanges(
@@ -214,7 +213,7 @@ def of(icd: Icd, node: Node) -> Facts:
         telemetry_ids=reader.telemetry_ids(),
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
-        client=reader.part("link.client", Settings) or Settings(),
+        client=reader.part(Settings) or Settings(),
         framing=framing,
         acknowledge=reader.acknowledge(),
         i2c_address=address,

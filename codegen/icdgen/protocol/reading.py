@@ -42,6 +42,7 @@ from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.responding import Sources, bus_exchanges
 from icdgen.protocol.sections import (
     CAN_WITH_DATA,
+    SECTIONS,
     Can,
     CanPart,
     Checksum,
@@ -99,12 +100,12 @@ class Reader:
         """Return the section of a bus, or a section in it; empty if it does not exist."""
         return self.section("link", "buses", *path)
 
-    def part(self, path: str, part: type[T], **computed: object) -> T | None:
+    def part(self, part: type[T], **computed: object) -> T | None:
         """Return a part as declared; None if the ICD does not describe it.
 
         ``computed``: values that follow from other keys.
         """
-        section = self.section(*path.split("."))
+        section = self.section(*SECTIONS[part].split("."))
         result: T | None = read(part, section, **computed) if section else None
         return result
 
@@ -197,7 +198,6 @@ class Reader:
             parts[part.get("role", part["name"])] = CanPart(part["bits"], shift)
         segments = {kind: bus.segment_of(packets.get(kind)) for kind in CAN_WITH_DATA}
         return self.part(
-            "link.buses.can",
             Can,
             parts=parts,
             types={kind: packet.section["type"] for kind, packet in packets.items()},
@@ -206,7 +206,7 @@ class Reader:
                 for kind, packet in segments.items()
                 if packet is not None
             },
-            extended=self.part("link.buses.can.segments", Extended),
+            extended=self.part(Extended),
         )
 
     @cached_property
@@ -268,7 +268,7 @@ class Reader:
                 bits[row.bit] = LogBit(
                     row.bit, row.id, length, frame.name if frame else row.name or None
                 )
-        return self.part("log_mask", LogMask, bits=bits)
+        return self.part(LogMask, bits=bits)
 
     def log_file(self) -> LogFile | None:
         given = self.section("telemetry_log")
@@ -282,7 +282,6 @@ class Reader:
             for role in ("seconds", "milliseconds")
         }
         return self.part(
-            "telemetry_log",
             LogFile,
             mask_at=header["mask"]["byte"],
             header_bytes=end(given["header"]),
@@ -293,7 +292,7 @@ class Reader:
         rows = by_role(self.section("unsolicited_log").get("message", ()))
         if "mask" not in rows or not self.section("log_mask"):
             return None
-        return self.part("unsolicited_log", LogMessage, mask_at=rows["mask"]["byte"])
+        return self.part(LogMessage, mask_at=rows["mask"]["byte"])
 
     def time(self) -> dict[str, TimePart]:
         return {
@@ -308,7 +307,7 @@ class Reader:
         fields = {
             role: IndexField(row["byte"], row["bytes"]) for role, row in rows.items()
         }
-        return self.part("index_file", Index, fields=fields)
+        return self.part(Index, fields=fields)
 
     def procedures(self) -> Iterator[Procedure]:
         """Yield the procedures of the node."""

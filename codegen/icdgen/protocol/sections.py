@@ -1,7 +1,7 @@
 """Parts of a node's protocol, with the facts of each declared once
 (`icdgen.protocol.declared`).
 
-A part stands for a section of the ICD (`icdgen.protocol.places`). Times are
+A part stands for a section of the ICD (`SECTIONS`). Times are
 milliseconds, sizes bytes.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
+from typing import Any
 
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message
@@ -342,3 +343,19 @@ class Settings:
         "longest time by which reports of progress extend a time-out",
         60000,
     )
+
+
+SECTIONS: dict[type[Any], str] = {
+    Settings: "link.client",
+    Framing: "link.buses.uart.framing",
+    Can: "link.buses.can",
+    Extended: "link.buses.can.segments",
+    Checksum: "link.packets",
+    LogMask: "log_mask",
+    LogFile: "telemetry_log",
+    LogMessage: "unsolicited_log",
+    Index: "index_file",
+    Crc: "link.checksums.*",
+    CheckValue: "link.checksums.*",
+}
+"""Section of the protocol of an ICD that has the facts of each part; `*` is any name."""
