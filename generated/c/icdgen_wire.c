@@ -1307,7 +1307,7 @@ static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t 
     return next;
 }
 
-/* Report a frame. */
+/* Report a frame, which has at least the bytes of header and trailer. */
 static inline icdgen_verdict_t icdgen_stream_judge(
     icd_stream_decoder_t *decoder,
     const icd_packet_form_t *packet,
@@ -1315,12 +1315,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     size_t count,
     const icdgen_listener_t *listener)
 {
-    const size_t around = icdgen_packet_around(packet);
-    if (count < around) {
-        icdgen_stream_tell(listener, ICD_EVENT_LENGTH);
-        return ICDGEN_DOUBTFUL;
-    }
-    const size_t length = count - around;
+    const size_t length = count - icdgen_packet_around(packet);
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
     const icd_packet_field_t *sequence = NULL;
@@ -1352,7 +1347,8 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         }
     }
     if (!is_framed || !is_long) {
-        icdgen_stream_tell(listener, is_framed ? ICD_EVENT_LENGTH : ICD_EVENT_FRAMING);
+        icdgen_event_init(&event, is_framed ? ICD_EVENT_LENGTH : ICD_EVENT_FRAMING);
+        icdgen_tell(listener, &event);
         return ICDGEN_DOUBTFUL;
     }
     const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, event.id);
@@ -1374,7 +1370,8 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         event.kind = ICD_EVENT_LENGTH;
     }
     if (event.kind != incoming.kind || event.kind == ICD_EVENT_UNKNOWN_ID) {
-        icdgen_stream_tell_of(listener, event.kind, true, event.id);
+        icdgen_event_of(&event, event.kind, event.id);
+        icdgen_tell(listener, &event);
         return verdict;
     }
     event.has_id = true;
@@ -1392,6 +1389,10 @@ static inline bool icdgen_stream_frame(
     icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
 {
     const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, count, true);
+    if (count < icdgen_packet_around(packet)) {
+        icdgen_stream_tell(listener, ICD_EVENT_LENGTH);
+        return false;
+    }
     return icdgen_stream_judge(decoder, packet, frame, count, listener) == ICDGEN_TAKEN;
 }
 
@@ -1415,22 +1416,26 @@ static inline size_t icdgen_stream_front(
         return 0;
     }
     const icd_packet_field_t *const field = ICDGEN_FIELD(packet, ICD_FIELD_LENGTH);
+    icd_event_kind_t fault = ICD_EVENT_MESSAGE; /* none */
+    uint32_t id = 0;
     icdgen_length_t length;
     if (field != NULL) {
         length = icdgen_field_bytes(field, icdgen_field_get(field, frame));
     } else {
-        const uint32_t id = icdgen_packet_id(packet, decoder->direction, frame);
+        id = icdgen_packet_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
         if (incoming.kind == ICD_EVENT_UNKNOWN_ID && ICDGEN_CONTAINS(packet, ICD_PACKET_MESSAGE)) {
-            icdgen_stream_tell_of(listener, ICD_EVENT_UNKNOWN_ID, true, id);
-            return icdgen_stream_skip(decoder);
+            fault = ICD_EVENT_UNKNOWN_ID;
         }
         length = ICDGEN_LENGTH(incoming.most);
     }
     const icdgen_length_t size = length + ICDGEN_LENGTH(icdgen_packet_around(packet));
-    if (length < 0 || size > ICDGEN_LENGTH(decoder->capacity)) {
+    if (fault == ICD_EVENT_MESSAGE && (length < 0 || size > ICDGEN_LENGTH(decoder->capacity))) {
         const bool fits = length >= 0 && size <= ICDGEN_LENGTH(decoder->link->longest);
-        icdgen_stream_tell(listener, fits ? ICD_EVENT_OVERRUN : ICD_EVENT_LENGTH);
+        fault = fits ? ICD_EVENT_OVERRUN : ICD_EVENT_LENGTH;
+    }
+    if (fault != ICD_EVENT_MESSAGE) {
+        icdgen_stream_tell_of(listener, fault, fault == ICD_EVENT_UNKNOWN_ID, id);
         return icdgen_stream_skip(decoder);
     }
     const size_t whole = ICDGEN_SIZE(size);
