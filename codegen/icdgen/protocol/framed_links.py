@@ -44,12 +44,9 @@ Section = Mapping[str, Any]
 Checksums = Mapping[str, ChecksumAlgorithm]
 
 
-def bytes_of(bits: Iterable[tuple[int, int]]) -> int:
-    """Return the number of bytes up to the end of the last field.
-
-    ``bits``: position and width of each field in bits.
-    """
-    return -(-max((at + width for at, width in bits), default=0) // 8)
+def bytes_of(rows: Iterable[Section]) -> int:
+    """Return the number of bytes up to the end of the last field."""
+    return -(-max((row["at"] + row["bits"] for row in rows), default=0) // 8)
 
 
 def field_of(
@@ -131,11 +128,6 @@ def rows_of(
     return tuple(rows)
 
 
-def place_of(rows: Iterable[Section], role: str) -> Section | None:
-    """Return the first row of a role; None without such a row."""
-    return next((row for row in rows if row.get("role") == role), None)
-
-
 def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
     """Return the first or last row with a role or name; None without such a row."""
     matches = [row for row in rows if name in (row.get("role"), row.get("name"))]
@@ -144,38 +136,26 @@ def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
 
 def algorithm_of(packet: Packet, checksums: Checksums) -> ChecksumAlgorithm | None:
     """Return the algorithm of the checksum of a packet; None without one."""
-    row = place_of(packet.rows, "checksum")
-    return checksums[row["checksum"]] if row else None
+    return next((checksums[row["checksum"]] for row in packet.of("checksum")), None)
 
 
 def check_of(packet: Packet, checksums: Checksums) -> Check | None:
     """Return the checksum of a packet; None without one."""
-    field = place_of(packet.rows, "checksum")
-    if field is None:
-        return None
-    algorithm, covers = checksums[field["checksum"]], field["covers"]
-    first = _covered(packet.header, covers["from"], False)
-    last = _covered(packet.trailer, covers["to"], True)
-    return Check(
-        algorithm,
-        (
-            first["at"] // 8
-            if first
-            else bytes_of((row["at"], row["bits"]) for row in packet.header)
-        ),
-        bytes_of([(last["at"], last["bits"])]) if last else 0,
-        bool(algorithm.seeds),
-    )
+    for field in packet.of("checksum"):
+        algorithm, covers = checksums[field["checksum"]], field["covers"]
+        first = _covered(packet.header, covers["from"], False)
+        last = _covered(packet.trailer, covers["to"], True)
+        covered_from = first["at"] // 8 if first else bytes_of(packet.header)
+        covered_trailer = bytes_of([last]) if last else 0
+        return Check(algorithm, covered_from, covered_trailer, bool(algorithm.seeds))
+    return None
 
 
 def packet_of(
     node: Node, packets: Packets, packet: Packet, checksums: Checksums
 ) -> PacketFormat:
     """Return a packet format."""
-    sizes = [
-        bytes_of((row["at"], row["bits"]) for row in rows)
-        for rows in (packet.header, packet.trailer)
-    ]
+    sizes = [bytes_of(packet.header), bytes_of(packet.trailer)]
     # By identity: mappings have no hash, and two rows can be equal.
     shifts = {id(row): shift for row, shift in id_shifts(packet.rows)}
     fields = tuple(
@@ -247,8 +227,7 @@ def stream_of(
         for message in sent
         if (exchange := exchange_of(sources, commands, message))
     }
-    rows = [row for packet in packets.all for row in packet.rows]
-    sequence = place_of(rows, "sequence") or {}
+    sequences = [row for packet in packets.all for row in packet.of("sequence")]
     telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, checksums, exchanges)
     request, requesting = None, packets.number_of(packets.requesting)
     if requesting is not None:
@@ -258,7 +237,7 @@ def stream_of(
     # depends, uses only the telecommands and the request.
     stream = Stream(
         delimited_by=section["framing"]["by"],
-        per_id=sequence.get("per", "link") == "id",
+        per_id=bool(sequences) and sequences[0].get("per") == "id",
         packets=formats,
         telecommands=telecommands,
         telemetry=(),
