@@ -153,7 +153,7 @@ static inline icd_result_t session_run(session_t *session, icd_procedure_t *proc
             break;
         }
         port_send(session->port, &session->client);
-        if (session->client.started != 0 || icd_procedure_deadline(procedure, &later)) {
+        if (session->client.free != session->client.slots || icd_procedure_deadline(procedure, &later)) {
             session_wait(session);
         }
     }

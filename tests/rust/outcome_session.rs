@@ -113,7 +113,7 @@ fn main() {
 
     line.answers(&[nak(2, enums::NakReason::WrongMode)]);
     let refused = session.send(&speed).unwrap_err();
-    assert!(matches!(refused, Failure::Refused { id: 2, code: Some(4), reason: None }));
+    assert!(matches!(refused, Failure::Refused { id: 2, code: Some(4), may_be_damaged: false }));
     assert_eq!(refused.reason::<Node>(), Some(enums::NakReason::WrongMode));
     assert_eq!(refused.to_string(), "request 2 is refused, code 4");
 

@@ -53,8 +53,8 @@ impl<const N: usize, T: 'static> Device<N, T> {
         let mut refused = false;
         for _ in 1..TRIES {
             match self.send(message) {
-                Err(Failure::Refused { reason: Some(_), .. }) if !refused => refused = true,
-                Err(Failure::Refused { reason: None, .. } | Failure::Timeout { .. }) => {}
+                Err(Failure::Refused { may_be_damaged: false, .. }) if !refused => refused = true,
+                Err(Failure::Refused { may_be_damaged: true, .. } | Failure::Timeout { .. }) => {}
                 outcome => return outcome,
             }
         }

@@ -44,7 +44,7 @@ def test_acknowledges_that_are_spoilt_or_late_cost_nothing_but_time(client, faul
         (
             ["--node", "cubeacp", "--fault", "nack=100%"],
             1,
-            "request 3 is refused, code 3: Value",
+            "request 3 is refused, code 3",
         ),
         (
             ["--node", "cubeacp"],

@@ -40,6 +40,8 @@ pub enum Failure {
         id: u32,
         /// The error code; see [`Failure::reason`].
         code: Option<u32>,
+        /// UART: whether the enumeration of the codes does not have the code.
+        may_be_damaged: bool,
     },
     /// The device was busy each time, so the request was not executed.
     Busy {
@@ -96,7 +98,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Port(error) => write!(out, "the port failed: {error}"),
             Self::Wire(error) => error.fmt(out),
-            Self::Refused { id, code } => {
+            Self::Refused { id, code, .. } => {
                 write!(out, "request {id} is refused")?;
                 code.map_or(Ok(()), |code| write!(out, ", code {code}"))
             }
@@ -424,7 +426,16 @@ impl Ending {
         let outcome = match *event {
             Event::Done { data, .. } => Ok((Outcome::Done, data.to_vec())),
             Event::Sent { .. } => Ok((Outcome::Sent, Vec::new())),
-            Event::Refused { id, code, .. } => Err(Failure::Refused { id, code }),
+            Event::Refused {
+                id,
+                code,
+                may_be_damaged,
+                ..
+            } => Err(Failure::Refused {
+                id,
+                code,
+                may_be_damaged,
+            }),
             Event::Busy {
                 id, attempts, code, ..
             } => Err(Failure::Busy { id, attempts, code }),
