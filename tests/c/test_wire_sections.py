@@ -24,12 +24,12 @@ PARTS = {
     "program_start": [],
     "link.buses.uart": [
         "framing",
-        "acknowledge",
+        "acknowledge_bytes",
         "unsolicited",
-        "errors",
+        "reasons",
         "exchanges[ICD_BUS_UART]",
     ],
-    "link.buses.i2c": ["errors", "exchanges[ICD_BUS_I2C]"],
+    "link.buses.i2c": ["reasons", "exchanges[ICD_BUS_I2C]"],
     "link.buses.can": ["can", "exchanges[ICD_BUS_CAN]"],
     "procedures": [],
     "link.checksums": [],
@@ -41,7 +41,7 @@ PARTS = {
     "telemetry_log": ["log_file"],
     "unsolicited_log": ["log_message"],
 }
-"""The pointers of a link that each section of a protocol gives."""
+"""The members of a link that each section of a protocol gives."""
 
 MEMBERS = sorted({member for members in PARTS.values() for member in members})
 
@@ -153,7 +153,7 @@ def test_the_sections_of_the_icd_are_those_of_the_link(nodes, headers, tmp_path)
         + "".join(f'#include "{node.name}/link.h"\n' for node in nodes)
         + "static void tell(const char *name, const icd_link_t *link)\n{\n    fputs(name, stdout);\n"
         + "".join(
-            f'    if (link->{member} != NULL) fputs(" {member}", stdout);\n'
+            f'    if (link->{member} != 0) fputs(" {member}", stdout);\n'
             for member in MEMBERS
         )
         + '    puts(link->i2c_address >= 0 ? " at an address" : "");\n}\nint main(void)\n{\n'
