@@ -276,7 +276,11 @@ def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
 @pytest.mark.parametrize(
     ("fault", "error", "said"),
     [
-        ("nack=100%", "RefusedError", "Clear Errors (id 12) was refused: value"),
+        (
+            "nack=100%",
+            "RefusedError",
+            "Clear Errors (id 12) was refused: Incorrect Parameter",
+        ),
         (
             "drop=100%",
             "ReplyTimeoutError",
