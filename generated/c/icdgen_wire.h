@@ -875,6 +875,7 @@ typedef struct {
     bool may_be_damaged; /**< REFUSED on UART and I2C: the enumeration of the codes does not have `code`. */
     bool is_packet;      /**< Whether the packet or the response contains no message. `data` are all its bytes. */
     uint8_t packet;      /**< Framed links: index of the packet format. */
+    bool is_request;     /**< Decoder of telecommands: whether the packet requests telemetry. */
     icd_direction_t direction;
     uint8_t source;          /**< CAN: address of the sender. */
     uint8_t destination;     /**< MESSAGE on CAN. */
@@ -882,6 +883,7 @@ typedef struct {
     uint32_t id;
     const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
+    const uint8_t *header;  /**< Decoder: header of the packet, also if the packet is dropped. NULL without one. */
     const icd_link_t *link; /**< Client: link of the node, if the event belongs to a message of it; otherwise NULL. */
     uint32_t attempts;      /**< Outcomes: number of times the request was sent. */
     uint32_t missing;       /**< GAP, INCOMPLETE. */
@@ -1147,6 +1149,38 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     size_t packet,
     uint32_t id,
     const icd_header_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
+/** What a device answers to a telecommand, or to a request of telemetry. */
+typedef struct {
+    icd_verdict_t verdict;
+    bool has_reason; /**< Otherwise, a reason in `data` remains; in a packet without a message it is 0. */
+    uint32_t reason; /**< Reason of a refusal. */
+    /**
+     * Telemetry that responds: the values of the device, which are `length` bytes; bytes that are missing are 0. Buffer
+     * of `capacity` bytes, into which the function puts the response: NODE_LONGEST bytes are always enough.
+     */
+    uint8_t *data;
+    size_t length;
+    size_t capacity;
+} icd_answer_t;
+
+/**
+ * Encode the response of a device to what it has received, with the next sequence number: for firmware, simulators and
+ * tests of a client.
+ *
+ * `sender` sends telemetry. `received` is an event of the decoder of telecommands: MESSAGE or REQUEST; to refuse,
+ * also UNKNOWN_ID, LENGTH or CHECKSUM with an id. The response repeats the numbers that the ICD describes as `echo`,
+ * and has the status for the verdict: of several values, the first in the ICD.
+ * Return ICD_ERROR_UNSUPPORTED if the ICD has no response with this verdict, ICD_ERROR_RANGE if the reason does not
+ * fit into its field or is the status of another verdict, ICD_ERROR_LENGTH if a buffer is too small.
+ */
+ICDGEN_API icd_status_t icd_stream_respond(
+    icd_stream_sender_t *sender,
+    const icd_event_t *received,
+    const icd_answer_t *answer,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);

@@ -26,6 +26,8 @@
 
 #include "wire/stream_encode.c"
 
+#include "wire/stream_respond.c"
+
 #include "wire/stream_decode.c"
 
 #include "wire/i2c.c"

@@ -171,7 +171,8 @@ def test_what_the_device_answers_to_a_request_is_taken_for_it(icd):
             client.start(0, Request("telemetry", id))
             (event,) = device.feed(client.output())
             assert (event.event, event.id) == ("request", id)
-            response = response_to(link, id, b"", verdict, is_request=True)
+            reason = 0x80 if verdict == "nak" and icd is JBD else None
+            response = response_to(link, id, b"", verdict, reason, is_request=True)
             if response is None:
                 assert verdict == "nak" and icd is not JBD
                 continue

@@ -10,18 +10,26 @@ include!("links.rs");
 const SEQUENCES: usize = 4;
 
 /// The events of a stream in pieces of `size` bytes, and what became of its other bytes.
-fn heard(link: &'static Link, direction: Direction, stream: &[u8], size: usize, limit: usize) -> Option<(Vec<String>, u64, u64)> {
+fn heard(
+    link: &'static Link,
+    direction: Direction,
+    stream: &[u8],
+    size: usize,
+    limit: usize,
+) -> Option<(Vec<String>, u64, u64)> {
     let mut decoder = Decoder::<LONGEST, SEQUENCES>::with_limit(link, direction, limit).ok()?;
     let mut events = Vec::new();
     for piece in stream.chunks(size.max(1)) {
         decoder.feed(piece, |event| {
             let mut line = vec![0; 2 * LONGEST + 600];
             let written = match event {
-                Event::Message { id, data, values } => {
+                Event::Message {
+                    id, data, values, ..
+                } => {
                     assert!(data.len() <= limit);
                     encode(link, direction, id, data, values, &mut line)
                 }
-                Event::Request { id, values } => encode_request(link, id, values, &mut line),
+                Event::Request { id, values, .. } => encode_request(link, id, values, &mut line),
                 _ => Ok(1),
             };
             assert!(written.unwrap() > 0);
@@ -33,15 +41,35 @@ fn heard(link: &'static Link, direction: Direction, stream: &[u8], size: usize, 
 }
 
 fuzz_target!(|input: &[u8]| {
-    let [node, direction, room, size, stream @ ..] = input else { return };
-    let Some(link) = link_of((*node).into()) else { return };
-    let Some(form) = link.stream.as_ref() else { return };
-    let direction = if direction & 1 == 0 { Direction::Telecommand } else { Direction::Telemetry };
-    let around = form.packets.iter().map(|packet| packet.header_bytes + packet.trailer_bytes).max();
-    let limit = link.longest.saturating_sub(usize::from(*room)).max(around.unwrap_or(0));
+    let [node, direction, room, size, stream @ ..] = input else {
+        return;
+    };
+    let Some(link) = link_of((*node).into()) else {
+        return;
+    };
+    let Some(form) = link.stream.as_ref() else {
+        return;
+    };
+    let direction = if direction & 1 == 0 {
+        Direction::Telecommand
+    } else {
+        Direction::Telemetry
+    };
+    let around = form
+        .packets
+        .iter()
+        .map(|packet| packet.header_bytes + packet.trailer_bytes)
+        .max();
+    let limit = link
+        .longest
+        .saturating_sub(usize::from(*room))
+        .max(around.unwrap_or(0));
     let whole = heard(link, direction, stream, stream.len(), limit);
     if form.delimited_by != icd::wire::link::Delimiter::Datagram {
-        assert_eq!(whole, heard(link, direction, stream, usize::from(*size), limit));
+        assert_eq!(
+            whole,
+            heard(link, direction, stream, usize::from(*size), limit)
+        );
         assert_eq!(whole, heard(link, direction, stream, 1, limit));
     }
 });

@@ -81,8 +81,8 @@ class Loader:
         self.received.append(id)
         if id in REQUESTS:
             telemetry = REQUESTS[id]
-            frames = {telemetry: self.telemetry(telemetry)}
-            response = response_to(self.link, id, data, "reply", frames=frames)
+            filled = self.telemetry(telemetry)
+            response = response_to(self.link, id, data, "reply", telemetry=filled)
         else:
             result = self.execute(id, data)
             verdict = {OK: "ack", BUSY: "busy"}.get(result, "nak")

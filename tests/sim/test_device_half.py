@@ -134,7 +134,7 @@ def test_the_response_to_another_telecommand_confirms_nothing(name):
 def test_a_refusal_has_the_reason_and_the_other_fields_of_the_device():
     of = link("wheel")
     assert response_to(of, 0x02, b"\1\2\3", "nak", 3) == (0x15, b"\x02\x03")
-    assert response_to(of, 0x04, b"", "reply", frames={0x83: b"\1\2"}) == (
+    assert response_to(of, 0x04, b"", "reply", telemetry=b"\1\2") == (
         0x83,
         b"\1\2",
     )
@@ -142,7 +142,7 @@ def test_a_refusal_has_the_reason_and_the_other_fields_of_the_device():
     result, data = response_to(arm, 0x0207, b"", "ack") or (None, None)
     assert (result, data) == (None, None)  # nothing responds to Halt
     frame = bytes.fromhex("ffffffff3412")  # all fields before the time are replaced
-    _, data = response_to(arm, 0x0201, bytes(7), "ack", frames={0x8001: frame})
+    _, data = response_to(arm, 0x0201, bytes(7), "ack", telemetry=frame)
     assert data == bytes.fromhex("f8ff02013412")
 
 

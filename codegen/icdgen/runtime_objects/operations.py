@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, get_args
 
+from icdgen_runtime._errors import LengthError, RangeError
 from icdgen_runtime.wire import checks, stream
 from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 from icdgen_runtime.wire.can import can_split as split
@@ -18,6 +19,8 @@ from icdgen_runtime.wire.i2c import i2c_reply as frame_of_reply
 from icdgen_runtime.wire.identity import identify as identity_of
 from icdgen_runtime.wire.link import CanKind, Link
 from icdgen_runtime.wire.logs import LogFrame, LogMessage, LogReader, LogWriter
+from icdgen_runtime.wire.packet_formats import Verdict
+from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.times import DosTime, dos_time_pack, dos_time_unpack
 from icdgen_runtime.wire.uart import UartDecoder, uart_kind
 from icdgen_runtime.wire.uart import uart_encode as line_of
@@ -36,6 +39,9 @@ from icdgen.runtime_objects.request_keys import (
     text,
 )
 
+VERDICTS: tuple[Verdict, ...] = ("ack", "reply", "nak", "busy", "progress")
+ANSWERED = ("message", "request", "unknown_id", "length", "checksum")
+"""Events of a decoder of telecommands that a device can respond to."""
 CAN_BYTES = 8  # of a classic CAN frame
 CAN_KINDS: tuple[CanKind, ...] = get_args(CanKind)
 
@@ -271,6 +277,32 @@ def stream_events(link: AnyLink, request: Request) -> Response:
     }
 
 
+def stream_respond(link: AnyLink, request: Request) -> Response:
+    """Return the responses of a device to a stream of telecommands and requests."""
+    need(link.stream, "stream")
+    verdict = choice(request, "verdict", VERDICTS)
+    reason = number(request, "reason") if "reason" in request else None
+    telemetry, chosen = octets(request), _chosen(request)
+    sender = Sender(link, "telemetry", chosen)
+    decoder = stream.StreamDecoder(link, "telecommand")
+    responses: list[Response] = []
+    for chunk in rows(request, "chunks"):
+        for event in decoder.feed(hex_bytes(chunk)):
+            if event.event not in ANSWERED or event.id is None:
+                continue
+            try:
+                line = sender.respond(event, verdict, reason, telemetry)
+            except LengthError:
+                responses.append({"error": "length"})
+            except RangeError:
+                responses.append({"error": "range"})
+            else:
+                responses.append(
+                    {"error": "unsupported"} if line is None else {"bytes": line.hex()}
+                )
+    return {"responses": responses}
+
+
 def _stream_row(event: stream.StreamEvent) -> Response:
     row: Response = {"event": event.event}
     if event.id is not None:
@@ -288,5 +320,5 @@ def _stream_row(event: stream.StreamEvent) -> Response:
 OPERATIONS: tuple[Operation, ...] = (
     checksum, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
     log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
-    link_data, stream_encode, stream_encode_packet, stream_events,
+    link_data, stream_encode, stream_encode_packet, stream_events, stream_respond,
 )  # fmt: skip

@@ -23,7 +23,7 @@ from icdgen.protocol.packet_formats import DATAGRAM
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
-from icdgen.sim.refusals import refusal_code, refusal_names
+from icdgen.sim.refusals import first_refusal_code, refusal_code, refusal_names
 
 Cause = Literal["unknown_id", "length", "value", "checksum", "busy"]
 """Why a telecommand is refused: a key of `reasons` in `link: commands`."""
@@ -64,6 +64,7 @@ class FramedLine(DeviceLine):
         self.keeps_packets = self.form.delimited_by == DATAGRAM
         packets = self.form.packets_of("telecommand")
         self._is_checked = any(packet.check for packet in packets)
+        self._chosen = chosen
         self.sender = Sender(program.link, "telemetry", chosen)
         self.decoder = StreamDecoder(program.link, "telecommand")
         self.ids = ids_of(program.icd, program.node)
@@ -273,7 +274,11 @@ class FramedLine(DeviceLine):
             return
         response = response_of(self.form, id, "nak", is_request)
         if response is not None:
-            number = None if name is None else refusal_code(response, name)
+            number = (
+                first_refusal_code(response)
+                if name is None
+                else refusal_code(response, name)
+            )
             self._respond(now, id, data, "nak", number, is_request)
 
     def _defer(self, now: int, id: int, data: bytes, is_request: bool = False) -> bool:
@@ -301,13 +306,21 @@ class FramedLine(DeviceLine):
         response = response_of(self.form, id, verdict, is_request)
         if response is None:
             return
-        frames = {}
+        telemetry = b""
         if response.packet is None:
-            telemetry = id if response.telemetry is None else response.telemetry
-            message = self.ids.telemetry[telemetry][0].message
-            frames[telemetry] = program.current(now, message)
+            responding = id if response.telemetry is None else response.telemetry
+            message = self.ids.telemetry[responding][0].message
+            telemetry = program.current(now, message)
         sent = response_to(
-            program.link, id, data, verdict, reason, frames, is_request, self._header
+            program.link,
+            id,
+            data,
+            verdict,
+            reason,
+            telemetry,
+            is_request,
+            self._header,
+            self._chosen,
         )
         on = "reply" if verdict == "reply" else "acknowledge"
         if isinstance(sent, PacketData):

@@ -13,6 +13,14 @@ def refusal_names(response: Response) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
+def first_refusal_code(response: Response) -> int | None:
+    """Return the first reason of the ICD with which a response refuses a telecommand;
+    None without one.
+    """
+    codes = (code for code, _ in response.reasons if _refuses_with(response, code))
+    return next(codes, None)
+
+
 def refusal_code(response: Response, text: str) -> int | None:
     """Return the number of a reason, given as a name or a number; None if the response
     cannot refuse with it.

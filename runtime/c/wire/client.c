@@ -200,15 +200,7 @@ static inline bool icdgen_is_like(const icd_awaited_t *a, const icd_awaited_t *b
 
 static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const icd_event_t *event)
 {
-    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_STATUS) && response->status != NULL) {
-        const uint32_t status = icdgen_stream_number(response->status, event->id, event->data, event->length);
-        for (size_t i = 0; i < response->meaning_count; ++i) {
-            if (response->meanings[i].value == status) {
-                return response->meanings[i].verdict;
-            }
-        }
-    }
-    return response->verdict;
+    return icdgen_verdict_of(response, event->id, event->data, event->length);
 }
 
 static inline bool icdgen_is_owed(const icd_awaited_t *awaited)

@@ -55,6 +55,7 @@ typedef struct {
     bool may_be_damaged; /**< REFUSED on UART and I2C: the enumeration of the codes does not have `code`. */
     bool is_packet;      /**< Whether the packet or the response contains no message. `data` are all its bytes. */
     uint8_t packet;      /**< Framed links: index of the packet format. */
+    bool is_request;     /**< Decoder of telecommands: whether the packet requests telemetry. */
     icd_direction_t direction;
     uint8_t source;          /**< CAN: address of the sender. */
     uint8_t destination;     /**< MESSAGE on CAN. */
@@ -62,6 +63,7 @@ typedef struct {
     uint32_t id;
     const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
+    const uint8_t *header;  /**< Decoder: header of the packet, also if the packet is dropped. NULL without one. */
     const icd_link_t *link; /**< Client: link of the node, if the event belongs to a message of it; otherwise NULL. */
     uint32_t attempts;      /**< Outcomes: number of times the request was sent. */
     uint32_t missing;       /**< GAP, INCOMPLETE. */

@@ -115,6 +115,28 @@ static inline uint32_t icdgen_stream_number(
     return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
 }
 
+/* Return the meaning of a status; NULL if the ICD does not list it. */
+static inline const icd_meaning_t *icdgen_meaning(const icd_response_t *response, uint32_t status)
+{
+    for (size_t i = 0; i < response->meaning_count; ++i) {
+        if (response->meanings[i].value == status) {
+            return &response->meanings[i];
+        }
+    }
+    return NULL;
+}
+
+/* Return what a response says. */
+static inline icd_verdict_t icdgen_verdict_of(
+    const icd_response_t *response, uint32_t id, const uint8_t *data, size_t length)
+{
+    const icd_meaning_t *meaning = NULL;
+    if (ICDGEN_RESPONSES_HAVE(ICDGEN_RESPONSE_STATUS) && response->status != NULL) {
+        meaning = icdgen_meaning(response, icdgen_stream_number(response->status, id, data, length));
+    }
+    return meaning != NULL ? meaning->verdict : response->verdict;
+}
+
 /*
  * Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed; `data` is NULL
  * for zeros.

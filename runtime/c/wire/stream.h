@@ -114,6 +114,38 @@ ICDGEN_API icd_status_t icd_stream_send_packet(
     size_t capacity,
     size_t *written);
 
+/** What a device answers to a telecommand, or to a request of telemetry. */
+typedef struct {
+    icd_verdict_t verdict;
+    bool has_reason; /**< Otherwise, a reason in `data` remains; in a packet without a message it is 0. */
+    uint32_t reason; /**< Reason of a refusal. */
+    /**
+     * Telemetry that responds: the values of the device, which are `length` bytes; bytes that are missing are 0. Buffer
+     * of `capacity` bytes, into which the function puts the response: NODE_LONGEST bytes are always enough.
+     */
+    uint8_t *data;
+    size_t length;
+    size_t capacity;
+} icd_answer_t;
+
+/**
+ * Encode the response of a device to what it has received, with the next sequence number: for firmware, simulators and
+ * tests of a client.
+ *
+ * `sender` sends telemetry. `received` is an event of the decoder of telecommands: MESSAGE or REQUEST; to refuse,
+ * also UNKNOWN_ID, LENGTH or CHECKSUM with an id. The response repeats the numbers that the ICD describes as `echo`,
+ * and has the status for the verdict: of several values, the first in the ICD.
+ * Return ICD_ERROR_UNSUPPORTED if the ICD has no response with this verdict, ICD_ERROR_RANGE if the reason does not
+ * fit into its field or is the status of another verdict, ICD_ERROR_LENGTH if a buffer is too small.
+ */
+ICDGEN_API icd_status_t icd_stream_respond(
+    icd_stream_sender_t *sender,
+    const icd_event_t *received,
+    const icd_answer_t *answer,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
 /** Decoder that finds the messages of one direction in a stream. */
 typedef struct {
     const icd_link_t *link;

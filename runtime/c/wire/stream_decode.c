@@ -268,13 +268,14 @@ static inline icdgen_verdict_t icdgen_stream_judge(
          (incoming.kind == ICD_EVENT_REQUEST && wanted >= 0 && wanted != ICDGEN_LENGTH(incoming.row->most)))) {
         event.kind = ICD_EVENT_LENGTH;
     }
+    event.has_id = true;
+    event.packet = ICDGEN_U8(packet - decoder->form->packets);
+    event.header = frame;
+    event.is_request = event.kind == ICD_EVENT_REQUEST || ICDGEN_CONTAINS(packet, ICD_PACKET_REQUEST);
     if (event.kind != incoming.kind || event.kind == ICD_EVENT_UNKNOWN_ID) {
-        icdgen_event_of(&event, event.kind, event.id);
         icdgen_tell(listener, &event);
         return verdict;
     }
-    event.has_id = true;
-    event.packet = ICDGEN_U8(packet - decoder->form->packets);
     event.is_packet = incoming.kind == ICD_EVENT_PACKET;
     event.data = event.is_packet ? frame : data;
     event.length = event.is_packet ? count : length;

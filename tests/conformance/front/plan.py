@@ -82,10 +82,12 @@ def _procedure(procedure: Procedure) -> dict[str, Any]:
 def _link(icd: Icd, node: Node) -> dict[str, Any]:
     known = facts.of(icd, node)
     framing, stream = known.framing, known.stream
+    chosen = stream.chosen("telemetry") if stream else {}
     around = max(packet.overhead for packet in stream.packets) if stream else 0
     return {
         "longest": known.longest,
         "around": around,
+        "of_device": {role: field.mask for role, field in chosen.items()},
         "framing": [framing.escape, framing.end] if framing else None,
         "procedures": [_procedure(each) for each in known.procedures],
     }

@@ -26,6 +26,7 @@ CAN_BYTES = 8  # of a classic CAN frame
 MOST = (1 << 32) - 1
 DATE = ("year", "month", "day", "hour", "minute", "second")
 ENTRY = ("type", "counter", "checksum", "size", "time")
+VERDICTS = ("ack", "reply", "nak", "busy", "progress")
 USERS = ("boot_ms", "log_file_type", "index_file_type")
 TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 
@@ -258,6 +259,23 @@ def stream_events(to: Asking, request: Request) -> Answer:
     return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
 
 
+def stream_respond(to: Asking, request: Request) -> Answer:
+    verdict = text(request, "verdict")
+    if verdict not in VERDICTS:
+        raise Refusal("request", detail="there is no such verdict")
+    reason = number(request, "reason", default=0)
+    chunks = [hex_bytes(chunk).hex() for chunk in rows(request, "chunks")]
+    data, chosen = octets(request).hex(), _chosen(request)
+    for role, value in request.get("values", {}).items():
+        if role not in to.link["of_device"]:
+            raise Refusal("unsupported")
+        if value > to.link["of_device"][role]:
+            raise Refusal("range")
+    words = (int("reason" in request), reason, data, *chosen, *chunks)
+    reply = to.ask("stream_respond", VERDICTS.index(verdict), *words)
+    return {"responses": [typed(row) for row in reply.of("response")]}
+
+
 def _direction(request: Request) -> int:
     """Its number for the program."""
     direction = text(request, "direction")
@@ -280,6 +298,6 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     for op in (
         checksum, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
-        link_data, stream_encode, stream_encode_packet, stream_events,
+        link_data, stream_encode, stream_encode_packet, stream_events, stream_respond,
     )
 }  # fmt: skip

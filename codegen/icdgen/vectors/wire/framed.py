@@ -51,6 +51,7 @@ def requests(link: Link[Any], form: Stream, source: Random) -> Requests:
             yield from _streams(link, form, direction, source)
     yield "no such message", _encode(DIRECTIONS[0], _unknown(form, DIRECTIONS[0]), b"")
     yield from _without_messages(link, form, source)
+    yield from _responses(link, form, source)
 
 
 def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests:
@@ -93,6 +94,54 @@ def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests
                 f"a packet without a message, {why}",
                 _events(direction, [damaged, *sent]),
             )
+
+
+def _responses(link: Link[Any], form: Stream, source: Random) -> Requests:
+    """Yield what a device receives and responds to."""
+    if not form.exchanges:
+        return
+    # A telecommand of each exchange, one without a response, and each second request.
+    by_exchange = {row.exchange: row for row in reversed(form.telecommands)}
+    lines = [_line(link, "telecommand", row, source, 0) for row in by_exchange.values()]
+    requested = [row.id for row in form.telemetry if row.is_requested]
+    lines += [stream_encode_request(link, id) for id in requested[::2]]
+    damaged = [line for _, line in _damaged(lines[0], source)]
+    responses = [each for exchange in form.exchanges for each in exchange.responses]
+    reasons = sorted({value for each in responses for value, _ in each.reasons})
+    sent = form.packets_of("telemetry")
+    values = {
+        role: 1
+        for role in ("source", "destination", "type", "flags", "time")
+        if any(packet.of(role) for packet in sent)
+    }
+    for verdict in ("ack", "reply", "nak", "busy", "progress"):
+        for reason in (None, *reasons[:3], *reasons[-1:], 0xFFFFFFFF):
+            if reason is not None and verdict in ("ack", "reply", "progress"):
+                continue
+            why = "" if reason is None else f" with the reason {reason}"
+            yield (
+                f"the device responds: {verdict}{why}",
+                _respond(verdict, reason, b"", lines + damaged),
+            )
+        most = max((row.most for row in form.telemetry), default=0)
+        for data in (source.randbytes(most), source.randbytes(2)):
+            yield (
+                f"the device responds: {verdict}, with data",
+                _respond(verdict, None, data, lines, **values),
+            )
+
+
+def _respond(
+    verdict: str, reason: int | None, data: bytes, chunks: list[bytes], **values: int
+) -> dict[str, object]:
+    return {
+        "op": "stream_respond",
+        "verdict": verdict,
+        **({} if reason is None else {"reason": reason}),
+        "bytes": data.hex(),
+        "values": values,
+        "chunks": [chunk.hex() for chunk in chunks],
+    }
 
 
 def _packets(form: Stream, source: Random) -> Requests:

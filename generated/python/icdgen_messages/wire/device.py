@@ -25,6 +25,7 @@ from .packet_formats import (
 )
 from .stream import values_of
 
+_NO_VALUES: Mapping[str, int] = {}
 _ID_BYTES = 4  # of the id in front of the data, in `Exchange.sources`
 
 
@@ -51,12 +52,13 @@ def response_to(
     data: Buffer = b"",
     verdict: Verdict = "ack",
     reason: Optional[int] = None,
-    frames: Optional[Mapping[int, Buffer]] = None,
+    telemetry: Buffer = b"",
     is_request: bool = False,
     header: Buffer = b"",
+    values: Mapping[str, int] = _NO_VALUES,
 ) -> Union[TelemetryData, PacketData, None]:
     """Return the response of a device to a telecommand; None if the ICD has no such
-    response.
+    response. `Sender.respond` encodes it too.
 
     ``is_request``: instead of a telecommand, the device has received the request of the
     telemetry with this id (the event ``"request"`` of `StreamDecoder`).
@@ -64,12 +66,14 @@ def response_to(
     The telecommand is a message, or an id and its data. An id that the node does not
     have can be refused (``"nak"``). The response repeats the numbers of the telecommand
     that the ICD describes as `echo`, and has the status for ``verdict``: of several
-    values, the one that the ICD lists first. ``reason`` is the reason of a refusal; in a
-    packet without a message, the first of the ICD unless given.
+    values, the one that the ICD lists first. ``reason`` is the reason of a refusal;
+    without one, it is that of ``telemetry``, or 0 in a packet without a message.
     ``header`` is the header of the telecommand (`StreamEvent.header`), if responses
     repeat numbers of it; without, these are the defaults of the ICD, or 0.
-    ``frames`` has the other bits, by id of the telemetry; without, they are 0. Raise
-    `RangeError` for a reason whose number is the status of another verdict.
+    ``telemetry`` has the data of the telemetry that responds; missing bytes are 0.
+    ``values``: header and trailer values of a packet without a message, by role.
+    Raise `RangeError` for a reason whose number is the status of another verdict, and
+    for a value that does not fit into its field.
     """
     form = need(link.stream, "stream")
     if isinstance(telecommand, Message):
@@ -81,13 +85,15 @@ def response_to(
     response = _response(exchange, verdict) if exchange else None
     if exchange is None or response is None:
         return None
-    telemetry = id if response.telemetry is None else response.telemetry
+    responding = id if response.telemetry is None else response.telemetry
     if response.packet is None:
-        filled = bytearray((frames or {}).get(telemetry, b""))
-        row = next(row for row in form.telemetry if row.id == telemetry)
+        row = form.row("telemetry", responding)
+        if row is None:
+            return None
+        filled = bytearray(telemetry)
         filled.extend(bytes(max(0, row.least - len(filled))))
     else:
-        filled = _defaults(form.packets[response.packet])
+        filled = _empty(form.packets[response.packet], values)
     sent = id.to_bytes(_ID_BYTES, "big") + bytes(data)
     numbers = exchange.numbers(sent)
     if header:
@@ -97,15 +103,6 @@ def response_to(
             echo.place.put(numbers[echo.source], filled)
     if response.status:
         response.status.put(_status(response, verdict), filled)
-    is_status = response.reason == response.status
-    if (
-        reason is None
-        and response.packet is not None
-        and response.reasons
-        and not is_status
-    ):
-        # The reason can distinguish the packet from others, so it is not left 0.
-        reason = response.reasons[0][0]
     if reason is not None and response.reason:
         response.reason.put(reason, filled)
         is_kept = response.reason.of(bytes(filled)) == reason
@@ -114,13 +111,15 @@ def response_to(
         if not is_kept or ("nak" if says == "again" else says) != verdict:
             raise RangeError("reason", f"a reason of the verdict {verdict}", reason)
     if response.packet is not None:
-        id_of_packet, values = values_of(form.packets[response.packet], bytes(filled))
-        return PacketData(response.packet, id_of_packet, values)
-    return TelemetryData(telemetry, bytes(filled))
+        id_of_packet, filled_values = values_of(
+            form.packets[response.packet], bytes(filled)
+        )
+        return PacketData(response.packet, id_of_packet, filled_values)
+    return TelemetryData(responding, bytes(filled))
 
 
-def _defaults(packet: PacketForm) -> bytearray:
-    """Return a packet without a message, with the defaults of the ICD."""
+def _empty(packet: PacketForm, values: Mapping[str, int]) -> bytearray:
+    """Return a packet without a message, with these values or the defaults of the ICD."""
     filled = bytearray(packet.overhead + packet.reserved)
     for field in packet.fields:
         if field.role in CHOSEN_ROLES:
@@ -128,7 +127,10 @@ def _defaults(packet: PacketForm) -> bytearray:
             place = NumberPlace(
                 start + field.at, field.size, field.shift, field.bits, field.little
             )
-            place.put(field.values[1], filled)
+            value = values.get(field.role, field.values[1])
+            if value >> field.bits:
+                raise RangeError(field.role, f"0 to {(1 << field.bits) - 1}", value)
+            place.put(value, filled)
     return filled
 
 
@@ -193,16 +195,11 @@ def _is_in_id(place: NumberPlace) -> bool:
 
 
 def _status(response: Response, verdict: Verdict) -> int:
-    """Return the status that says ``verdict``: the first listed value; of a refusal, the
-    first value that is not listed.
+    """Return the status that says ``verdict``: the first listed value; otherwise, the
+    smallest number that is not listed.
     """
     listed = next((value for value, says in response.meanings if says == verdict), None)
     if listed is not None:
         return listed
     taken = {value for value, _ in response.meanings}
-    # A reason in the field of the status is a member of its enumeration. Otherwise, one
-    # of the `len(taken) + 1` lowest numbers is left.
-    is_reason = response.reason == response.status
-    members = [value for value, _ in response.reasons] if is_reason else []
-    candidates: list[int] = [*members, *range(len(taken) + 1)]
-    return next(value for value in candidates if value not in taken)
+    return next(value for value in range(len(taken) + 1) if value not in taken)

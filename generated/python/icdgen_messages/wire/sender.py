@@ -9,10 +9,12 @@ from typing import Optional, Union
 from .._base import Message
 from .._errors import RangeError
 from .._hints import Buffer
+from .device import PacketData, response_to
 from .errors import UnsupportedError, need
 from .link import Link
-from .packet_formats import Direction
+from .packet_formats import Direction, Verdict
 from .stream import (
+    StreamEvent,
     packet_without_message,
     stream_encode,
     stream_encode_packet,
@@ -91,6 +93,38 @@ class Sender:
             )
 
         return self._numbered(packet, None, encoded, values)
+
+    def respond(
+        self,
+        received: StreamEvent,
+        verdict: Verdict = "ack",
+        reason: Optional[int] = None,
+        telemetry: Buffer = b"",
+    ) -> Optional[bytes]:
+        """Encode the response of a device to what it has received; None if the ICD has
+        no such response. The sender is one of telemetry.
+
+        ``received``: an event of the decoder of telecommands: ``message`` or
+        ``request``; to refuse, also ``unknown_id``, ``length`` or ``checksum``. For the
+        other parameters and errors see `response_to`.
+        """
+        if self._direction != "telemetry" or received.id is None:
+            return None
+        is_request = received.event == "request" or received.is_request
+        response = response_to(
+            self._link,
+            received.id,
+            received.data,
+            verdict,
+            reason,
+            telemetry,
+            is_request,
+            received.header,
+            self._values,
+        )
+        if isinstance(response, PacketData):
+            return self.encode_packet(*response)
+        return None if response is None else self.encode(*response)
 
     def _numbered(
         self,

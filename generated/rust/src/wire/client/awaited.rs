@@ -214,7 +214,7 @@ impl Response {
     }
 
     /// Return what the response says.
-    pub(super) fn verdict_of(&self, head: &[u8], data: &[u8]) -> Verdict {
+    pub(in crate::wire) fn verdict_of(&self, head: &[u8], data: &[u8]) -> Verdict {
         let status = self.status.map(|place| place.get(head, data));
         let mut meanings = self.meanings.iter();
         let listed = meanings.find(|(value, _)| Some(*value) == status);

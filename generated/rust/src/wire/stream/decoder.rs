@@ -384,8 +384,12 @@ impl<const S: usize> Search<S> {
             other => {
                 on_event(match other {
                     Ok(size) if size <= self.longest => Event::Overrun,
-                    Err(Some(id)) => Event::UnknownId { id },
-                    _ => Event::Length { id: None },
+                    Err(Some(id)) => Event::UnknownId {
+                        id,
+                        header: &[],
+                        is_request: false,
+                    },
+                    _ => Event::WRONG_LENGTH,
                 });
                 return Some(self.drop_bytes(1));
             }

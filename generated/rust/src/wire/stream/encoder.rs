@@ -330,7 +330,7 @@ fn without_zeros(data: &[u8]) -> &[u8] {
     left
 }
 
-const fn name(role: FieldRole) -> &'static str {
+pub(super) const fn name(role: FieldRole) -> &'static str {
     match role {
         FieldRole::Sequence => "sequence",
         FieldRole::Source => "source",

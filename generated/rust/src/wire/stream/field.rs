@@ -87,7 +87,8 @@ impl NumberPlace {
         put_number(place, kept | value, self.little);
     }
 
-    const fn mask(&self) -> u32 {
+    /// The greatest number.
+    pub(super) const fn mask(&self) -> u32 {
         u32::MAX.wrapping_shr(32_u32.wrapping_sub(self.bits))
     }
 }

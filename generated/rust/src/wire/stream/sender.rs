@@ -130,6 +130,14 @@ impl<T, const S: usize> Sender<T, S> {
         sent.map(|(size, _)| size)
     }
 
+    pub(super) const fn link(&self) -> &'static Link {
+        self.link
+    }
+
+    pub(super) const fn direction(&self) -> Direction {
+        self.direction
+    }
+
     /// Encode a message. Return its size and its header.
     pub(in crate::wire) fn message(
         &mut self,

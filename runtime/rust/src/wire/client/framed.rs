@@ -155,7 +155,9 @@ fn arrival<'a, const N: usize, const R: usize>(
     found: &stream::Event<'a>,
 ) -> Result<Arrival<'a>, Event<'a>> {
     let (id, packet, data, values) = match *found {
-        stream::Event::Message { id, data, values } => (id, None, data, values),
+        stream::Event::Message {
+            id, data, values, ..
+        } => (id, None, data, values),
         stream::Event::Packet {
             packet,
             id,
@@ -174,12 +176,12 @@ fn arrival<'a, const N: usize, const R: usize>(
                 _ => (id, Some(packet), frame, values),
             }
         }
-        stream::Event::Request { id, .. } | stream::Event::UnknownId { id } => {
+        stream::Event::Request { id, .. } | stream::Event::UnknownId { id, .. } => {
             return Err(Event::UnknownId { id });
         }
         stream::Event::Gap { id, missing } => return Err(Event::Gap { id, missing }),
-        stream::Event::Checksum { id } => return Err(Event::Checksum { id }),
-        stream::Event::Length { id } => return Err(Event::Length { id }),
+        stream::Event::Checksum { id, .. } => return Err(Event::Checksum { id }),
+        stream::Event::Length { id, .. } => return Err(Event::Length { id }),
         stream::Event::Overrun => return Err(Event::Overrun),
         stream::Event::Framing => return Err(Event::Framing),
     };

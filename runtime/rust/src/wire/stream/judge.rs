@@ -17,6 +17,8 @@ pub enum Event<'a> {
         data: &'a [u8],
         /// Values of the header and trailer fields that the sender chose.
         values: &'a Values,
+        /// Header of the packet.
+        header: &'a [u8],
     },
     /// A request of telemetry.
     Request {
@@ -24,6 +26,8 @@ pub enum Event<'a> {
         id: u32,
         /// Values of the header and trailer fields that the sender chose.
         values: &'a Values,
+        /// Header of the packet.
+        header: &'a [u8],
     },
     /// A packet without a message, or with requested telemetry that only the request names.
     Packet {
@@ -47,21 +51,42 @@ pub enum Event<'a> {
     Checksum {
         /// Id in the message.
         id: u32,
+        /// Header of the packet; empty if it is not known.
+        header: &'a [u8],
+        /// Whether the packet has the format of requests of telemetry.
+        is_request: bool,
     },
     /// Dropped: wrong length of the message.
     Length {
         /// Id, if it could be read.
         id: Option<u32>,
+        /// Header of the packet; empty if it is not known.
+        header: &'a [u8],
+        /// Whether the packet has the format of requests of telemetry.
+        is_request: bool,
     },
     /// The node has no such message.
     UnknownId {
         /// The id.
         id: u32,
+        /// Header of the packet; empty if it is not known.
+        header: &'a [u8],
+        /// Whether the packet has the format of requests of telemetry.
+        is_request: bool,
     },
     /// Dropped: the message is longer than the buffer.
     Overrun,
     /// Dropped: wrong constant or delimiter.
     Framing,
+}
+
+impl Event<'static> {
+    /// A packet whose length fields are wrong, so that its id is not known.
+    pub(super) const WRONG_LENGTH: Self = Event::Length {
+        id: None,
+        header: &[],
+        is_request: false,
+    };
 }
 
 /// What a frame turned out to be.
@@ -202,7 +227,7 @@ impl Judge {
             return Verdict::Doubtful;
         }
         if !self.length_is_right(frame) {
-            on_event(Event::Length { id: None });
+            on_event(Event::WRONG_LENGTH);
             return Verdict::Doubtful;
         }
         self.judge_contents(frame, sequences, on_event)
@@ -220,16 +245,25 @@ impl Judge {
         let (front, trailer) = frame.split_at(behind);
         let (header, data) = front.split_at(packet.header_bytes.min(behind));
         let id = self.id(frame);
+        let is_request = packet.content == Content::Request;
         let message = self.message(id);
         let row = message.map_or_else(|| self.requested(id), |(_, row)| Some(row));
         if let (Some(field), Some(check)) = (packet.field(FieldRole::Checksum), &packet.check) {
             if check.is_seeded && row.is_none() && packet.tells_message() {
-                on_event(Event::UnknownId { id });
+                on_event(Event::UnknownId {
+                    id,
+                    header,
+                    is_request,
+                });
                 return Verdict::Doubtful;
             }
             let sum = check::whole(packet, check, row, [header, data, trailer]);
             if field.get(packet, frame) != sum {
-                on_event(Event::Checksum { id });
+                on_event(Event::Checksum {
+                    id,
+                    header,
+                    is_request,
+                });
                 return Verdict::Doubtful;
             }
         }
@@ -243,12 +277,20 @@ impl Judge {
             (Some((_, row)), _) => (row.least..=row.most).contains(&length),
             (None, Some(row)) => length == packet.reserved.len() && self.awaits(row, frame),
             (None, None) => {
-                on_event(Event::UnknownId { id });
+                on_event(Event::UnknownId {
+                    id,
+                    header,
+                    is_request,
+                });
                 return Verdict::Proven;
             }
         };
         if !is_right {
-            on_event(Event::Length { id: Some(id) });
+            on_event(Event::Length {
+                id: Some(id),
+                header,
+                is_request,
+            });
             return Verdict::Proven;
         }
         let values = &self.values(frame);
@@ -262,9 +304,14 @@ impl Judge {
                 values,
             }
         } else if message.is_some() {
-            Event::Message { id, data, values }
+            Event::Message {
+                id,
+                data,
+                values,
+                header,
+            }
         } else {
-            Event::Request { id, values }
+            Event::Request { id, values, header }
         });
         Verdict::Taken
     }
@@ -331,7 +378,7 @@ pub(super) fn judge_delimited(
         {
             Event::Framing
         }
-        _ => Event::Length { id: None },
+        _ => Event::WRONG_LENGTH,
     };
     on_event(fault);
     Verdict::Doubtful

@@ -229,6 +229,71 @@ static void stream_events(void)
     put_number("pending", decoder.pending);
 }
 
+/* What a device answers. */
+typedef struct {
+    icd_stream_sender_t sender;
+    icd_answer_t answer;
+    octets_t data;
+} device_t;
+
+static void respond(void *context, const icd_event_t *event)
+{
+    device_t *device = context;
+    const icd_event_kind_t kind = event->kind;
+    const bool is_answered = kind == ICD_EVENT_MESSAGE || kind == ICD_EVENT_REQUEST || kind == ICD_EVENT_UNKNOWN_ID ||
+        kind == ICD_EVENT_LENGTH || kind == ICD_EVENT_CHECKSUM;
+    if (!is_answered || !event->has_id) {
+        return;
+    }
+    const size_t capacity = 2u * (size_t)device->sender.link->longest + 300u;
+    uint8_t *line = memory(capacity);
+    size_t written = 0;
+    if (device->data.length != 0u) {
+        memcpy(device->answer.data, device->data.data, device->data.length);
+    }
+    const icd_status_t status = icd_stream_respond(&device->sender, event, &device->answer, line, capacity, &written);
+    put_row("response");
+    if (status == ICD_OK) {
+        put_octets("bytes", line, written);
+    } else {
+        put_word("error", status == ICD_ERROR_LENGTH ? "length" : status == ICD_ERROR_RANGE ? "range" : "unsupported");
+    }
+}
+
+static void stream_respond(void)
+{
+    static const icd_verdict_t verdicts[] = {
+        ICD_VERDICT_ACK, ICD_VERDICT_REPLY, ICD_VERDICT_NAK, ICD_VERDICT_BUSY, ICD_VERDICT_PROGRESS,
+    };
+    const icd_link_t *link = next_link();
+    if (link == NULL || link->stream == NULL) {
+        refuse_status(ICD_ERROR_UNSUPPORTED);
+        return;
+    }
+    device_t device;
+    memset(&device, 0, sizeof device);
+    device.answer.verdict = verdicts[next_number()];
+    device.answer.has_reason = next_number() != 0u;
+    device.answer.reason = next_number();
+    device.data = next_octets();
+    device.answer.length = device.data.length;
+    device.answer.capacity = device.data.length > link->longest ? device.data.length : link->longest;
+    device.answer.data = memory(device.answer.capacity);
+    const size_t sent = link->stream->row_counts[ICD_TELEMETRY] + 1u;
+    const size_t received = link->stream->row_counts[ICD_TELECOMMAND] + 1u;
+    icd_stream_decoder_t decoder;
+    icd_stream_sender_init(&device.sender, link, ICD_TELEMETRY, memory(sent * sizeof(uint32_t)), sent);
+    device.sender.values = next_values(link, ICD_TELEMETRY);
+    icd_stream_decoder_init(
+        &decoder, link, ICD_TELECOMMAND, memory(link->longest), link->longest, memory(received * sizeof(uint32_t)),
+        received);
+    put_row("ok");
+    while (has_words()) {
+        const octets_t chunk = next_octets();
+        icd_stream_feed(&decoder, chunk.data, chunk.length, respond, &device);
+    }
+}
+
 /* Room for requests, with just the memory that they need. */
 static bool begin_stream_client(icd_client_t *client, icd_stream_line_t *line, const icd_link_t *link, size_t requests)
 {
@@ -334,9 +399,7 @@ static void stream_client(void)
 }
 
 const testee_op_t testee_stream_ops[] = {
-    {"stream_encode", stream_encode},
-    {"stream_encode_packet", stream_encode_packet},
-    {"stream_events", stream_events},
-    {"stream_client", stream_client},
-    {NULL, NULL},
+    {"stream_encode", stream_encode}, {"stream_encode_packet", stream_encode_packet},
+    {"stream_events", stream_events}, {"stream_respond", stream_respond},
+    {"stream_client", stream_client}, {NULL, NULL},
 };

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Optional
 
 from .._errors import LengthError, RangeError, UnknownIdError
 from .._testee_words import (
@@ -26,7 +26,8 @@ from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
 from .link import CanKind, Link
 from .logs import LogFrame, LogMessage, LogReader, LogWriter
-from .packet_formats import CHOSEN_ROLES, Direction
+from .packet_formats import CHOSEN_ROLES, Direction, Verdict
+from .sender import Sender
 from .stream import (
     StreamDecoder,
     StreamEvent,
@@ -212,6 +213,8 @@ def _link_data(link: Link, words: Words) -> str:
 
 _DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 _REQUEST = len(_DIRECTIONS)
+_VERDICTS: tuple[Verdict, ...] = ("ack", "reply", "nak", "busy", "progress")
+_ANSWERED = ("message", "request", "unknown_id", "length", "checksum")
 
 
 def _stream_encode(link: Link, words: Words) -> str:
@@ -246,6 +249,36 @@ def _stream_events(link: Link, words: Words) -> str:
     return f"{said} ok discarded={decoder.discarded} pending={decoder.pending}"
 
 
+def _stream_respond(link: Link, words: Words) -> str:
+    verdict, has_reason = _VERDICTS[number(words)], number(words)
+    given, data = maybe(words), octets(words)
+    reason = given if has_reason else None
+    sender = Sender(link, "telemetry", _values(words))
+    decoder = StreamDecoder(link, "telecommand")
+    said = ""
+    for chunk in words:
+        for event in decoder.feed(bytes.fromhex(chunk)):
+            if event.event in _ANSWERED and event.id is not None:
+                said += f" response {_response(sender, event, verdict, reason, data)}"
+    return said
+
+
+def _response(
+    sender: Sender,
+    event: StreamEvent,
+    verdict: Verdict,
+    reason: Optional[int],
+    data: bytes,
+) -> str:
+    try:
+        line = sender.respond(event, verdict, reason, data)
+    except LengthError:
+        return "error=length"
+    except RangeError:
+        return "error=range"
+    return "error=unsupported" if line is None else f"bytes={line.hex()}"
+
+
 def _stream_event(event: StreamEvent) -> str:
     said = f" {event.event}" + ("" if event.id is None else f" id={event.id}")
     if event.packet is not None:
@@ -278,6 +311,7 @@ _OPERATIONS = {
     "stream_encode": _stream_encode,
     "stream_encode_packet": _stream_encode_packet,
     "stream_events": _stream_events,
+    "stream_respond": _stream_respond,
     "stream_client": _testee_scripts.stream_client,
     "client": _testee_scripts.client,
     "procedure": _testee_scripts.procedure,

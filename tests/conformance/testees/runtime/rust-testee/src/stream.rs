@@ -2,8 +2,10 @@
 
 use crate::line::{hex, Answer, Words};
 use crate::nodes::LONGEST;
-use icd::wire::link::Link;
-use icd::wire::stream::{encode, encode_packet, encode_request, Decoder, Event, Values};
+use icd::wire::link::{Link, Verdict};
+use icd::wire::stream::{
+    self, encode, encode_packet, encode_request, Decoder, Event, Sender, Values,
+};
 use icd::wire::{Direction, Error};
 use std::fmt::Write;
 
@@ -81,12 +83,63 @@ pub fn stream_events(link: &'static Link, words: &mut Words) -> Answer {
     ))
 }
 
+pub fn stream_respond(link: &'static Link, words: &mut Words) -> Answer {
+    let verdicts = [
+        Verdict::Ack,
+        Verdict::Reply,
+        Verdict::Nak,
+        Verdict::Busy,
+        Verdict::Progress,
+    ];
+    let verdict = verdicts[words.number::<usize>()];
+    let (has_reason, reason) = (words.flag(), words.maybe());
+    let (reason, data) = (reason.filter(|_| has_reason), words.octets());
+    let mut sender = Sender::<(), SEQUENCES>::with_direction(link, Direction::Telemetry)?;
+    sender.values = chosen_values(words);
+    let mut decoder =
+        Decoder::<LONGEST, SEQUENCES>::with_limit(link, Direction::Telecommand, link.longest)?;
+    let mut answer = String::new();
+    while words.more() {
+        decoder.feed(&words.octets(), |event| {
+            let mut buffer = vec![0; LONGEST.max(data.len())];
+            buffer[..data.len()].copy_from_slice(&data);
+            let mut response = stream::Answer {
+                verdict,
+                reason,
+                buffer: &mut buffer,
+                length: data.len(),
+            };
+            let has_id = !matches!(
+                event,
+                Event::Packet { .. }
+                    | Event::Gap { .. }
+                    | Event::Length { id: None, .. }
+                    | Event::Overrun
+                    | Event::Framing
+            );
+            if has_id {
+                let mut line = vec![0; 2 * LONGEST + 300];
+                let text = match sender.respond(&event, &mut response, &mut line) {
+                    Ok(size) => format!("bytes={}", hex(&line[..size])),
+                    Err(Error::Length { .. }) => "error=length".into(),
+                    Err(Error::Range { .. }) => "error=range".into(),
+                    Err(_) => "error=unsupported".into(),
+                };
+                let _ = write!(answer, " response {text}");
+            }
+        });
+    }
+    Ok(answer)
+}
+
 fn shown(event: &Event<'_>) -> String {
     match *event {
-        Event::Message { id, data, values } => {
+        Event::Message {
+            id, data, values, ..
+        } => {
             format!(" message id={id} bytes={}{}", hex(data), chosen(values))
         }
-        Event::Request { id, values } => format!(" request id={id}{}", chosen(values)),
+        Event::Request { id, values, .. } => format!(" request id={id}{}", chosen(values)),
         Event::Packet {
             packet,
             id,
@@ -100,10 +153,10 @@ fn shown(event: &Event<'_>) -> String {
             )
         }
         Event::Gap { id, missing } => format!(" gap id={id} missing={missing}"),
-        Event::Checksum { id } => format!(" checksum id={id}"),
-        Event::Length { id: Some(id) } => format!(" length id={id}"),
-        Event::Length { id: None } => " length".into(),
-        Event::UnknownId { id } => format!(" unknown_id id={id}"),
+        Event::Checksum { id, .. } => format!(" checksum id={id}"),
+        Event::Length { id: Some(id), .. } => format!(" length id={id}"),
+        Event::Length { id: None, .. } => " length".into(),
+        Event::UnknownId { id, .. } => format!(" unknown_id id={id}"),
         Event::Overrun => " overrun".into(),
         Event::Framing => " framing".into(),
         _ => " other".into(),

@@ -56,6 +56,7 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         "stream_encode" => stream::stream_encode,
         "stream_encode_packet" => stream::stream_encode_packet,
         "stream_events" => stream::stream_events,
+        "stream_respond" => stream::stream_respond,
         "stream_client" => scripts::stream_client,
         "procedure" => return procedures::procedure(words.number(), words),
         _ => return Err(Refusal("request".into())),
