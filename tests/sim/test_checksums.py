@@ -95,7 +95,7 @@ def test_a_frame_with_a_wrong_checksum_or_none_is_told_of_and_not_taken(spoil, e
 )
 def test_the_board_refuses_a_telecommand_without_its_checksum(changed):
     outcome, _ = asked(Port(changed=changed), Request("telecommand", HEATER, b"\1"))
-    assert isinstance(outcome, Refused) and outcome.reason == "CRC check failed"
+    assert isinstance(outcome, Refused) and outcome.reason == "Checksum"
 
 
 class Board(socketserver.BaseRequestHandler):
