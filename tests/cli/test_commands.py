@@ -25,8 +25,9 @@ class TestCheck:
         result = icdgen("check")
         assert (result.status, result.out) == (0, "no findings\n")
 
-        assert "no ICD is in the current folder, so icdgen checked those that come" in (
-            result.err
+        assert (
+            "no ICD is in the current folder, so icdgen checked its shipped ICDs"
+            in (result.err)
         )
         assert "help: `icdgen check FILE` takes another one" in result.err
 

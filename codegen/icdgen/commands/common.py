@@ -166,7 +166,7 @@ def say_default(paths: list[Path], verb: str) -> None:
         return
     names = listing(str(path) for path in paths)
     if paths == [_short(shipped.icds())]:
-        text = f"no ICD is in the current folder, so icdgen {verb} those that come with it: {names}"
+        text = f"no ICD is in the current folder, so icdgen {verb} its shipped ICDs: {names}"
     else:
         text = f"{verb} {names}"
     command = context.command_path

@@ -27,7 +27,7 @@ _BITS_IN_DOUBLE = 32
 ones have 64 bits.
 """
 _BITS_IN_SINGLE = 16
-"""The same for floats of 32 bits."""
+"""The widest integers that every language converts to a 32-bit float without a loss."""
 
 
 class IntegerAccess(NamedTuple):

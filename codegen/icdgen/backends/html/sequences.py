@@ -135,7 +135,7 @@ def _on_framed_link(
         ACK: "it is done",
         NAK: "it is refused",
         BUSY: f"sent again after {client.busy_pause} ms, {client.retries} times at most",
-        PROGRESS: "the time-out begins anew",
+        PROGRESS: "the time-out starts again",
     }
     if rows := responses.general(relations, node):
         waits = f"waits {client.reply_timeout} ms; if it may be repeated, {client.retries} more times"

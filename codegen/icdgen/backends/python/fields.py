@@ -273,7 +273,7 @@ def accessors(field: FieldDescription) -> Iterator[tuple[str, str]]:
         if accessor.kind == "text":
             yield (
                 _text(field),
-                f"{accessor.comment} A byte that is none reads as U+FFFD.",
+                f"{accessor.comment} An invalid byte reads as U+FFFD.",
             )
         else:
             yield (

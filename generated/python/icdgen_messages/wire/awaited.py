@@ -59,7 +59,7 @@ class Awaited(NamedTuple):
 
     responses: tuple[Response, ...]
     sources: tuple[Optional[int], ...]
-    """Numbers of what is sent. Those in its header are known when it was sent."""
+    """Numbers of the sent packet. A number of its header is None until it was sent."""
     exchange: Exchange
     nameless: Optional[StreamRow] = None
     """Expected telemetry that a packet without its id carries."""

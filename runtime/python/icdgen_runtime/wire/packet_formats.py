@@ -63,11 +63,11 @@ class PacketField(NamedTuple):
     values: tuple[int, int]
     """Constant or default value: in telecommands, in telemetry."""
     id_shift: int = 0
-    """Of a part of the id: number of bits of the id in the fields after it."""
+    """Role ``id``: number of bits of the id in the fields after this part of it."""
     unit: int = 1
-    """Of a length: number of bytes that it counts as one."""
+    """Role ``length``: number of bytes that it counts as one."""
     plus: int = 0
-    """Of a length: number that is added to the bytes of the data, before it counts."""
+    """Role ``length``: number that is added to the bytes of the data, before it counts."""
 
     def counted(self, count: int) -> int:
         """Return the value of a length for so many bytes of data."""
