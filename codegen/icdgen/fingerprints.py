@@ -13,6 +13,7 @@ from hashlib import sha256
 
 ABSENT = "-"
 _CHUNK = 1 << 16  # bytes
+# Without O_BINARY, which only Windows has, `os.read` converts line endings there.
 _READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
 # Of a path that cannot be read, or only once, such as a pipe; records with it are never
 # valid.
@@ -28,6 +29,8 @@ def of_path(path: str) -> str:
         if stat.S_ISREG(status.st_mode):
             return _of_file(path, status.st_size)
         if stat.S_ISDIR(status.st_mode):
+            # Sorted, because the order of `os.listdir` depends on the file system.
+            # File names that are not UTF-8 have surrogates.
             return sha256(
                 "\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")
             ).hexdigest()
@@ -88,6 +91,7 @@ def _digest() -> str:
             is_module = top is package and path.endswith(".py")
             fingerprint = _of_module(path) if is_module else of_path(path)
             digest.update(f"\0{path}\0{fingerprint}".encode("utf-8", "surrogateescape"))
+    # An import would find this copy of jinja2, too, but would slow down every start.
     for place in sys.path:
         fingerprint = _of_module(os.path.join(place, "jinja2", "__init__.py"))
         if fingerprint != ABSENT:
@@ -97,10 +101,10 @@ def _digest() -> str:
 
 
 def _of_module(path: str) -> str:
-    """Return size and time of change of a module, `ABSENT` if there is none.
+    """Return size and modification time of a module, or `ABSENT` if it is not readable.
 
-    Python decides by these whether the compiled code of a module is current, so its
-    content would not detect more.
+    A hash of the content would not detect more: Python also decides by size and
+    modification time whether the compiled code of a module is current.
     """
     try:
         status = os.stat(path)

@@ -82,8 +82,9 @@ class ReservedBits(NamedTuple):
 
 
 def reserved_bits(message: Message | Struct, node: Node) -> tuple[ReservedBits, ...]:
-    """Return the runs of reserved bits, in order; of an array of structs, those of its
-    first element.
+    """Return the runs of reserved bits, in the order of the frame.
+
+    In an array of structs, only the first element is considered.
     """
     fields: list[NodePlace] = []
     omitted: list[range] = []
@@ -122,6 +123,8 @@ def reserved_bits_between(
             free[field.at : end] = bytes(field.width)
             continue
         for at in range(field.at, end, field.bits):
+            # The byte order has no effect here. It changes the significance of the bits
+            # of a value, but not their positions.
             for piece in pieces_at(at, field.bits, "little", field.bit_order):
                 first = 8 * piece.byte + (
                     piece.shift

@@ -1,8 +1,8 @@
 """Replacements of ``@dataclass(frozen=True)`` and of ``NamedTuple`` that create classes
 in a quarter and in half of the time.
 
-Every start creates the classes of the model and of the protocol. For type checkers,
-`dataclass` and `NamedTuple` are those of the standard library.
+Every start creates the classes of the model and of the protocol. Type checkers see
+`dataclass` and `NamedTuple` of the standard library instead.
 
 At run time, classes of `dataclass` are not frozen, because `dataclasses` would spend
 most of the time on generating methods that reject assignments, which mypy rejects
@@ -109,6 +109,8 @@ def _initialiser(kind: type[Any]) -> Callable[..., None]:
     """Return the ``__init__`` of a class, equivalent to the one that `dataclasses`
     generates.
     """
+    # As in `dataclasses`, keyword-only parameters follow all others: an inherited one
+    # can be in front of a positional one. The sort is stable.
     fields = sorted(dataclasses.fields(kind), key=lambda field: field.kw_only is True)
     # Default or factory of each field, by its name with a leading underscore.
     scope: dict[str, Any] = {}
@@ -124,6 +126,8 @@ def _initialiser(kind: type[Any]) -> Callable[..., None]:
         if field.kw_only is True and "*" not in parameters:
             parameters.append("*")
         parameters.append(f"{name}={default}" if default in scope else name)
+        # A factory is its own default: no caller passes it, so the identity test shows
+        # that the argument is missing.
         value = (
             f"{default}() if {name} is {default} else {name}"
             if default in factories

@@ -136,8 +136,9 @@ def chosen(
     """Return the selected ICDs, relative to the current folder if possible, and the
     configuration.
 
-    The default is the ICDs of the configuration. Without any, it is the shipped ICDs;
-    with ``prefers_folder``, those of the current folder if it has some.
+    If ``icds`` is empty, the first of these sources with ICDs is selected: the
+    configuration, the current folder (only with ``prefers_folder``), and the ICDs that
+    are shipped with icdgen.
     """
     try:
         configuration = config.find(Path.cwd())

@@ -141,7 +141,9 @@ class Container(Generic[AnyPart]):
         return -(-(self.at if first is None else first.at) // 8)
 
     def is_behind(self, part: AnyPart) -> bool:
-        """Return whether a part follows one of variable length."""
+        """Return whether a part follows a variable-length part."""
+        # Both loops share this iterator: the second one begins behind the first
+        # variable-length part.
         parts = iter(self.parts)
         return any(not other.bits for other in parts) and any(
             other is part for other in parts
@@ -222,16 +224,20 @@ def fixed_field(part: Part, name: str, at: int) -> Item:
 
 
 def bits_of_counted(parts: Iterable[Part]) -> int:
-    """Return the most bits of the counted parts, which a part up to the end of the
-    frame leaves to them.
+    """Return the maximum number of bits of all parts with a counter.
+
+    A part that extends to the end of the frame must leave room for them.
     """
     counted = (part for part in parts if part.counter is not None)
     return sum(int(part.item["up_to"]) * part.element for part in counted)
 
 
 def in_sequence(fields: list[Item]) -> list[Item]:
-    """Return fields in the order of the frame with the keys of those that follow one of
-    variable length: each names the field in front of it.
+    """Return fields with positions that do not depend on the length of earlier fields.
+
+    ``fields`` are in the order of the frame. Each field behind the first
+    variable-length field gets the position of that field as ``at``, and in ``after``
+    the name of the field directly in front.
     """
     result: list[Item] = []
     first: Item | None = None

@@ -31,7 +31,8 @@ _TOPICS = {
 class Sending:
     """Container that an interface carries.
 
-    ``kind`` and ``number`` are None if no interface states them.
+    ``kind`` is ``telecommand`` or ``telemetry``, or None if the data sheet does not
+    define a single direction. ``number`` is None without a constant parameter.
     """
 
     container: Element

@@ -547,7 +547,7 @@ class Layout(Container[Part]):
         super().add(part)
 
     def _has_uncounted(self, added: Part) -> bool:
-        """Return whether no field counts a variable-length part, or one that is added."""
+        """Return whether ``added`` or another variable-length part has no counter."""
         return any(
             not part.bits and part.counter is None for part in (*self.parts, added)
         )
@@ -566,6 +566,7 @@ class Layout(Container[Part]):
             )
             if is_length and other.item["type"] == "uint":
                 length = eds_parts.line_of(other.entry, self.sheets)
+                # The ICD key `plus` adds an integer to a counter. No key scales it.
                 if (
                     length is not None
                     and length.factor == 1

@@ -23,8 +23,8 @@ _TYPES = {
 class Range(NamedTuple):
     """Range of values.
 
-    An end is None if unlimited. ``is_low_in`` and ``is_high_in`` state whether the ends
-    are included.
+    ``low`` is None without a lower limit, ``high`` without an upper limit.
+    ``is_low_in`` and ``is_high_in`` state whether the range includes its limits.
     """
 
     low: Fraction | None = None
@@ -113,6 +113,7 @@ def limited(item: Item, bits: int, of: Range) -> Item:
                 if end.denominator == 1
                 else _double(end)
             )
+            # YAML 1.1 requires a point in floats: PyYAML reads ``1e+22`` as text.
             if number is not None and "e" not in str(number) and len(str(number)) < 30:
                 result[key] = number
     return result

@@ -51,6 +51,8 @@ class Names:
                     file, f"more than {_DEEPEST} systems are nested", "make them flat"
                 )
             path = f"{above}/{system.get('name', '')}"
+            # Both sections of a SpaceSystem share one name space: commands can refer to
+            # types in TelemetryMetaData, and telemetry to types in CommandMetaData.
             for meta in (
                 child
                 for child in system
@@ -187,6 +189,8 @@ class Names:
 
         Raises `NotSupported`.
         """
+        # A slash separates systems as well as members of aggregates, so only a search
+        # shows where the name of the parameter ends.
         words = reference.split("/")
         for length in range(len(words), 0, -1):
             try:
@@ -201,10 +205,12 @@ class Names:
         )
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """Return the element that a reference names in the system or an enclosing one.
+        """Return the element that a reference names.
 
-        Raises `NotSupported` if there is none.
+        Raises `NotSupported` if no such element exists.
         """
+        # XTCE schema, NameReferenceType: an unqualified name is searched in the current
+        # SpaceSystem first, then in progressively higher SpaceSystems.
         path = self.system(seen_from)
         while True:
             target = self._found.get(

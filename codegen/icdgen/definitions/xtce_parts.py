@@ -1,5 +1,5 @@
-"""Entries of XTCE containers at their positions, and the fields that those of variable
-length and those behind them become.
+"""Entries of XTCE containers at their positions. Creates the ICD fields of the first
+variable-length entry and of all later entries.
 """
 
 from __future__ import annotations
@@ -147,4 +147,5 @@ def _counted(counter: Part, piece: Piece, most: int) -> int:
     if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
         return 0
     counted = min(most, (1 << counter.bits) - 1 + piece.plus)
+    # A counter with the value 0 means `plus` elements, which the maximum must allow.
     return counted if counted >= max(1, piece.plus) else 0

@@ -1,8 +1,8 @@
 """Members that code handles together: flags that share a byte, rows of words, elements
 of arrays, and arrays of structs.
 
-A language states the smallest group for which it has code. Which members form a group
-is the same in all languages.
+A language states the smallest group for which it has code. All languages share the
+rules by which members form groups.
 """
 
 from __future__ import annotations

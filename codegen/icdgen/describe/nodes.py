@@ -112,7 +112,9 @@ class MessageDescription(Composite[Message]):
 
     @property
     def counted_parts(self) -> tuple[VariablePartDescription, ...]:
-        """Parts of variable length and those in elements of them."""
+        """Variable-length parts of the message, then the variable-length arrays in the
+        elements of these parts.
+        """
         inner = (inner for part in self.variable_parts for inner in part.inner)
         return (*self.variable_parts, *inner)
 
@@ -516,8 +518,8 @@ class Description:
         return self._nodes[node if isinstance(node, str) else node.name]
 
     def users_of(self, node: Node) -> tuple[NodeDescription, ...]:
-        """Return the nodes that can use what a node declares: those that include it,
-        and the node itself.
+        """Return the nodes that can use the declarations of a node: the node itself and
+        all nodes that include it.
         """
         return self._users.get(node.name, ())
 

@@ -105,8 +105,10 @@ class NamingPolicy:
         return ()
 
     def of_part(self, part: Part) -> tuple[Identifier, ...]:
-        """Return the names of a message, struct or enumeration, without those of its
-        fields or members; computed once, for the table and for templates.
+        """Return the names of a message, struct or enumeration, without the names of
+        its fields or members.
+
+        Caches the result, because the symbol table and the templates need it.
         """
         names = self._of_parts.get(part)
         if names is None:
@@ -172,8 +174,8 @@ def _symbols(description: Description, policy: NamingPolicy) -> Iterator[Identif
 def symbols_of_part(
     description: Description, part: Part, policy: NamingPolicy
 ) -> Iterator[Identifier]:
-    """List the identifiers of a message, struct or enumeration, without those of its
-    fields or members.
+    """Yield the identifiers of a message, struct or enumeration, without the
+    identifiers of its fields or members.
     """
     users = description.users_of(part.node)
     for node in users:

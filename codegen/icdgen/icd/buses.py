@@ -1,5 +1,7 @@
-"""Links on buses (UART, I2C and CAN), as the ICD declares them: ``packets``, ``commands``
-and ``requests`` of a `link` without ``framing``, and those of each of its ``buses``.
+"""Links on buses (UART, I2C and CAN), as the ICD declares them.
+
+A `link` without ``framing`` declares ``packets``, ``commands`` and ``requests``. Each
+of its ``buses`` can override ``commands`` and ``requests``.
 
 `icdgen.icd.rules.buses` checks them; `icdgen.protocol.reading` makes tables of them.
 """
@@ -17,7 +19,7 @@ UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 
 
 class BusLink(NamedTuple):
-    """What a `link` says about one of its buses."""
+    """Packet formats and responses of a `link` on one bus."""
 
     packets: Packets
     commands: Mapping[str, Section]  # responses to telecommands, by kind
@@ -40,8 +42,9 @@ class BusLink(NamedTuple):
     @property
     def responses(self) -> Packets:
         """Return the packets without a message in the order in which the runtimes number
-        them: acknowledge, refusal, refusal of a request. One that the bus does not have
-        is blank.
+        them: acknowledge, negative acknowledge, negative acknowledge of a request.
+
+        A packet that the bus does not have is empty, to keep the numbers of the others.
         """
         rows = self.commands.get(ACK), self.commands.get(NAK), self.requests.get(NAK)
         packets = (self.responding(row) or Packet("", {}, (), ()) for row in rows)
@@ -66,8 +69,9 @@ def buses_with(packet: Section) -> tuple[str, ...]:
 
 
 def bus_link(link: Section, bus: str) -> BusLink:
-    """Return what a `link` says about a bus: its packets, and the responses of the link,
-    which those of the bus precede.
+    """Return the packet formats and responses of a `link` on a bus.
+
+    If the bus and the link both declare a response of a kind, the bus takes precedence.
     """
     packets, buses = _mapping(link, "packets"), _mapping(link, "buses")
     section: dict[str, Section] = {

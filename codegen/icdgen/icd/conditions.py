@@ -28,7 +28,10 @@ def _when(item: Map) -> Map:
 def conditions_of(
     fields: Mapping[str, Map], item: Map, enums: Mapping[str, Enum]
 ) -> tuple[Condition, ...]:
-    """Return the valid conditions of a field; `fields` are those of `fields_by_name`."""
+    """Return the valid conditions of a field.
+
+    ``fields`` is the result of `fields_by_name`.
+    """
     conditions = []
     for name, listed in _when(item).items():
         field = fields.get(name)
@@ -59,8 +62,9 @@ def are_valid(node: LayoutNode) -> bool:
 def faults_of_names(
     message: Map, fields: Mapping[str, Map], item: Map
 ) -> Iterator[Fault]:
-    """Yield the faults of the fields that a field depends on; `fields` are those of
-    `fields_by_name`.
+    """Yield a fault for each condition that names an absent or unsuitable field.
+
+    ``fields`` is the result of `fields_by_name`.
     """
     when = _when(item)
     for name in when:
@@ -90,8 +94,9 @@ def faults_of_names(
 def faults_of_values(
     fields: Mapping[str, Map], item: Map, enums: Mapping[str, Enum]
 ) -> Iterator[Fault]:
-    """Yield the faults of the values that other fields must have; `fields` are those of
-    `fields_by_name`.
+    """Yield the faults of the values in the conditions of a field.
+
+    ``fields`` is the result of `fields_by_name`.
     """
     when = _when(item)
     for name, listed in when.items():

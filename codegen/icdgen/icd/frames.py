@@ -203,8 +203,8 @@ def frame_fields(
 
 
 def fixed_fields(layout: Layout, orders: Orders) -> tuple[FrameField, ...]:
-    """Return the scalars whose positions do not depend on the frame: those of the fixed
-    part, counts and derived values.
+    """Return the scalars whose positions do not depend on the frame: scalars of the
+    fixed part, counts and derived values.
     """
     # Zero elements need not be a valid size here: only nodes behind the fixed part
     # would have other positions.

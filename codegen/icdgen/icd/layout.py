@@ -152,10 +152,11 @@ class Scalar(LayoutNode):
         return (1 << (self.bits - self.is_signed)) - 1
 
     def initial_value(self, bits: int, smallest_raw: int) -> int | bytes:
-        """Return the raw value in a new message: the constant, else the smallest valid
-        value; of a float its bits.
+        """Return the raw value in a new message: the constant, or else the smallest
+        valid value. For a float, the raw value is its bit pattern.
 
-        `bits` are those in the frame. `smallest_raw` comes from `Layout.smallest_raw`.
+        ``bits`` is the width of the field in the frame, ``smallest_raw`` the result of
+        `Layout.smallest_raw`.
         """
         # For a constant 0, `smallest_raw` is 0, too: a counter cannot be a constant.
         return bytes(bits // 8) if self.is_bytes else self.const or smallest_raw
@@ -332,7 +333,9 @@ class Layout:
 
     @cached_property
     def parts_by_size(self) -> dict[str, VariablePart]:
-        """Variable-length parts and those in elements of them, by the keys of `Sizes`."""
+        """Variable-length parts of a frame, then the variable-length arrays in the
+        elements of these parts, by the keys of `Sizes`.
+        """
         parts = {part.name: part for part in self.parts}
         return parts | {
             part.inner_name(inner): inner for part in self.parts for inner in part.inner
@@ -340,7 +343,9 @@ class Layout:
 
     @property
     def counted_parts(self) -> Iterable[VariablePart]:
-        """Variable-length parts and those in elements of them."""
+        """Variable-length parts of a frame, then the variable-length arrays in the
+        elements of these parts.
+        """
         return self.parts_by_size.values()
 
     @property

@@ -24,7 +24,7 @@ ID_ROLE = "id"
 class Packet(NamedTuple):
     """Packet format as the ICD declares it.
 
-    ``name`` is empty if the link has one format, which then is that of both directions.
+    ``name`` is empty if the link has one format for both directions.
     """
 
     name: str
@@ -95,8 +95,10 @@ class Packets(NamedTuple):
         return None if number is None else self.all[number]
 
     def carrying(self, direction: str) -> list[Packet]:
-        """Return the packets of messages of a direction: not those that only respond,
-        and not those that only request telemetry.
+        """Return the packets with messages of a direction.
+
+        Packets that only respond, only request telemetry, or carry a part of a long
+        message are excluded.
         """
         return [
             packet
@@ -121,8 +123,8 @@ class Packets(NamedTuple):
         return self.requested_bytes if is_of_request else packet.reserved
 
     def of(self, message: str, direction: str) -> list[Packet]:
-        """Return the packets in which a message can be sent: those that list it,
-        otherwise those without a list.
+        """Return the packets in which a message can be sent: packets that list the
+        message, or else packets without a list of messages.
         """
         carrying = self.carrying(direction)
         listed = [packet for packet in carrying if message in (packet.messages or ())]
@@ -132,7 +134,7 @@ class Packets(NamedTuple):
 def declared_packets(link: Section, messages: Iterable[Message] = ()) -> Packets:
     """Return the packet formats of a `link`.
 
-    ``messages``: those of the node, whose responses can name packets.
+    ``messages`` are the messages of the node. Their responses can name packets.
     """
     own = link.get("packets")
     header, trailer = (_fields(link.get(part)) for part in ("header", "trailer"))
@@ -192,6 +194,7 @@ def place_fields(link: object) -> None:
                 # In the tree itself, so that rules and tables of the link read the same
                 # positions.
                 at, bits = row.setdefault("at", end), row.get("bits")
+                # Not `isinstance`, because `true` is an `int` in Python.
                 if type(at) is int and type(bits) is int:
                     end = at + bits
 

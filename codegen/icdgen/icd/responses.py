@@ -47,8 +47,9 @@ Section = Mapping[str, Any]
 
 
 class NumberRun(NamedTuple):
-    """Bits of a field that are one run of a number in at most 4 bytes: the first byte,
-    the number of bytes, the lowest bit within the number, and the byte order.
+    """Position of a field whose bits are contiguous in a number of at most 4 bytes: the
+    first byte, the number of bytes, the lowest bit within the number, and the byte
+    order.
     """
 
     byte: int
@@ -58,8 +59,10 @@ class NumberRun(NamedTuple):
 
 
 def declared_responses(commands: Section, message: Message) -> dict[str, Section]:
-    """Return the responses of a telecommand by kind: its own, otherwise those of all
-    telecommands. See `responses_in`.
+    """Return the responses to a telecommand by kind, as `responses_in` does.
+
+    ``commands`` contains the responses to all telecommands. The key ``response`` of the
+    telecommand overrides them.
     """
     own = message.response
     if own == NONE:
@@ -107,11 +110,14 @@ def status_of(kind: str, row: Section) -> str | None:
 
 
 def id_byte_of(node: Node, name: str) -> int | None:
-    """Return which byte of an id ``id[0]`` is, counted from the most significant of 4
-    bytes. Bytes of an id count as they are written. None if it is no such byte.
+    """Return the position of a byte such as ``id[0]`` in an id of 4 bytes, from 0 for
+    the most significant byte; None for any other name.
+
+    ``id[0]`` is the most significant byte of an id of the node.
     """
     match, size = _ID_BYTE.fullmatch(name), ceil(node.id_bits / 8)
     index = int(match[1]) if match else size
+    # Clients store each id in 4 bytes, with zeros in front of a shorter id.
     return ID_BYTES - size + index if index < size else None
 
 
@@ -121,8 +127,10 @@ def field_of(message: Message, name: str | None) -> NodePlace | None:
 
 
 def number_run(place: NodePlace, node: Node) -> NumberRun | None:
-    """Return the bits of a field as one run; None if they are none, or in too many
-    bytes.
+    """Return the position of a field as a number.
+
+    None if the field has no bits, if its bits are not contiguous in the number, or if
+    they extend over more than 4 bytes.
     """
     orders = place.orders_in_effect(Orders(node.byte_order, node.bit_order))
     pieces = pieces_at(place.at, place.bits, orders.byte, orders.bit)

@@ -598,7 +598,7 @@ class _Tables(TableSet):
         return f"{{{_in_lines(lines)}}}"
 
     def place(self, place: NumberPlace | None) -> str:
-        """Declare the place of a number; return NULL if there is none."""
+        """Declare the position of a number in a frame; return NULL for None."""
         rows = [number_place(place, ID_BYTES)] if place else []
         return self.shared("place", "icd_number_place_t", rows)
 

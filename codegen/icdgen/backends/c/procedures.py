@@ -267,7 +267,11 @@ class _Tables(TableSet):
     """Tables of a procedure."""
 
     def of_procedure(self, procedure: Procedure) -> list[Table]:
-        """Return the tables of what the steps do, then those of the procedure."""
+        """Return the tables of a procedure.
+
+        The tables of its steps come first, because C needs their declarations before
+        the table that refers to them.
+        """
         self._rows: dict[str, list[Row]] = {
             name: [] for name in ("sends", "polls", "receives", "checksums", "tests")
         }

@@ -343,6 +343,7 @@ def _tail(
             if scalar.model is tail.counter.model
         ),
         "high": tail.model.high,
+        # `icdgen_selftest.c` expects frame i at byte i * `length` of a flat array.
         "frames": _bytes(
             b"".join(
                 frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted
@@ -355,7 +356,7 @@ def _tail(
 def _accessors(accessor: Accessor, settings: Settings | None) -> Accessors:
     """Return accessors with test values.
 
-    An overlay has no setter, and its ``settings`` are None.
+    ``settings`` is None for an overlay field, because it has no setter.
     """
     if accessor.kind == "text":
         type, rows = "char", _text_rows(settings or [])

@@ -85,9 +85,10 @@ class TelecommandRow(NamedTuple):
 
 
 def of_node(relations: Relations, node: Node) -> dict[str, object]:
-    """Return the responses of a node: those of all telecommands, those of each
-    telecommand that differs, those of requests of telemetry, and the reasons of
-    refusals. Empty without responses.
+    """Return the template values of the responses of a node; empty without responses.
+
+    They contain the responses to all telecommands, to each telecommand with its own
+    responses, and to telemetry requests, and the possible reasons for a NAK.
     """
     requests = request_row(relations, node)
     commands = _commands(relations, node)

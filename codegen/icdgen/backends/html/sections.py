@@ -55,8 +55,10 @@ class Section:
 
 
 def bands(relations: Relations, message: Message) -> list[Section]:
-    """Return the contained messages or arrays and the bytes between them; empty if
-    there are none.
+    """Return a section for each contained message, or else for each array, and sections
+    for the bytes between them.
+
+    The list is empty if the message contains no messages and no arrays.
     """
     repeats = relations.links.repeats(message)
     return _messages(relations, message, repeats) or _arrays(message, repeats)
@@ -184,7 +186,7 @@ def _has_bits(place: NodePlace) -> bool:
 
 
 def _folded(repeats: Repeats, section_list: list[Section]) -> list[Section]:
-    """Return the sections; those of a long message are folded, except the first."""
+    """Return the sections. In a long message, fold all sections but the first."""
     if not _is_long(repeats):
         return section_list
     return [

@@ -207,7 +207,10 @@ def procedures(relations: Relations, node: Node, node_facts: Facts) -> list[Sequ
 def _steps(
     relations: Relations, node_facts: Facts, procedure: Procedure
 ) -> Iterator[Arrow]:
-    """Yield the arrows of the steps. The first arrow of a loop says what it repeats."""
+    """Yield the arrows of the steps.
+
+    The note of the first arrow in a loop describes the loop: ``for each block``.
+    """
     # Loops and tests have no arrow. Their words wait for the next step that has one.
     when: list[str] = []
     blocks = procedure.blocks

@@ -218,7 +218,10 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
 def _packet_lines(
     label: str, parts: list[packet_formats.Part], sent: bytes
 ) -> Iterator[Line]:
-    """Yield a packet by its parts; also as it is sent, if byte stuffing changed it."""
+    """Yield a line with the parts of a packet.
+
+    If byte stuffing changed the packet, a second line has the transmitted bytes.
+    """
     yield Line(label, [Chunk(part.kind, _hex(part.data), part.title) for part in parts])
     if sent != b"".join(part.data for part in parts):
         yield Line(

@@ -49,7 +49,7 @@ def accessors(field: FieldDescription) -> list[AccessorCode]:
 
 
 def texts(composite: Composite[Any]) -> list[Accessor]:
-    """Return the accessors of texts, those of arrays first."""
+    """Return the accessors of text fields; accessors of arrays of texts come first."""
     accessors = [
         accessor
         for field in composite.members

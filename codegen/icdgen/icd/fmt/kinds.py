@@ -44,9 +44,10 @@ class Kind:
         self._children: dict[tuple[str | None, bool], Kind] = {}
 
     def child(self, key: str | None, mapping: bool) -> Kind:
-        """Return the kind of the value of ``key``, or of an item if ``key`` is None.
+        """Return the kind of a mapping or sequence in this one.
 
-        ``mapping`` selects between a mapping and a sequence.
+        ``key`` is its key in a mapping, or None for an item of a sequence. ``mapping``
+        states whether the child is a mapping. Otherwise it is a sequence.
         """
         at = (key if key in self.keys else None, mapping)
         if at not in self._children:

@@ -14,8 +14,11 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.source import Event
 
 SCHEMA_LINE = "# yaml-language-server:"
+# YAML 1.1, which PyYAML implements, has more line breaks than CR and LF.
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 _BLOCK = ("|", ">")
+# A `#` within a plain scalar is text. Unlike YAML, PyYAML accepts a comment directly
+# after an indicator of a flow collection, without a space.
 _BEFORE_COMMENT = " \t\ufeff,[]{}\n\r\x85\u2028\u2029"
 
 
@@ -260,8 +263,8 @@ def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
 
 
 def _header_comment(text: str, event: Event) -> list[str]:
-    """Return the comment after the ``|`` or ``>`` of a block scalar; an empty list if
-    there is none.
+    """Return a list with the comment after the ``|`` or ``>`` of a block scalar; an
+    empty list without a comment.
     """
     at = event.start_mark.index
     header = text[at : _line_end(text, at)]

@@ -53,15 +53,15 @@ BYTE = 8
 
 
 class BusResponses(NamedTuple):
-    """Responses on a bus that a node declares: those of the bus, or of the link."""
+    """Responses on a bus that a node declares, for this bus or for the whole link."""
 
     link: Link
     bus: str
     key: str  # `commands` or `requests`
     owner: Map  # the mapping of that key
     is_of_link: bool
-    kinds: tuple[str, ...]  # those that have an effect on the bus
-    packets: Packets  # of the bus, those of included files too
+    kinds: tuple[str, ...]  # kinds that have an effect on the bus
+    packets: Packets  # on the bus, including packets of included files
 
     def is_elsewhere(self, row: Map) -> bool:
         """Return whether a response is a packet that this bus does not have. ICD095

@@ -237,8 +237,9 @@ class Context:
         return names - {message.name for message in self.messages_of(node)}
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """Return the protocol facts in effect for a node: those of included nodes,
-        overridden by its own.
+        """Return the protocol facts in effect for a node.
+
+        Facts of the node itself override facts of included nodes.
         """
         return protocol_of_all(self.scope(node))
 

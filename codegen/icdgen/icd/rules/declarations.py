@@ -1,5 +1,5 @@
-"""Identifiers that languages declare for a model, without those of lines that have
-errors.
+"""Identifiers that languages declare for a model, without identifiers that originate
+from ICD lines with errors.
 """
 
 from __future__ import annotations

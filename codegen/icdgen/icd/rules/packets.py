@@ -212,7 +212,10 @@ def requested_telemetry_is_recognized(ctx: Context) -> Iterator[Fault]:
 def _nameless(
     ctx: Context, link: Link, requests: Map, packet: Packet
 ) -> Iterator[Fault]:
-    """Yield the faults of the telemetry in a packet that does not say what it carries."""
+    """Yield the faults of telemetry in a packet without id.
+
+    The host can identify such telemetry only by the request that it sent before.
+    """
     telecommands = ids_of(ctx, link.node, TELECOMMAND)
     ids = [id for id, _ in telecommands]
     commands = link.section.get("commands")

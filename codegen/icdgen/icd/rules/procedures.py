@@ -64,13 +64,13 @@ class Placed(NamedTuple):
 
 
 def _map(owner: Mapping[str, Any], key: str) -> Map:
-    """Return the mapping of a key; an empty one if it is none."""
+    """Return the mapping of a key; an empty mapping for any other value."""
     value = owner.get(key)
     return value if isinstance(value, Map) else unread()
 
 
 class Names(NamedTuple):
-    """What the steps of a procedure can name."""
+    """Declarations to which the steps of a procedure can refer by name."""
 
     nodes: Mapping[str, Node]  # the node and those that it includes
     procedure: Map
@@ -542,7 +542,7 @@ def _transfer(names: Names, blocks: Map) -> Iterator[Fault]:
 
 
 def _rounds(step: Map, missing: Map) -> Iterator[Fault]:
-    """Yield a fault unless something tells which packets are no longer missing."""
+    """Yield a fault if no step transfers packets, or if `map` is absent or wrong."""
     kinds = {placed.kind for placed in steps_in(missing.get("steps"))}
     if "each" not in missing and "receive" not in kinds:
         text = "nothing in `missing` transfers packets"

@@ -80,8 +80,9 @@ class Declared(NamedTuple):
 
 
 def _owners(ctx: Context, link: Link) -> list[tuple[Map, list[Message]]]:
-    """Return the mappings with responses: those of all telecommands, of one, and of
-    requests, each with the telecommands.
+    """Return each mapping with responses and the telecommands to which it applies.
+
+    The mapping of responses to telemetry requests applies to no telecommands.
     """
     telecommands = [message for _, message in ids_of(ctx, link.node, TELECOMMAND)]
     commands = link.section.get("commands")
