@@ -169,7 +169,7 @@ class Builder:
     def build(self) -> tuple[object, list[Finding]]:
         """Return the root of the tree and the findings.
 
-        After a syntax error, the root is None.
+        Return None in place of the root if the text cannot be parsed.
         """
         import yaml
         from yaml import events

@@ -45,13 +45,15 @@ def faults_in_struct(
     """Yield the faults of the variable-length arrays of a struct and of the fields
     behind them.
 
-    `variable` has the names of structs with variable-length arrays. What a counter can
-    count depends on the message: see `faults_of_inner_counts`.
+    `variable` has the names of structs with variable-length arrays. Their counters are
+    fields of a message; `faults_of_inner_counts` checks them.
     """
     before: Map | None = None
     for item in sequence_of(struct):
         name = f"`{item['name']}`"
         key = count_key(item)
+        # A field at the wrong place makes the places of all fields behind it wrong.
+        # Therefore only the first error of this kind is reported.
         if before is None and not is_variable(item):
             text = f"{name} has `after: {item['after']}`, but no field in front of it has a variable length"
             yield Fault.at(

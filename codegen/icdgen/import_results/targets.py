@@ -19,7 +19,10 @@ from icdgen.import_results import update
 
 @dataclass
 class Target:
-    """A file to write. ``changes`` is None for a new file."""
+    """A file to write.
+
+    ``changes``: descriptions of the changes to an existing file; None for a new file.
+    """
 
     path: Path
     text: str

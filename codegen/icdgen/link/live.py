@@ -75,8 +75,9 @@ class Monitor:
 
     @property
     def hint(self) -> str:
-        """What to do if all telemetry must be requested and no message is named; empty
-        otherwise.
+        """Advice to name messages of a node without unsolicited telemetry.
+
+        Empty if messages are named, or if the node has unsolicited telemetry.
         """
         form = self.facts.stream
         if form is None or self.messages:
@@ -131,9 +132,9 @@ class Monitor:
             self.silent = {name for name in self.awaited if self._is_overdue(name)}
 
     def _is_overdue(self, name: str) -> bool:
-        """Return whether a message that did not arrive in a round was to arrive.
+        """Return whether a message that did not arrive in a round is overdue.
 
-        A message with a period may be late by one of them.
+        A periodic message is overdue when it has not arrived for two periods.
         """
         if name not in self.received_at:
             return True
@@ -141,7 +142,7 @@ class Monitor:
         return age > 2 * self._period_seconds(name)
 
     def _period_seconds(self, name: str) -> float:
-        """Return the period of a message; 0 if the ICD does not say it."""
+        """Return the period of a message; 0 for a message without a period."""
         messages = self.icd.messages_of(self.node)
         period = next(each.period_ms for each in messages if each.name == name)
         return (period or 0) / 1000

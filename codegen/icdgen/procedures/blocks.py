@@ -63,7 +63,7 @@ class BlockRun(Run):
             self.map[at] = data[part]
 
     def _parts(self, message: Message) -> Iterator[tuple[slice, slice]]:
-        """Yield the range of the map that a message has, and its range there."""
+        """Yield the range of the map that a message has, and its range in it."""
         form = self.blocks.map
         if form is None:
             return
@@ -236,7 +236,7 @@ class Writing(BlockRun):
 
     @property
     def _begin_of_block(self) -> int | None:
-        """Offset of the first packet of the block; None if the device is not told."""
+        """Offset of the first packet of the block; None if no telecommand has it."""
         if PACKET_OFFSET not in self.registers:
             return 0
         return (
@@ -286,8 +286,11 @@ class Writing(BlockRun):
             self.failed = not self._store(offset, data)
 
     def _cut(self, offset: int, data: bytes) -> bytes:
-        """Return a packet without its fill, as far as the device is told the end of the
-        block. ``offset``: that of the packet in the block.
+        """Return a packet without the fill behind the end of the block.
+
+        Return the whole packet if telecommands do not have the offset and length of the
+        block: the device then cannot detect the fill. ``offset``: offset of the packet
+        in the block.
         """
         if {BLOCK_OFFSET, BLOCK_LENGTH} <= self._block_numbers:
             return data[: max(0, self.registers.get(BLOCK_LENGTH, 0) - offset)]
@@ -297,6 +300,7 @@ class Writing(BlockRun):
         data = self.covered()
         length, offset = self.length_of(data), self.registers.get(BLOCK_OFFSET, 0)
         self.failed = length > len(data) or not self._store(offset, data[:length])
+        # Without a telecommand that begins a block, the next packet begins one.
         self._is_complete = not self.starts - {self._commit_step}
         if not self.failed:
             self.device.objects.report(self.effect.kind, self.key)

@@ -1,7 +1,7 @@
-"""What a procedure does in the device: the objects that it reads and changes.
+"""Effects of procedures in the device: the objects that they read and change.
 
-An object is bytes, such as a file or a program. The numbers of its key identify it among
-those of its kind.
+An object is a sequence of bytes, such as a file or a program. It has a kind, and a key
+of numbers that identifies it within its kind.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Object:
 class Objects:
     """Objects of the device by kind and key, in order of creation.
 
-    ``computed``: function that returns the content of an object that is made of others,
-    or None. ``on_write`` is called with each object that is complete, or a block of
-    which is.
+    ``computed``: function that returns the content of an object that the device
+    computes from other objects; None for any other object. ``on_write`` is called when
+    an object, or a block of it, is complete.
     """
 
     kinds: dict[str, dict[Key, Object]] = field(default_factory=dict)
@@ -48,12 +48,13 @@ class Objects:
         return None if stored is None else bytes(stored.data)
 
     def put(self, kind: str, key: Key, data: bytes) -> None:
-        """Store an object, in place of the one with the same key."""
+        """Store an object. Replace an object that has this key."""
         self.of(kind)[key] = Object(bytearray(data))
 
     def patch(self, kind: str, key: Key, offset: int, data: bytes) -> None:
         """Store a part of an object. Bytes before it that do not exist yet are 0."""
         stored = self.of(kind).setdefault(key, Object(bytearray()))
+        # Packets that the device stores one by one leave a gap if one of them is lost.
         stored.data.extend(bytes(max(0, offset - len(stored.data))))
         stored.data[offset : offset + len(data)] = data
 
@@ -64,15 +65,16 @@ class Objects:
 
 
 def effect_of(procedure: Procedure) -> Effect:
-    """Return the effect of a procedure: that of the ICD, or the default."""
+    """Return the effect of a procedure from the ICD, or else the default effect."""
     return procedure.effect or default_effect(procedure)
 
 
 def default_effect(procedure: Procedure) -> Effect:
     """Return the effect of a procedure if the ICD does not describe it.
 
-    A procedure with blocks reads or writes an object of its own kind, by the inputs
-    that its telecommands have. Others have no effect.
+    A procedure with blocks reads or writes an object of its own kind. The inputs
+    that its telecommands have are the key of the object. Other procedures have no
+    effect.
     """
     sent = {
         put.value.number

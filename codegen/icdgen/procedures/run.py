@@ -40,8 +40,10 @@ Change = Callable[[bytes], bytes]
 
 
 class Refused(Exception):
-    """The device refuses a telecommand: because of the number at ``place``, or because
-    it cannot do what it is to do.
+    """The device refuses a telecommand.
+
+    ``place``: place of the number that the device does not accept; None if it accepts
+    the telecommand but cannot execute it.
     """
 
     def __init__(self, place: NumberPlace | None = None) -> None:
@@ -62,12 +64,12 @@ def checksum_of(algorithm: ChecksumAlgorithm | None, data: bytes) -> int:
 
 @dataclass
 class Device:
-    """What all procedures of a device share.
+    """State and settings that all procedures of a device share.
 
-    ``busy``: duration of each slow step in milliseconds. ``algorithm``: that of
-    the checksum in the description of an object. ``filler``: value of the bytes after the end of a
-    block in its last packet; None: that of the ICD. ``fails``: whether each step fails
-    that can report a failure.
+    ``busy``: duration of each slow step in milliseconds. ``algorithm``: algorithm of
+    the checksum in the description of an object. ``filler``: value of the bytes after
+    the end of a block in its last packet; None for the value in the ICD. ``fails``:
+    whether each step that can report a failure does so.
     """
 
     objects: Objects
@@ -124,6 +126,7 @@ class Run:
         if not fitting:
             raise Refused(self._different_constant(steps[0], data))
         index = fitting[0]
+        # If the telecommands are equal, only the order of the steps distinguishes them.
         if len(fitting) > 1:
             expected = self._reached(self._previous)
             index = next((i for i in fitting if i in expected), index)
@@ -147,7 +150,7 @@ class Run:
         return True
 
     def execute(self, index: int, data: bytes) -> None:
-        """Do what the telecommand of a step is for."""
+        """Execute the telecommand of a step."""
 
     def changes(self, now: int, message: Message) -> Iterator[tuple[int, Change]]:
         """Yield the changes of a frame by the steps that request it, each with the
@@ -301,5 +304,5 @@ def _values(tests: Iterable[Test], register: int) -> list[Value]:
 
 
 def _other(numbers: set[int]) -> int:
-    """Return the smallest number that is none of these."""
+    """Return the smallest number that is not in the set."""
     return next(n for n in range(len(numbers) + 1) if n not in numbers)

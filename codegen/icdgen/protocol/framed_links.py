@@ -54,8 +54,8 @@ def field_of(
 ) -> PacketField:
     """Return the field of a row of the header or trailer.
 
-    ``id_shift``: bits of the id below those in this field. ``overhead``: bytes of
-    header and trailer.
+    ``id_shift``: position in the id of the lowest bit that this field has.
+    ``overhead``: bytes of header and trailer.
     """
     at, bits = row["at"], row["bits"]
     first, last = at // 8, (at + bits - 1) // 8
@@ -187,6 +187,7 @@ def escaping_of(framing: Section) -> Escaping | None:
     """Return the escape characters of a link; None if another delimiter is used."""
     if framing["by"] != ESCAPE:
         return None
+    # The default of `data` is the usual DLE framing, which doubles the escape byte.
     return Escaping(
         escape=framing["escape"],
         end=framing["end"],
@@ -205,7 +206,8 @@ def stream_of(
 ) -> Stream:
     """Return the packet formats and messages of a `link` section.
 
-    ``checksums`` and ``enums``: those of the node, by name.
+    ``checksums`` and ``enums``: checksum algorithms and enumerations of the node, by
+    name.
     """
     sent, received = (
         [variant.message for variants in of_id.values() for variant in variants]

@@ -71,9 +71,9 @@ Name = tuple[str, str]  # of a register: its owner ("" for inputs) and its own n
 class ProcedureReader:
     """Reader of one procedure of a node.
 
-    ``section``: the procedure in the ICD. ``nodes``: the node
-    and those that it includes. ``messages``, ``enums`` and ``checksums``: those that
-    it may name.
+    ``section``: the procedure in the ICD. ``nodes``: the node and the nodes that it
+    includes. ``messages``, ``enums`` and ``checksums``: definitions to which the
+    procedure can refer, by name.
     """
 
     def __init__(

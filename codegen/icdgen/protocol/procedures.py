@@ -2,13 +2,13 @@
 transfer.
 
 The steps of an ICD are nested (`icdgen.protocol.procedure_steps` reads them). Here they
-are one list, which the engine of each language runs: after a step follows the next one,
-or the one at index ``to``. Index ``len(steps)`` ends the procedure with ``done``. Times
-are milliseconds, sizes bytes.
+are one list, which the engine of each language runs. After a step, the engine continues
+with the next step, or with the step at index ``to``. Index ``len(steps)`` ends the
+procedure with ``done``. Times are in milliseconds, sizes in bytes.
 
-Numbers are kept in registers of 32 bits. The first registers have a fixed meaning
-(`icdgen.icd.procedures.FIXED_NAMES`), then follow the inputs that are numbers, then the fields of
-telemetry that later steps use.
+Registers of 32 bits store the numbers of a procedure. The first registers have a fixed
+meaning (`icdgen.icd.procedures.FIXED_NAMES`). The next registers are for inputs that
+are numbers, the last for fields of telemetry that later steps use.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Put:
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """Field of telemetry that is kept in a register."""
+    """Field of telemetry whose value a register stores."""
 
     place: NumberPlace
     register: int
@@ -291,12 +291,12 @@ class Blocks:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What a procedure does with the objects of the device, such as files. A client
-    does not use it; a simulated device does.
+    """Effect of a procedure on the objects of the device, such as files. Simulated
+    devices use it; clients do not.
 
-    An object has a kind, and the numbers of its key identify it among those of its
-    kind. ``fields`` are numbers of the last requested telemetry, which describe an
-    object: a number of its key, ``size``, ``time`` or ``checksum``.
+    An object has a kind, and a key of numbers that identifies it within its kind.
+    ``fields`` are numbers of the last requested telemetry, which describe an object: a
+    number of its key, ``size``, ``time`` or ``checksum``.
     """
 
     verb: str  # one of `icdgen.icd.procedures.EFFECTS`; "" for none

@@ -108,7 +108,7 @@ def _opening(form: Stream) -> bytes:
 
 
 def _closing_text(form: Stream) -> str:
-    """Return what is said of the missing end of a packet; empty without a delimiter."""
+    """Return the text for a missing end of a packet; empty without a delimiter."""
     if form.escaping:
         ending = bytes((form.escaping.escape, form.escaping.end)).hex(" ").upper()
         return f"the bytes {ending} that end it are missing"

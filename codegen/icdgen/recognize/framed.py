@@ -90,8 +90,8 @@ class _RecordingDecoder(StreamDecoder):
 class DirectionResult:
     """Messages and faults of one direction. ``lost`` is the number of unused bytes.
 
-    ``readings`` has, for each packet with a message, the messages that it can be:
-    several if only the request tells which one it is.
+    ``readings`` has the possible messages of each packet with a message. There are
+    several if only the preceding request identifies the message.
     """
 
     endpoint: Endpoint
@@ -315,7 +315,7 @@ def _fault(
 
 
 def _answers(reading: Reading, request: Reading) -> bool:
-    """Return whether telemetry is what a request requests."""
+    """Return whether a request requests this telemetry."""
     is_of_node = reading.endpoint.node is request.endpoint.node
     return is_of_node and reading.message is request.message
 
@@ -335,8 +335,10 @@ def _requests(results: Sequence[DirectionResult]) -> list[tuple[int, Reading]]:
 def _candidates(
     endpoint: Endpoint, direction: Direction, event: StreamEvent
 ) -> Iterator[Reading]:
-    """Yield the messages that a packet can be: none, one or, if only the request tells
-    which telemetry it carries, several.
+    """Yield the possible messages of a packet.
+
+    There are several if the packet has requested telemetry without its id. Only the
+    preceding request then identifies the telemetry.
     """
     form = endpoint.link.stream
     if form is None or event.packet is None:
@@ -369,7 +371,7 @@ def _nameless(
 def _reading(
     endpoint: Endpoint, direction: Direction, event: StreamEvent
 ) -> Reading | None:
-    """Return the message of an event; None if there is none."""
+    """Return the message of an event; None if no message matches its data."""
     if event.event == "request":
         return _request(endpoint, event)
     assert event.id is not None
@@ -430,8 +432,9 @@ def _request(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
 
 
 def _response(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
-    """Return the response that a packet without a message is, to the message with its
-    id; None if it responds to no message with this id.
+    """Return the response in a packet without a message, to the message with its id.
+
+    Return None if the packet does not respond to a message with this id.
     """
     form, id = endpoint.link.stream, event.id or 0
     # A packet without id says nothing about a message.
@@ -458,8 +461,10 @@ def _response(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
 def _responses(
     form: Stream, packet: int, id: int
 ) -> Iterator[tuple[Direction, Response]]:
-    """Yield the responses that a packet with an id can be, and whether to telemetry or
-    to a telecommand: first those that the ICD declares for it.
+    """Yield the possible responses of a packet with an id, each with the direction of
+    the message to which it responds.
+
+    Responses that the ICD declares for this id come first.
     """
     telemetry, telecommand = form.row("telemetry", id), form.row("telecommand", id)
     declared: list[tuple[Direction, Iterable[Exchange]]] = []

@@ -1,8 +1,8 @@
 """Reference of links: responses to JSON requests, as used by golden vectors and
 conformance tests.
 
-``tests/conformance/README.md`` describes requests and responses. They are those of the
-Python runtime; the runtimes of other languages must respond equally.
+``tests/conformance/README.md`` describes requests and responses. The Python runtime
+computes the responses; the runtimes of other languages must respond equally.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ BUSES: tuple[Bus, ...] = get_args(Bus)
 
 
 def client(link: AnyLink, request: Row) -> Row:
-    """Return what a client on the UART, I2C or CAN does in a script."""
+    """Return the reactions of a client on UART, I2C or CAN to a script."""
     tested_client = Client(
         link,
         choice(request, "bus", BUSES),
@@ -47,14 +47,17 @@ def client(link: AnyLink, request: Row) -> Row:
 
 
 def stream_client(link: AnyLink, request: Row) -> Row:
-    """Return what a client of a framed link does in a script."""
+    """Return the reactions of a client of a framed link to a script."""
     requests = number(request, "requests", 1, MOST_REQUESTS, 1)
     tested_client = Client(link, settings=_settings(link, request), requests=requests)
     return _steps(request, tested_client)
 
 
 def _settings(link: AnyLink, request: Row) -> Settings:
-    """Return the settings of a client: those of the request, then those of the ICD."""
+    """Return the settings of a client.
+
+    Settings that the request does not have are taken from the ICD.
+    """
     given = request.get("settings", {})
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")

@@ -240,8 +240,9 @@ class FramedLine(DeviceLine):
         return message if program.first_invalid(message, raw) is None else "value"
 
     def _other_telecommand(self, id: int) -> tuple[int, bytes]:
-        """Return id and data of another telecommand, if possible one that is confirmed
-        by the same telemetry.
+        """Return id and data of another telecommand.
+
+        Prefer a telecommand that has the same responses.
         """
         rows = {row.id: row for row in self.form.telecommands}
         others = [
@@ -250,6 +251,8 @@ class FramedLine(DeviceLine):
         if not others:
             return id ^ 1, b""  # nothing responds to an id that the node does not have
         own = rows[id].exchange
+        # Then only the numbers that the response repeats reveal the wrong telecommand.
+        # A client that does not compare these numbers accepts the response.
         other = min(others, key=lambda row: row.exchange != own)
         return other.id, bytes(other.least)
 

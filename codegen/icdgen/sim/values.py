@@ -68,8 +68,8 @@ class Values:
 
         Return the values set, including counters. Raise `icdgen.codec.CodecError`.
 
-        Variable-length bytes and text get the length of the new value. An array gets
-        all elements up to the last one that is set.
+        Variable-length bytes and text get the length of the new value. A
+        variable-length array becomes long enough for all elements that are set.
         """
         current, new = self.raw(message), dict(raw)
         steps = [

@@ -201,8 +201,9 @@ def _seeded(protocol: Tree, messages: list[str]) -> Tree:
 
 
 def _checksums_in(tree: object) -> set[str]:
-    """Return the names of the checksums that the fields of a link have. Others are those
-    of procedures, which are not copied.
+    """Return the names of the checksums that fields of a link use.
+
+    Procedures use the other checksums, and are not copied.
     """
     if isinstance(tree, list):
         return set().union(*map(_checksums_in, tree))

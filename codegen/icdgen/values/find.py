@@ -318,8 +318,9 @@ def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
 
 
 def _has_indices_of(key: str, name: str) -> bool:
-    """Return whether a key has no indices or those in a name: ``gain[-1]`` has the
-    words, but not the index, of ``Gain[1]``.
+    """Return whether a key has no indices, or the same indices as a name.
+
+    ``gain[-1]`` has the words of ``Gain[1]``, but not its index.
     """
     indices = _INDEX.findall(key)
     return not indices or indices == _INDEX.findall(name)

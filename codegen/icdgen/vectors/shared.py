@@ -16,8 +16,8 @@ from icdgen.vectors import patterns
 class SharedRow(NamedTuple):
     """Frame received with a shared id.
 
-    ``message``: None if the frame belongs to none of the messages. ``expected``: their
-    common length, if the frame has another one.
+    ``message``: name of the message; None if the frame matches no message.
+    ``expected``: common length of the messages, if the frame has another length.
     """
 
     direction: str
@@ -28,8 +28,9 @@ class SharedRow(NamedTuple):
 
 
 def messages_by_id(icd: Icd, node: Node, direction: str) -> dict[int, list[Message]]:
-    """Return the messages of a direction that the node sends or receives, by rising id;
-    those of one id in the order of the ICD.
+    """Return the messages of a direction that the node sends or receives, by id.
+
+    The ids are in ascending order. Messages that share an id have the order of the ICD.
     """
     by_id: dict[int, list[Message]] = {}
     for message in icd.messages_of(node):

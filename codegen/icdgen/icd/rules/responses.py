@@ -136,7 +136,7 @@ def _inherits(message: Message, kind: str) -> bool:
 
 
 def telemetry_of(ctx: Context, declared: Declared) -> Message | None:
-    """Return the telemetry of a response; None if there is none."""
+    """Return the telemetry that a response names; None for an unknown name."""
     telemetry = ids_of(ctx, declared.link.node, TELEMETRY)
     return next((each for _, each in telemetry if each.name == declared.name), None)
 

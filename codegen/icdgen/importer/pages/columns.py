@@ -77,10 +77,10 @@ def _text(cell: list[Word]) -> str:
 
 
 def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
-    """Return the cells of a line of headings whose gaps may be narrow, or None.
+    """Return the cells of a heading row in one line. Return None for any other line.
 
-    An unknown word without a gap beside a known heading, as in ``Mode of Value``,
-    makes the line text.
+    The gaps between headings may be narrow. A line is a sentence, not a heading row, if
+    no gap separates a known heading from an unknown word, as in ``Mode of Value``.
     """
     segments = headings.segmented([w.text for w in line.words], profile)
     if not segments:
@@ -105,6 +105,8 @@ def _clustered(block: list[Line]) -> list[list[Word]]:
         x0, x1 = run[0].x0, run[-1].x1
         for cell in cells:
             left, right = _extent(cell)
+            # The left sides are not compared: the lines of a centred heading begin at
+            # different places.
             if min(x1, right) - max(x0, left) > 0.3 * min(x1 - x0, right - left):
                 cell.extend(run)
                 break
@@ -153,8 +155,10 @@ def _river(
 ) -> float:
     """Return the middle of the gap between two headings that the fewest words cross.
 
-    Among equal gaps, prefer one that ends where the heading begins, then one with words
-    on both sides, a wide one, one at which many words begin, and the widest.
+    If equally few words cross several gaps, prefer in this order: a gap that ends at
+    ``heading`` (left side of the right heading), a gap with words on both sides, a gap
+    wider than half the font size, a gap at whose end several words begin, and the
+    widest gap.
     """
     middles = sorted(w.centre for w in words)
     begins = sorted(w.x0 for w in words)

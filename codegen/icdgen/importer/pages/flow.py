@@ -36,7 +36,10 @@ _CONTINUED = re.compile(
 
 @dataclass(slots=True)
 class Piece:
-    """Part of a table on one page. ``columns`` is None if the part has no headings."""
+    """Part of a table on one page.
+
+    ``columns``: columns of the headings; None without headings.
+    """
 
     box: Box
     bands: list[Band]

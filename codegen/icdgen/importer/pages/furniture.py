@@ -90,9 +90,9 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
 
 
 def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
-    """Return the difference between printed and counted page numbers, or None.
+    """Return the difference between printed and counted page numbers.
 
-    It is None if pages are not numbered with bare figures.
+    Return None if the pages are not numbered with bare figures.
     """
     offsets: Counter[Any] = Counter()
     for page in pages:

@@ -31,10 +31,11 @@ class ValidProfile:
 def read_profile(
     text: str, name: str, last_valid: list[RuleKeys | None]
 ) -> ValidProfile:
-    """Return the profile of a text; ``last_valid`` replaces those of its rules that
-    have errors.
+    """Return the profile of a text, with the last valid form of each rule that has
+    errors.
 
-    A rule with errors that was never valid ignores its tables. Raises `Findings` for
+    ``last_valid``: the last valid form of each rule; None for a rule that was never
+    valid. If such a rule has errors, its tables are ignored. Raises `Findings` for
     errors outside the rules.
     """
     rules = rule_text.rules_of(text)
@@ -43,6 +44,7 @@ def read_profile(
         [last, _ignoring(rule)] for last, rule in zip(last_valid, rules, strict=True)
     ]
     errors: list[tuple[int, Finding]] = []
+    # The loop ends: each pass with errors uses up a substitute or removes a rule.
     while True:
         tree = source.parse(text.encode("utf-8"), name)
         try:
@@ -81,7 +83,7 @@ def _ignoring(rule: Any) -> RuleKeys | None:
 def _by_rule(tree: Map, findings: list[Finding]) -> dict[int, list[Finding]]:
     """Return the findings by the index of their rule.
 
-    Raises `Findings` with those outside the rules.
+    Raises `Findings` if some findings are outside the rules.
     """
     by_rule: dict[int | None, list[Finding]] = {}
     for finding in findings:

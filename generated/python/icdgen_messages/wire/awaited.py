@@ -59,7 +59,9 @@ class Awaited(NamedTuple):
 
     responses: tuple[Response, ...]
     sources: tuple[Optional[int], ...]
-    """Numbers of the sent packet. A number of its header is None until it was sent."""
+    """Numbers of the request that responses can repeat. Numbers of its header are None
+    until it has been sent.
+    """
     exchange: Exchange
     nameless: Optional[StreamRow] = None
     """Expected telemetry that a packet without its id carries."""
@@ -91,7 +93,7 @@ class Awaited(NamedTuple):
         )
 
     def matching(self, arrival: Arrival) -> Optional[Response]:
-        """Return the response that has arrived; None if it is none of them."""
+        """Return the response that has arrived; None if no response matches."""
         key = arrival.telemetry, arrival.packet
         for response in self.responses:
             if (response.telemetry, response.packet) == key and all(
@@ -148,6 +150,7 @@ def awaited_of(
     if more:
         responses = (*(each for each in responses if not each.can_be("reply")), *more)
     sent = request.id.to_bytes(ID_BYTES, "big") + request.data
+    # The header, which can have a sequence number, is encoded when the request is sent.
     unknown = [None] * exchange.in_header
     sources = (*exchange.numbers(sent), *unknown)
     return Awaited(responses, sources, exchange, nameless, is_in_order)

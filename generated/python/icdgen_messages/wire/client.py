@@ -385,9 +385,12 @@ class Client(Generic[N]):
         ]
 
     def _blocking(self, slot: Slot) -> list[LateResponses]:
-        """Return the late responses that must arrive, or be forgotten, before the request
-        is sent: those that could be taken for its own, and all if no more of them can be
-        remembered.
+        """Return the late responses that must arrive or expire before the request is
+        sent.
+
+        These are the late responses that the client could take for a response to the
+        request. If the client can store no more late responses, all of them must arrive
+        or expire.
         """
         if not slot.awaited.responses or slot.is_polled:
             return []
@@ -448,7 +451,7 @@ class Client(Generic[N]):
         return Timeout(slot.plan.request.id, slot.attempts, slot.handle)
 
     def _withdraw(self, slot: Slot) -> None:
-        """Do not send what was not taken: nothing responds to it."""
+        """Withdraw a transmission that was not taken: nothing responds to it."""
         if self._line.withdraw(slot.unit) and not slot.is_polled:
             slot.owed.clear()
         slot.unit = None

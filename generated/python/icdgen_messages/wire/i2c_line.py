@@ -40,18 +40,21 @@ class I2cLine(BusLine):
         return I2cTransfer(self._message(request), length)
 
     def put(self, transfer: I2cTransfer) -> None:
-        """Add a transaction to those that the application takes."""
+        """Add a transaction that the application can take."""
         self._pending.append(transfer)
 
     def take(self) -> list[I2cTransfer]:
-        """Return transactions while not too many results are missing, each once."""
+        """Return the transactions to perform, each once.
+
+        At most `MOST_AWAITED` transactions can be without a result at a time.
+        """
         free = MOST_AWAITED - len(self._taken)
         taken, self._pending = self._pending[:free], self._pending[free:]
         self._taken += taken
         return taken
 
     def withdraw(self, unit: object) -> bool:
-        """Remove a transaction that was not taken. Return whether it was not."""
+        """Remove a transaction that was not taken. Return whether it was removed."""
         before = len(self._pending)
         self._pending = [each for each in self._pending if each is not unit]
         return len(self._pending) < before

@@ -16,8 +16,8 @@ from .link import Link, LogBit, LogMask
 class LogFrame(NamedTuple):
     """One frame of a log.
 
-    If the ICD does not assign a frame to the bit, ``id`` is None and ``data`` is the
-    whole slot.
+    If the ICD does not assign a frame to the bit, there is no ``id``, and ``data`` is
+    the whole slot.
     """
 
     bit: int
@@ -110,6 +110,7 @@ class LogReader:
                 return []
             self.mask = data[form.mask_at : form.mask_at + self._layout.size]
             slots = self._layout.selected(self.mask)
+            # Once per file: only the header has a mask, which applies to all entries.
             self._pieces = _pieces(slots, self._layout, form.frames_at)
             self._entry_bytes = form.frames_at + len(slots) * self._layout.slot_bytes
             position = form.header_bytes

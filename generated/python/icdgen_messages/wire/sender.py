@@ -82,8 +82,8 @@ class Sender:
     def encode_packet(self, packet: int, id: int, values: Mapping[str, int]) -> bytes:
         """Encode a packet without a message. Raise as `stream_encode_packet`.
 
-        ``values`` take precedence over those of the sender, except for the sequence
-        number if the sender counts the packet.
+        ``values`` take precedence over the values of the sender. The sequence number is
+        an exception if the sender counts the packet.
         """
         packet_without_message(self._form, packet, self._direction)
 
@@ -133,9 +133,11 @@ class Sender:
         encoded: Callable[[Mapping[str, int]], bytes],
         values: Mapping[str, int] = _NO_VALUES,
     ) -> bytes:
-        """Return what ``encoded`` makes with the values of the sender, these values and
-        the next sequence number, if the packet is counted. ``id``: of a message; None
-        for other packets, which are not counted if each id has its own sequence.
+        """Encode a packet with the values of the sender, ``values`` and, if the packet
+        is counted, the next sequence number.
+
+        ``id``: id of a message. None for other packets, which are not counted if each
+        id has its own sequence.
         """
         chosen = {**self._values, **values}
         field = self._form.packets[packet].of("sequence")
@@ -145,6 +147,7 @@ class Sender:
         first = field.values[self._direction == "telemetry"]
         number = self._next.get(key, self._values.get("sequence", first))
         frame = encoded({**chosen, "sequence": number})
+        # After the encoding, which can raise: a receiver would report a skipped number.
         self._next[key] = (number + 1) & ((1 << field.bits) - 1)
         return self._line(packet, frame)
 

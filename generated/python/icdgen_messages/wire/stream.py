@@ -104,6 +104,7 @@ def stream_encode(
     if not row.least <= len(data) <= row.most:
         nearest = row.most if len(data) > row.most else row.least
         raise LengthError("a message", nearest, len(data))
+    # MAVLink 2 truncates zeros in this way; it never truncates the first byte.
     if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     packet = form.packets[row.packet]
@@ -187,6 +188,8 @@ def _encoded(
         value = field.values[direction == "telemetry"]
         if field.role == "id":
             value = id >> field.id_shift
+            # The field with the highest bits gets all of them, so that `_put` reports
+            # an id that is too large.
             if field.id_shift + field.bits < _id_bits(packet):
                 value &= (1 << field.bits) - 1
         elif field.role == "length":
@@ -287,8 +290,8 @@ class ReceivedPacket(NamedTuple):
         )
 
     def data_bytes(self, frame: Buffer, size: int) -> Optional[int]:
-        """Return the bytes of the data: by the first length field, otherwise those of
-        the message. None for the id of no message.
+        """Return the number of data bytes from the first length field. Without such a
+        field, return the largest size of the message; None for an unknown id.
 
         ``size``: bytes of the frame, to find fields of the trailer.
         """
@@ -322,7 +325,9 @@ class ReceivedPacket(NamedTuple):
         return self.requested.get(row.id) is row
 
     def awaits(self, row: StreamRow, frame: Buffer) -> bool:
-        """Return whether a request says the length of the telemetry, if it says one."""
+        """Return whether the response length in a request, if it has this field, is the
+        length of the telemetry.
+        """
         field = self.form.of("response_length")
         if field is None or not self.is_request_of(row):
             return True

@@ -178,8 +178,9 @@ class AsyncSession(Exchanges[N]):
         ``kinds`` selects message classes; without it, all are returned. Other events
         are passed to ``on_event``.
 
-        While the program processes a message, other tasks may receive more. Of these,
-        the last ``limit`` are kept; `Lost` is passed to ``on_event`` for the others.
+        While the program processes a message, other tasks may receive more messages.
+        The session stores the last ``limit`` of them. It drops older messages, and
+        passes `Lost` to ``on_event``.
         """
         end = None if seconds is None else self._now() + 1000 * seconds
         with self._box(_MessageBox(kinds, limit)) as box:
@@ -221,6 +222,8 @@ class AsyncSession(Exchanges[N]):
         """Return the events of a task, or wait for the next. One task reads for all."""
         await self._flush()
         async with self._lock.read:
+            # While this task waited for the lock, another task may have received its
+            # events.
             if not box:
                 await self._receive(until)
         return box.take()

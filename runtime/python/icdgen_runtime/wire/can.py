@@ -92,7 +92,7 @@ def _identifier(can: Can, type: int, message: CanMessage) -> int:
 class _PartialMessage:
     """Received packets of one message.
 
-    A complete message is kept, so that duplicate packets can be detected.
+    `CanJoiner` also stores complete messages, to detect duplicate packets.
     """
 
     def __init__(
@@ -115,6 +115,8 @@ class _PartialMessage:
 
     def is_duplicate(self, position: int, piece: bytes) -> bool:
         """Return whether the packet is a duplicate rather than part of another message."""
+        # A sender repeats a frame after an error in its last bit, but receivers accept
+        # such a frame (ISO 11898-1, frame validation). They then receive it twice.
         expected = self.completed_by in (None, position)
         return expected and self.pieces.get(position) == piece
 
@@ -240,6 +242,7 @@ class CanJoiner:
         """
         if len(self._open) < self._senders:
             return True
+        # Incomplete messages remain: the other packets of these messages may follow.
         for key, joining in self._open.items():
             if joining.completed_by is not None:
                 del self._open[key]

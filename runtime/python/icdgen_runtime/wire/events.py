@@ -52,9 +52,9 @@ class Refused:
     """The node rejected a request.
 
     ``reason`` is the name of the code in its enumeration. CAN has no code. Only I2C
-    reports the parameter. ``data`` is that of the response, of the class ``type`` if it
-    is a message. ``may_be_damaged``: on UART and I2C, whether the enumeration does not
-    have the code.
+    reports the parameter. ``data`` is the data of the response, ``type`` its class if
+    it is a message. ``may_be_damaged``: on UART and I2C, whether the enumeration does
+    not have the code.
     """
 
     id: int
@@ -134,7 +134,7 @@ class Reply:
 class Late:
     """A response to a request that has ended.
 
-    ``id`` is that of the response, ``data`` its data without the id; ``type`` is the
+    ``id`` is the id of the response, ``data`` its data without the id; ``type`` is the
     class of telemetry. On I2C, the result of a transaction that came too late: ``data``
     is empty if nothing was read.
     """
@@ -156,7 +156,7 @@ class Log:
 class Stray:
     """A response that no request can have caused.
 
-    ``id`` is None on I2C: ``data`` are bytes that no transaction read.
+    On I2C, ``data`` are bytes that no transaction has read, and there is no ``id``.
     """
 
     data: bytes

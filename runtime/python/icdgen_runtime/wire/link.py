@@ -1,6 +1,6 @@
 """Protocol of a node, from the ICD. Sizes are in bytes, times in milliseconds.
 
-A part that the ICD does not describe is None.
+Attributes have the value None for parts that the ICD does not describe.
 """
 
 from __future__ import annotations

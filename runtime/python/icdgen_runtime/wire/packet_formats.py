@@ -252,7 +252,7 @@ class PacketForm(NamedTuple):
 
     @property
     def tells_message(self) -> bool:
-        """Whether the packet tells of which message it is."""
+        """Whether the packet identifies its message."""
         return self.content in ("message", "request")
 
     def of(self, role: str) -> Optional[PacketField]:

@@ -1,11 +1,12 @@
 """Steps of procedures, from the ICD.
 
-After a step follows the next one, or the one with the index ``to``. The index after the
-last step ends the procedure. Times are in milliseconds, sizes in bytes.
+After a step, the procedure continues with the next step, or with the step at index
+``to``. The index after the last step ends the procedure. Times are in milliseconds,
+sizes in bytes.
 
-Numbers are kept in registers of 32 bits. The first registers are ``BLOCK_OFFSET`` to
-``PACKET_OFFSET``. Then follow the inputs that are numbers, and the fields of telemetry
-that steps use.
+Registers of 32 bits store the numbers of a procedure. The first registers are
+``BLOCK_OFFSET`` to ``PACKET_OFFSET``. The next registers are for inputs that are
+numbers, the last for fields of telemetry that steps use.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class Put(NamedTuple):
 
 
 class Take(NamedTuple):
-    """A field of telemetry that is kept in a register."""
+    """A field of telemetry whose value a register stores."""
 
     place: NumberPlace
     register: int

@@ -70,7 +70,7 @@ class Procedure:
     first call of `next` starts the procedure. Call `next` after each event, and at
     `deadline`. Times are in milliseconds.
 
-    ``inputs``: the numbers by their names in the ICD; None for one that is not given.
+    ``inputs``: the numbers by their names in the ICD. An optional input can be None.
     ``data``: the bytes to send. ``block``: bytes of a block, at most the number in the
     ICD. Raise `RangeError`, `TooLongError` for too many bytes, and `UnsupportedError`
     for a procedure that the ICD does not describe.
@@ -204,6 +204,8 @@ class Procedure:
         elif isinstance(event, Refused):
             if not event.may_be_damaged:
                 self._process_outcome(event)
+            # If only the response is damaged, the node has perhaps executed the
+            # telecommand. Some telecommands must not be executed twice.
             elif (
                 self._request.repeat and self._repetitions < self.link.settings.retries
             ):
@@ -393,7 +395,11 @@ class Procedure:
             self._proceed()
 
     def _transfer_again(self, again: bool, result: Result) -> None:
-        """Transfer the block again if the ICD says so, as often as it allows."""
+        """Transfer the block again, or end the procedure.
+
+        ``again``: whether the ICD specifies another transfer; otherwise end with
+        ``result``. After the largest number of rounds, end with ``checksum``.
+        """
         if not again:
             self._finish(result)
         elif self._rounds == self._blocks.rounds:
