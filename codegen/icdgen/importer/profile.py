@@ -352,7 +352,7 @@ def _check(tree: Map) -> None:
         findings = [
             Finding(
                 CODE,
-                "the profile has no `rules:`, which say what the tables mean",
+                "the profile has no `rules:`, which state the meaning of the tables",
                 tree.place,
                 help,
             )

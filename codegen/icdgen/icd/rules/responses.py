@@ -643,7 +643,7 @@ def _contradictions(rows: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
         if name in seen:
             what = "telemetry" if key == "message" else "packet"
             text = f"`{seen[name]}` and `{kind}` of {{name}} are the same {what}"
-            help = "write one `ack` whose `status` says which it is"
+            help = "write one `ack` with a `status`, whose values confirm or refuse"
             yield kind, text, help
         seen.setdefault(name, kind)
 

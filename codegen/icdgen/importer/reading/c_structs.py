@@ -316,7 +316,7 @@ class _Reader:
         if self.definitions[id(node)].is_conditional:
             raise Unreadable(
                 "the preprocessor decides about its members",
-                "keep those of one variant in a copy of the header",
+                "in a copy of the header, keep the members of one variant only",
             )
 
     def enum_node(self, node: Any) -> Any:
