@@ -41,12 +41,42 @@ static void note(seen_t *seen, const void *data, size_t length)
     }
 }
 
+/* Responds to an event in every way, with buffers of any size. */
+static void respond(const seen_t *seen, const icd_event_t *event)
+{
+    static const icd_verdict_t verdicts[] = {
+        ICD_VERDICT_ACK, ICD_VERDICT_REPLY, ICD_VERDICT_NAK, ICD_VERDICT_BUSY, ICD_VERDICT_PROGRESS, ICD_VERDICT_AGAIN,
+    };
+    const size_t longest = seen->link->longest;
+    const size_t capacity = seen->digest % (longest + 1u);
+    const size_t room = (seen->digest >> 8) % (2u * longest + 600u);
+    uint8_t *line = (uint8_t *)memory(room);
+    icd_stream_sender_t sender;
+    size_t i;
+    require(icd_stream_sender_init(&sender, seen->link, ICD_TELEMETRY, NULL, 0) == ICD_OK);
+    for (i = 0; i < sizeof verdicts / sizeof verdicts[0]; i++) {
+        icd_answer_t answer = {verdicts[i], (seen->digest & 1u) != 0u, seen->digest >> 20, NULL, 0, capacity};
+        size_t written = 0;
+        answer.data = (uint8_t *)memory(capacity);
+        memset(answer.data, 0x5A, capacity);
+        answer.length = (seen->digest >> 4) % (capacity + 1u);
+        if (icd_stream_respond(&sender, event, &answer, line, room, &written) == ICD_OK) {
+            require(written <= room);
+        }
+        free(answer.data);
+    }
+    free(line);
+}
+
 static void on_event(void *context, const icd_event_t *event)
 {
     seen_t *seen = (seen_t *)context;
     const uint32_t told[3] = {(uint32_t)event->kind, event->has_id ? event->id : 0u, event->missing};
     note(seen, told, sizeof told);
     note(seen, event->data, event->length);
+    if (seen->direction == ICD_TELECOMMAND) {
+        respond(seen, event);
+    }
     if (event->kind == ICD_EVENT_MESSAGE) {
         const size_t room = 2u * (event->length + 600u);
         uint8_t *line = (uint8_t *)memory(room);

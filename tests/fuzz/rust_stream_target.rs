@@ -1,13 +1,42 @@
 //! cargo-fuzz harness on the decoders of framed links of the generated crate. See README.md.
 #![no_main]
 
-use icd::wire::stream::{encode, encode_request, Decoder, Event};
+use icd::wire::link::Verdict;
+use icd::wire::stream::{encode, encode_request, Answer, Decoder, Event, Sender};
 use icd::wire::{Direction, Link};
 use libfuzzer_sys::fuzz_target;
 
 include!("links.rs");
 
 const SEQUENCES: usize = 4;
+
+/// Responds to an event in every way, with buffers of any size.
+fn respond(link: &'static Link, event: &Event<'_>, number: usize) {
+    let verdicts = [
+        Verdict::Ack,
+        Verdict::Reply,
+        Verdict::Nak,
+        Verdict::Busy,
+        Verdict::Progress,
+        Verdict::Again,
+    ];
+    let mut sender = Sender::<(), SEQUENCES>::with_direction(link, Direction::Telemetry).unwrap();
+    let mut line = vec![0; number % (2 * LONGEST + 600)];
+    for verdict in verdicts {
+        let mut buffer = vec![0x5a; number % (LONGEST + 1)];
+        let mut answer = Answer {
+            verdict,
+            reason: u32::try_from(number % 300)
+                .ok()
+                .filter(|reason| reason % 2 == 0),
+            buffer: &mut buffer,
+            length: number % 37,
+        };
+        if let Ok(size) = sender.respond(event, &mut answer, &mut line) {
+            assert!(size <= line.len());
+        }
+    }
+}
 
 /// The events of a stream in pieces of `size` bytes, and what became of its other bytes.
 fn heard(
@@ -33,6 +62,9 @@ fn heard(
                 _ => Ok(1),
             };
             assert!(written.unwrap() > 0);
+            if direction == Direction::Telecommand {
+                respond(link, &event, size.wrapping_mul(stream.len()));
+            }
             events.push(format!("{event:?}"));
         });
     }
