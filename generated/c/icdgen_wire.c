@@ -1394,7 +1394,7 @@ ICDGEN_API icd_status_t icd_stream_respond(
         }
     }
     if (is_packet) {
-        return icdgen_answer_send(&filled, sender, response->source, buffer, capacity, written);
+        return icdgen_answer_send(&filled, sender, ICDGEN_SIZE(response->source), buffer, capacity, written);
     }
     return icd_stream_send(sender, telemetry, filled.data, filled.length, buffer, capacity, written);
 }

@@ -118,9 +118,9 @@ pub fn stream_respond(link: &'static Link, words: &mut Words) -> Answer {
                     | Event::Framing
             );
             if has_id {
-                let mut line = vec![0; 2 * LONGEST + 300];
-                let text = match sender.respond(&event, &mut response, &mut line) {
-                    Ok(size) => format!("bytes={}", hex(&line[..size])),
+                let mut out = vec![0; 2 * LONGEST + 300];
+                let text = match sender.respond(&event, &mut response, &mut out) {
+                    Ok(size) => format!("bytes={}", hex(&out[..size])),
                     Err(Error::Length { .. }) => "error=length".into(),
                     Err(Error::Range { .. }) => "error=range".into(),
                     Err(_) => "error=unsupported".into(),
