@@ -1217,17 +1217,22 @@ static inline const icd_exchange_t *icdgen_exchange_of(
     return verdict == ICD_VERDICT_NAK ? icdgen_refusing(form) : NULL;
 }
 
-/* Put a number into the data of a response, which zeros extend if necessary. Return whether there is room for it. */
+/* Extend the data of a response by zeros up to a length. Return whether there is room for it. */
+static inline bool icdgen_answer_extend(icd_answer_t *answer, size_t length)
+{
+    while (answer->length < length && answer->length < answer->capacity) {
+        answer->data[answer->length] = 0;
+        answer->length++;
+    }
+    return answer->length >= length;
+}
+
+/* Put a number into the data of a response. Return whether there is room for it. */
 static inline bool icdgen_answer_put(icd_answer_t *answer, const icd_number_place_t *place, uint32_t number)
 {
     const size_t at = ICDGEN_SIZE(place->at) - ICDGEN_ID_BYTES;
-    const size_t end = at + place->size;
-    if (end > answer->capacity) {
+    if (!icdgen_answer_extend(answer, at + place->size)) {
         return false;
-    }
-    while (answer->length < end) {
-        answer->data[answer->length] = 0;
-        answer->length++;
     }
     uint32_t mask = (UINT32_C(0xFFFFFFFF) >> (32u - place->bits)) << place->shift;
     uint32_t rest = number << place->shift;
@@ -1292,11 +1297,10 @@ static inline bool icdgen_answer_holds(const icd_answer_t *answer, const icd_res
 static inline icd_status_t icdgen_answer_begin(
     icd_answer_t *answer, const icd_packet_form_t *packet, const icd_header_values_t *values)
 {
-    answer->length = icdgen_packet_around(packet) + packet->reserved;
-    if (answer->length > answer->capacity) {
+    answer->length = 0;
+    if (!icdgen_answer_extend(answer, icdgen_packet_around(packet) + packet->reserved)) {
         return ICD_ERROR_LENGTH;
     }
-    (void)memset(answer->data, 0, answer->length);
     for (size_t i = 0; i < packet->field_count; ++i) {
         const icd_packet_field_t *const field = &packet->fields[i];
         if (ICDGEN_IS_OF_SENDER(field)) {
@@ -1372,12 +1376,8 @@ ICDGEN_API icd_status_t icd_stream_respond(
         if (row == NULL) {
             return ICD_ERROR_UNSUPPORTED;
         }
-        if (row->least > filled.capacity || filled.length > filled.capacity) {
+        if (filled.length > filled.capacity || !icdgen_answer_extend(&filled, row->least)) {
             return ICD_ERROR_LENGTH;
-        }
-        while (filled.length < row->least) {
-            filled.data[filled.length] = 0;
-            filled.length++;
         }
     }
     if (response != NULL) {

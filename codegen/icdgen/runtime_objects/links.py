@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from icdgen_runtime.wire import link as types
+from icdgen_runtime.wire.errors import need
 from icdgen_runtime.wire.link import Link
 from icdgen_runtime.wire.packet_formats import Response
 
 from icdgen.describe import describe
 from icdgen.describe.links import LinkDescription
-from icdgen.icd.buses import I2C
+from icdgen.icd.buses import I2C, UART
 from icdgen.icd.model import Icd
 from icdgen.link_calls import Call, Commented, Verbatim, link_call
 from icdgen.protocol.facts import Facts
@@ -36,6 +37,14 @@ def responses_on(link: Link, bus: str) -> tuple[Response, ...]:
     """Return the responses to telecommands on UART, I2C or CAN."""
     exchanges = link.bus_exchanges.get(bus)
     return exchanges.command.responses if exchanges and exchanges.command else ()
+
+
+def acknowledge_of(link: Link, id: int, code: int) -> bytes:
+    """Return the acknowledge of a telecommand on the UART."""
+    response, data = responses_on(link, UART)[0], bytearray(link.acknowledge_bytes or 0)
+    response.echoes[0].place.put(id, data)
+    need(response.status, "status").put(code, data)
+    return bytes(data)
 
 
 def with_outcome(

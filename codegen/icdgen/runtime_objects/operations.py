@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, get_args
+from typing import Any, cast, get_args
 
 from icdgen_runtime._errors import LengthError, RangeError
 from icdgen_runtime.wire import checks, stream
@@ -25,6 +25,7 @@ from icdgen_runtime.wire.times import DosTime, dos_time_pack, dos_time_unpack
 from icdgen_runtime.wire.uart import UartDecoder, uart_kind
 from icdgen_runtime.wire.uart import uart_encode as line_of
 
+from icdgen.icd.responses import KINDS
 from icdgen.protocol.packet_formats import DIRECTIONS, GIVEN
 from icdgen.runtime_objects.refusals import Refusal, naming_the_field
 from icdgen.runtime_objects.request_keys import (
@@ -39,7 +40,7 @@ from icdgen.runtime_objects.request_keys import (
     text,
 )
 
-VERDICTS: tuple[Verdict, ...] = ("ack", "reply", "nak", "busy", "progress")
+VERDICTS: tuple[Verdict, ...] = cast(tuple[Verdict, ...], KINDS)
 ANSWERED = ("message", "request", "unknown_id", "length", "checksum")
 """Events of a decoder of telecommands that a device can respond to."""
 CAN_BYTES = 8  # of a classic CAN frame

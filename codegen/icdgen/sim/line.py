@@ -6,7 +6,7 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen.icd.buses import UART
-from icdgen.runtime_objects.links import responses_on
+from icdgen.runtime_objects.links import acknowledge_of, responses_on
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
@@ -112,19 +112,13 @@ class Line(DeviceLine):
             outcome = self.computer.take(now, message, UART)
         if outcome is None:
             return
-        response = self._acknowledge
         is_silent = self.faults.hits("silence", "telecommand")
-        if outcome.acknowledge and response and response.status and not is_silent:
-            acknowledge = bytearray(self.link.acknowledge_bytes or 0)
+        if outcome.acknowledge and self._acknowledge and not is_silent:
             is_foreign = self.faults.hits("foreign", "telecommand")
             id = message[0] ^ 1 if is_foreign else message[0]
-            response.echoes[0].place.put(id, acknowledge)
-            response.status.put(outcome.code, acknowledge)
-            self._send(
-                now + self.computer.settings.processing_ms,
-                "acknowledge",
-                bytes(acknowledge),
-            )
+            acknowledge = acknowledge_of(self.link, id, outcome.code)
+            after = now + self.computer.settings.processing_ms
+            self._send(after, "acknowledge", acknowledge)
         if outcome.reset is None:
             self._push(now)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from icdgen.icd.responses import KINDS as VERDICTS
 from icdgen.protocol.packet_formats import DIRECTIONS, GIVEN
 from icdgen.protocol.sections import CAN_KINDS
 from icdgen.runtime_objects.refusals import Refusal
@@ -26,7 +27,6 @@ CAN_BYTES = 8  # of a classic CAN frame
 MOST = (1 << 32) - 1
 DATE = ("year", "month", "day", "hour", "minute", "second")
 ENTRY = ("type", "counter", "checksum", "size", "time")
-VERDICTS = ("ack", "reply", "nak", "busy", "progress")
 USERS = ("boot_ms", "log_file_type", "index_file_type")
 TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 

@@ -34,10 +34,7 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
         for stream in streams
         for row in (*stream.telecommands, *stream.telemetry)
     ]
-    exchanges = [exchange for stream in streams for exchange in stream.exchanges]
-    for each in facts:
-        for bus in each.bus_exchanges.values():
-            exchanges += [bus.request, *([bus.command] if bus.command else [])]
+    exchanges = [exchange for each in facts for exchange in each.exchanges]
     verdicts = {
         verdict
         for exchange in exchanges

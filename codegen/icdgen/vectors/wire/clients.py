@@ -18,7 +18,7 @@ from icdgen_runtime.wire.uart import uart_encode
 from icdgen.icd.buses import CAN, I2C, UART
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.facts import Facts, need
-from icdgen.runtime_objects.links import responses_on, with_outcome
+from icdgen.runtime_objects.links import acknowledge_of, responses_on, with_outcome
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests, Row, Script
 
@@ -73,11 +73,7 @@ class Sample:
 
     def acknowledge(self, message: Message, code: int = 0) -> str:
         """Return the bytes of an acknowledge on the UART, in hexadecimal."""
-        (response,) = responses_on(self.link, UART)
-        data = bytearray(self.link.acknowledge_bytes or 0)
-        response.echoes[0].place.put(message.telecommand_id or 0, data)
-        need(response.status, "status").put(code, data)
-        return self.line(bytes(data))
+        return self.line(acknowledge_of(self.link, message.telecommand_id or 0, code))
 
 
 def scripts(link: AnyLink, facts: Facts) -> Requests:

@@ -19,6 +19,7 @@ from icdgen_runtime.wire.stream import (
     stream_encode_request,
 )
 
+from icdgen.icd.responses import BUSY, KINDS, NAK
 from icdgen.protocol.packet_formats import (
     DATAGRAM,
     DIRECTIONS,
@@ -108,16 +109,12 @@ def _responses(link: Link[Any], form: Stream, source: Random) -> Requests:
     damaged = [line for _, line in _damaged(lines[0], source)]
     responses = [each for exchange in form.exchanges for each in exchange.responses]
     reasons = sorted({value for each in responses for value, _ in each.reasons})
-    sent = form.packets_of("telemetry")
-    values = {
-        role: 1
-        for role in ("source", "destination", "type", "flags", "time")
-        if any(packet.of(role) for packet in sent)
-    }
-    for verdict in ("ack", "reply", "nak", "busy", "progress"):
-        for reason in (None, *reasons[:3], *reasons[-1:], 0xFFFFFFFF):
-            if reason is not None and verdict in ("ack", "reply", "progress"):
-                continue
+    # The sender counts the sequence; the response decides status and reason.
+    others = {"sequence", "status", "reason"}
+    values = {role: 1 for role in form.chosen("telemetry") if role not in others}
+    refusing = (*reasons[:3], *reasons[-1:], 0xFFFFFFFF)
+    for verdict in KINDS:
+        for reason in (None, *(refusing if verdict in (NAK, BUSY) else ())):
             why = "" if reason is None else f" with the reason {reason}"
             yield (
                 f"the device responds: {verdict}{why}",

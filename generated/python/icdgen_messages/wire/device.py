@@ -67,7 +67,8 @@ def response_to(
     have can be refused (``"nak"``). The response repeats the numbers of the telecommand
     that the ICD describes as `echo`, and has the status for ``verdict``: of several
     values, the one that the ICD lists first. ``reason`` is the reason of a refusal;
-    without one, it is that of ``telemetry``, or 0 in a packet without a message.
+    without one, the reason in ``telemetry`` remains; it is 0 in a packet without a
+    message.
     ``header`` is the header of the telecommand (`StreamEvent.header`), if responses
     repeat numbers of it; without, these are the defaults of the ICD, or 0.
     ``telemetry`` has the data of the telemetry that responds; missing bytes are 0.

@@ -138,9 +138,8 @@ impl<T, const S: usize> Sender<T, S> {
 
     /// Return the framing, if the sender sends telemetry.
     fn form(&self) -> Result<&'static Stream, Error> {
-        let link = self.link();
-        let form = link.stream.as_ref();
-        form.filter(|_| self.direction() == Direction::Telemetry)
+        let form = self.link.stream.as_ref();
+        form.filter(|_| self.direction == Direction::Telemetry)
             .ok_or(Error::Unsupported)
     }
 }

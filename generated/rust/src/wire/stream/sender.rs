@@ -27,8 +27,8 @@ pub struct Sender<T, const S: usize> {
     /// Values of the header and trailer fields that the sender chooses. `sequence` is the first
     /// number.
     pub values: Values,
-    link: &'static Link,
-    direction: Direction,
+    pub(super) link: &'static Link,
+    pub(super) direction: Direction,
     next: [Option<u32>; S],
     node: PhantomData<fn() -> T>,
 }
@@ -128,14 +128,6 @@ impl<T, const S: usize> Sender<T, S> {
             encoded_packet(link, direction, packet, id, values, out)
         });
         sent.map(|(size, _)| size)
-    }
-
-    pub(super) const fn link(&self) -> &'static Link {
-        self.link
-    }
-
-    pub(super) const fn direction(&self) -> Direction {
-        self.direction
     }
 
     /// Encode a message. Return its size and its header.
