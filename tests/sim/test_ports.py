@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import socket
 import sys
+from types import SimpleNamespace
 
 import pytest
 from icdgen_runtime.wire import (
@@ -132,3 +134,96 @@ def test_a_missing_library_is_named(name, package, monkeypatch):
     with pytest.raises(PortError, match=package) as error:
         open_port(name, {})
     assert "icdgen[link]" in error.value.help
+
+
+@pytest.fixture
+def receiver():
+    """A socket for datagrams on this machine; its address as a port of `icdgen`."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as opened:
+        opened.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
+        opened.bind(("127.0.0.1", 0))
+        opened.settimeout(5)
+        yield opened, f"udp://127.0.0.1:{opened.getsockname()[1]}"
+
+
+@pytest.mark.parametrize(
+    ("size", "sizes"),
+    [
+        (1399, [1399]),
+        (1400, [1400]),
+        (1401, [1400, 1]),
+        (4300, [1400, 1400, 1400, 100]),
+    ],
+)
+def test_a_stream_over_udp_has_datagrams_that_no_network_splits(receiver, size, sizes):
+    opened, text = receiver
+    data = bytes(number % 251 for number in range(size))
+    port = open_port(text, {})
+    try:
+        port.write(data)
+        pieces = [opened.recv(65536) for _ in sizes]
+    finally:
+        port.close()
+    assert [len(piece) for piece in pieces] == sizes and b"".join(pieces) == data
+
+
+def test_a_packet_that_delimits_a_message_is_never_split(receiver):
+    opened, text = receiver
+    port = open_port(text, {"link": {"framing": {"by": "datagram"}}})
+    try:
+        port.write(bytes(5000))
+        assert opened.recv(65536) == bytes(5000)
+    finally:
+        port.close()
+
+
+def test_bytes_over_tcp_arrive_whole_in_both_directions_until_the_other_end_closes():
+    data = bytes(number % 251 for number in range(100_000))
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = open_port(f"tcp://127.0.0.1:{server.getsockname()[1]}", {})
+        try:
+            other, _ = server.accept()
+            with other:
+                other.settimeout(5)
+                port.write(data)
+                received = b""
+                while len(received) < len(data):
+                    received += other.recv(65536)
+                assert received == data
+                assert port.read(0) == b"", "nothing has come yet"
+                other.sendall(b"answer")
+                assert port.read(5) == b"answer"
+            with pytest.raises(PortError, match="the other end closed the connection"):
+                port.read(5)
+        finally:
+            port.close()
+
+
+@pytest.mark.parametrize(
+    ("protocol", "settings"),
+    [
+        ({}, (115200, 8, "N", 1)),
+        (
+            {"link": {"line": {"baud_rate": 9600, "parity": "even", "stop_bits": 2}}},
+            (9600, 8, "E", 2),
+        ),
+        (
+            {"link": {"buses": {"uart": {"line": {"data_bits": 7, "parity": "odd"}}}}},
+            (115200, 7, "O", 1),
+        ),
+    ],
+)
+def test_a_serial_line_has_the_settings_of_the_icd_and_otherwise_115200_8n1(
+    protocol, settings, monkeypatch
+):
+    opened = []
+
+    class Line:
+        def __init__(self, name, baud_rate, **options):
+            line = (options["bytesize"], options["parity"], options["stopbits"])
+            opened.append((name, (baud_rate, *line), options["exclusive"]))
+
+    library = SimpleNamespace(Serial=Line, SerialException=OSError)
+    monkeypatch.setitem(sys.modules, "serial", library)
+    open_port("COM3", protocol)
+    assert opened == [("COM3", settings, True)]
