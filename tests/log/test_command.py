@@ -116,3 +116,23 @@ def test_what_cannot_be_is_said_and_nothing_is_left_behind(write, everything, tm
         assert result.returncode == 2 and text in result.stderr, (words, result.stderr)
         assert "Traceback" not in result.stderr
     assert sorted(p.name for p in tmp_path.iterdir()) == ["log.bin", "short"]
+
+
+@pytest.mark.parametrize("form", ["csv", "jsonl", "parquet"])
+def test_a_conversion_that_fails_at_its_end_leaves_no_file_behind(
+    write, everything, tmp_path, form
+):
+    path, _ = write(everything, 5)
+    out = tmp_path / f"out.{form}"
+    (out / "occupied").mkdir(parents=True)
+    result = icdgen(path, "--out", out)
+    assert result.returncode == 2 and f"cannot write {out}" in result.stderr
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["log.bin", out.name]
+
+
+def test_a_conversion_replaces_an_earlier_one(write, everything, tmp_path):
+    path, _ = write(everything, 5)
+    out = tmp_path / "out.csv"
+    out.write_text("earlier")
+    assert icdgen(path, "--out", out).returncode == 0
+    assert len(out.read_text().splitlines()) == 6

@@ -14,11 +14,14 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen import codec
 from icdgen.icd.variants import ids_of
 from icdgen.loading import load
 from icdgen.logfile.recording import Recording
+from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.frame import frame
 from icdgen.vectors.make import make
 from tests.conftest import ROOT
@@ -463,3 +466,33 @@ def test_every_delimiter(name, tmp_path):
     assert {
         name: times for (_, name), times in tally.messages.items()
     } == wanted and not tally.faults
+
+
+def test_lost_and_repeated_messages_are_counted_by_their_sequence_numbers(tmp_path):
+    icd = load([LINKS / "ccsds.yaml"]).icd
+    link = link_of(icd, facts.of(icd, icd.nodes[0]))
+    path = tmp_path / "packets"
+    path.write_bytes(
+        b"".join(
+            stream_encode(link, 0x64, bytes(6), "telemetry", sequence=number)
+            for number in (7, 8, 11, 11, 12, 17)
+        )
+    )
+    listed = icdgen(path, "--icd", LINKS / "ccsds.yaml").stdout
+    assert f"{path.stat().st_size} bytes, 6 messages" in listed
+    assert "messages missing, by their sequence numbers: 6\n" in listed
+    assert "messages that came again, by their sequence numbers: 1\n" in listed
+
+
+def test_messages_in_sequence_have_no_note(tmp_path):
+    icd = load([LINKS / "ccsds.yaml"]).icd
+    link = link_of(icd, facts.of(icd, icd.nodes[0]))
+    path = tmp_path / "packets"
+    numbers = (16382, 16383, 0, 1)  # 14 bits: they begin again at 0
+    path.write_bytes(
+        b"".join(
+            stream_encode(link, 0x64, bytes(6), "telemetry", sequence=number)
+            for number in numbers
+        )
+    )
+    assert "sequence numbers" not in icdgen(path, "--icd", LINKS / "ccsds.yaml").stdout

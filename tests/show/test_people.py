@@ -14,6 +14,7 @@ from icdgen.values.frame import frame
 from icdgen.values.text import to_text as values_text
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT
+from tests.icd.files import HEAD, status
 from tests.show.test_machine import BASE, OVERLAY, TOP
 
 EXPECTED = """\
@@ -183,3 +184,24 @@ def test_ids_of_several_bytes_are_shown_as_decode_shows_them():
 def test_the_responses_to_a_telecommand_on_a_framed_link(name, text):
     icd = load([ROOT / "examples" / "links" / "wheel.yaml"]).icd
     assert text in to_text(icd, ["wheel", name], None)
+
+
+@pytest.mark.parametrize(
+    ("keys", "ends"),
+    [
+        ("", ["-128", "127"]),
+        (", min: 0", ["0", "127"]),
+        (", max: 0", ["-128", "0"]),
+        (", min: -5, max: 5", ["-5", "5"]),
+    ],
+)
+def test_a_limit_of_zero_is_shown_as_any_other(tmp_path, keys, ends):
+    field = f"{{at: 0, bits: 8, name: Value, type: int{keys}}}"
+    path = tmp_path / "demo.yaml"
+    path.write_text(HEAD + status(field[1:-1], length=1))
+    (row,) = [
+        line.split()
+        for line in to_text(load([path]).icd, ["demo", "Status"]).splitlines()
+        if " Value " in line
+    ]
+    assert row == ["0", "8", "int", "Value", *ends]

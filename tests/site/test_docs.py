@@ -137,3 +137,9 @@ def test_a_browser_that_resets_its_connection_is_no_news(demo, capsys):
         server.shutdown()
         server.server_close()
     assert capsys.readouterr().err == ""
+
+
+def test_a_path_in_an_error_page_is_text_and_no_markup(ask):
+    status, body = ask("/%3Cscript%3Ealert(1)%3C/script%3E&amp;")
+    assert status == 404 and "<script" not in body
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;&amp;amp;" in body

@@ -48,3 +48,16 @@ def test_frames_are_refused_for_the_highest_bit_of_a_count_alone(
             and len(frame) in lengths
             for frame in without
         )
+
+
+@pytest.mark.parametrize(
+    ("plus", "counts"), [(0, {0, 1, 2, 5, 8, 9}), (3, {3, 4, 5, 6, 8, 9})]
+)
+def test_the_numbers_of_elements_at_both_limits_and_beside_them_are_tested(
+    tmp_path, plus, counts
+):
+    part = ONE.replace("count: Count", f"count: {{field: Count, plus: {plus}}}")
+    (tmp_path / "demo.yaml").write_text(ICD + part, encoding="utf-8")
+    icd = load([tmp_path / "demo.yaml"]).icd
+    (message,) = make(icd, icd.node("demo")).messages
+    assert {len(row.frame) - 2 for row in message.rows} >= counts
