@@ -5,6 +5,7 @@ the names.
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -61,39 +62,45 @@ def test_ruff_finds_nothing(name, request):
     check(request.getfixturevalue(name), "ruff", "check", "--no-cache", ".")
 
 
-def test_mypy_finds_nothing(package, tmp_path):
-    check(package, "mypy", "--strict", "--cache-dir", tmp_path, package.name)
+@pytest.fixture(scope="module", params=["mypy", "pyright"])
+def mistakes(request, shipped, odd, ordered, tmp_path_factory) -> dict[str, set[int]]:
+    """Lines in which a type checker finds errors, by file, in one run for all packages
+    and for two programs that use the shipped one.
+    """
+    folder = tmp_path_factory.mktemp("checked")
+    packages = (shipped, odd, ordered)
+    for package in packages:
+        shutil.copytree(package.folder / package.name, folder / package.name)
+    for program in ("user.py", "misuse.py"):
+        shutil.copy(HERE / program, folder)
+    options = {
+        "mypy": ["--strict", "--cache-dir", tmp_path_factory.mktemp("mypy")],
+        "pyright": [],
+    }
+    words = [request.param, *options[request.param], *(p.name for p in packages)]
+    done = subprocess.run(
+        [sys.executable, "-m", *map(str, words), "user.py", "misuse.py"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    lines: dict[str, set[int]] = {}
+    for file, line in re.findall(
+        r"^\s*(\S+\.py):(\d+):.* error", done.stdout, re.MULTILINE
+    ):
+        name = Path(file).relative_to(folder) if Path(file).is_absolute() else file
+        lines.setdefault(str(name), set()).add(int(line))
+    assert lines, done.stdout + done.stderr
+    return lines
 
 
-def test_pyright_finds_nothing(shipped, odd):
-    for package in (shipped, odd):
-        check(package, "pyright", package.name)
+def test_type_checkers_find_nothing_in_packages_and_programs(mistakes):
+    assert {file: mistakes[file] for file in mistakes if file != "misuse.py"} == {}
 
 
-def test_programs_that_use_the_package_are_checked(shipped, tmp_path):
-    check(shipped, "mypy", "--strict", "--cache-dir", tmp_path, HERE / "user.py")
-    check(shipped, "pyright", write(shipped, "user.py"))
-
-
-@pytest.mark.parametrize(
-    "command", [("mypy", "--strict", "--show-error-codes"), ("pyright",)]
-)
-def test_mistakes_in_programs_are_found(shipped, tmp_path, command):
-    program = write(shipped, "misuse.py")
-    lines = program.read_text(encoding="utf-8").splitlines()
+def test_type_checkers_find_mistakes_in_programs(mistakes):
+    lines = (HERE / "misuse.py").read_text(encoding="utf-8").splitlines()
     wrong = {
         number for number, line in enumerate(lines, 1) if line.endswith("# expect")
     }
-    cache = ("--cache-dir", tmp_path) if command[0] == "mypy" else ()
-    done = tool(shipped, *command, *cache, program)
-    found = {
-        int(number) for number in re.findall(r"misuse\.py:(\d+):.* error", done.stdout)
-    }
-    assert found == wrong, done.stdout
-
-
-def write(package: Package, name: str) -> Path:
-    """A copy of a program beside the package, where type checkers find that."""
-    path = package.folder / name
-    path.write_text((HERE / name).read_text(encoding="utf-8"), encoding="utf-8")
-    return path
+    assert mistakes["misuse.py"] == wrong
