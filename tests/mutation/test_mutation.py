@@ -39,14 +39,14 @@ def test_every_number_of_a_message_is_changed(demo):
 
 
 def test_no_sampled_mutant_survives_in_any_language(icd, files):
-    chosen = random.Random(2).sample(list(mutants(icd)), 40)
+    chosen = random.Random(2).sample(list(mutants(icd)), 24)
     *_, (_, scores, refused) = measure(icd, files, chosen, list(LANGUAGES.values()))
     for score in scores.values():
         assert score.survived == {} and score.crashed == []
         assert sum(score.killed.values()) + sum(score.same.values()) + sum(
             refused.values()
         ) == len(chosen)
-        assert sum(score.killed.values()) > 12
+        assert sum(score.killed.values()) > 8
 
 
 def test_vectors_without_worth_let_mutants_survive(icd, files):
