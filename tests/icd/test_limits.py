@@ -522,8 +522,37 @@ RESPONSES = {
     "parts that responses repeat": ("ICD177", echoes, None, 4),
 }
 
+FILES = {
+    "characters of a text": (
+        "ICD001",
+        lambda size: f"vocabulary: ['{'x' * size}']\n" + value(8, ""),
+        None,
+        20_000,
+    ),
+    "levels of lists": (
+        "ICD001",
+        lambda depth: "vocabulary: " + "[" * depth + "]" * depth + "\n",
+        None,
+        39,
+    ),
+    "bytes of a file": (
+        "ICD001",
+        lambda size: f"icdgen: 1\n{NODE}}}\n".ljust(size - 1, "#") + "\n",
+        None,
+        4_000_000,
+    ),
+}
+
 TABLES = (
-    IDS | FIELDS | LIMITS | FORMULAS | FRAMED_LINKS | BUSES | PROCEDURES | RESPONSES
+    FILES
+    | IDS
+    | FIELDS
+    | LIMITS
+    | FORMULAS
+    | FRAMED_LINKS
+    | BUSES
+    | PROCEDURES
+    | RESPONSES
 )
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from icdgen import codec
 from icdgen.loading import load
+from icdgen.values import numbers
 from tests.icd.files import HEAD
 from tests.limits import assert_limits
 
@@ -69,3 +70,8 @@ def test_bytes_have_the_length_of_their_field(fields):
     assert not is_accepted(fields["bytes"], 3) and not is_accepted(
         fields["bytes"], "abc"
     )
+
+
+def test_a_typed_number_has_at_most_400_characters():
+    assert_limits(lambda size: numbers.integer("1" * size) is not None, most=400)
+    assert_limits(lambda size: numbers.rational("1" * size) is not None, most=400)
