@@ -5,6 +5,7 @@ small terminal scrolls.
 from __future__ import annotations
 
 import fcntl
+import io
 import os
 import pty
 import select
@@ -16,8 +17,10 @@ import time
 
 import pytest
 from icdgen_runtime.wire.events import Arrived, Done, Timeout
+from rich.console import Console
 
 from icdgen.link import live
+from icdgen.link.screen import Screen
 from icdgen.loading import load
 from tests.conftest import ROOT
 from tests.sim.device import ICD, simulator
@@ -132,6 +135,57 @@ def _read_until(terminal: int, words: str, seconds: float) -> str:
         if select.select([terminal], [], [], 0.1)[0]:
             text += os.read(terminal, 65536).decode(errors="replace")
     return text
+
+
+class Table:
+    """A screen without a terminal: what it shows of a monitor, and keys for it."""
+
+    def __init__(self, lines: int) -> None:
+        monitor = watched("128", "146", "150", "Communication Status")
+        for message in monitor.messages:
+            data = bytes(message.length)
+            monitor.record(message, Done(message.telemetry_id, 1, data))
+        self.screen = Screen(monitor, False)
+        self.screen.keyboard.is_open = True
+        self.lines = lines
+
+    def typed(self, *keys: str) -> str:
+        """Return the line that says which part of the table is shown, after keys."""
+        for key in keys:
+            self.screen.keyboard.on_key(key)
+        return self.shown()[-1].partition(";")[0]
+
+    def shown(self) -> list[str]:
+        console = Console(width=120, height=self.lines, file=io.StringIO())
+        console.print(self.screen)
+        return console.file.getvalue().splitlines()
+
+
+UP, DOWN, PAGE_UP, PAGE_DOWN = "\x1b[A", "\x1b[B", "\x1b[5~", "\x1b[6~"
+HOME, END = "\x1b[H", "\x1b[F"
+
+
+def test_keys_move_through_a_table_and_stop_at_its_ends():
+    table = Table(12)
+    rows = len(Table(200).shown()) - 1
+    assert rows > 18, "the table is longer than two pages"
+    assert table.typed() == f"lines 1 to 9 of {rows}"
+    assert table.typed(UP) == f"lines 1 to 9 of {rows}"
+    assert table.typed(DOWN) == f"lines 2 to 10 of {rows}"
+    assert table.typed(DOWN, UP) == f"lines 2 to 10 of {rows}"
+    assert table.typed(PAGE_DOWN) == f"lines 11 to 19 of {rows}"
+    assert table.typed("x") == f"lines 11 to 19 of {rows}"
+    assert table.typed(PAGE_UP, UP) == f"lines 1 to 9 of {rows}"
+    assert table.typed(END) == f"lines {rows - 8} to {rows} of {rows}"
+    assert table.typed(DOWN) == f"lines {rows - 8} to {rows} of {rows}"
+    assert table.typed(HOME) == f"lines 1 to 9 of {rows}"
+
+
+def test_a_table_is_whole_on_a_terminal_that_has_room_for_it():
+    rows = len(Table(200).shown()) - 1
+    # The titles, the lines of the table and that of the cursor.
+    assert len(Table(rows + 2).shown()) == rows + 1
+    assert Table(rows + 1).typed() == f"lines 1 to {rows - 2} of {rows}"
 
 
 @pytest.mark.pty
