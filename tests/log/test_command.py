@@ -136,3 +136,26 @@ def test_a_conversion_replaces_an_earlier_one(write, everything, tmp_path):
     out.write_text("earlier")
     assert icdgen(path, "--out", out).returncode == 0
     assert len(out.read_text().splitlines()) == 6
+
+
+@pytest.mark.parametrize(
+    ("count", "entries", "times"),
+    [
+        (0, "0 entries of", ""),
+        (1, "1 entry of", ", 2020-09-13T12:26:40.000Z"),
+        (3, "3 entries of", ", 2020-09-13T12:26:40.000Z to 2020-09-13T12:26:42.014Z"),
+    ],
+)
+def test_a_log_is_listed_with_its_size_its_times_and_its_mask(
+    write, everything, known, count, entries, times
+):
+    path, _ = write(everything, count)
+    plan_bytes = sum(slot.length for slot in known.mask.bits.values())
+    result = icdgen(path)
+    first, second, third, *_ = result.stdout.splitlines()
+    assert first == f"{path}: log of cubeacp, {path.stat().st_size:,} bytes"
+    size = (path.stat().st_size - known.log_file.header_bytes) // max(count, 1)
+    if count:
+        assert size > plan_bytes and second == f"{entries} {size} bytes{times}"
+    assert second.startswith(entries)
+    assert third == f"mask {everything.hex(' ')}"
