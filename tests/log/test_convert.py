@@ -127,10 +127,14 @@ def test_parquet(icd, known, log, tmp_path, monkeypatch, piece):
 def test_only_the_first_entries(icd, known, log, tmp_path):
     import pyarrow.parquet as pq
 
-    found, _ = log
+    found, entries = log
     parquet.to_parquet(found, tmp_path / "log.parquet", 7, lambda size: None)
-    assert pq.read_table(tmp_path / "log.parquet").num_rows == 7
-    assert converted(text.to_csv, icd, known, found.path, 7).count("\n") == 8
+    moments = pq.read_table(tmp_path / "log.parquet")["time"].to_pylist()
+    first = times(entries)[:7]
+    assert [round(moment.timestamp() * 1000) for moment in moments] == first
+    whole = converted(text.to_csv, icd, known, found.path)
+    head = converted(text.to_csv, icd, known, found.path, 7)
+    assert head.count("\n") == 8 and whole.startswith(head)
 
 
 def test_a_log_without_entries_or_frames_is_a_table_too(
@@ -139,10 +143,14 @@ def test_a_log_without_entries_or_frames_is_a_table_too(
     import pyarrow.parquet as pq
 
     for mask, count in ((everything, 0), (bytes(known.mask.size), 3)):
-        path, _ = write(mask, count)
+        path, entries = write(mask, count)
         found = open_source(icd, known.node, path)
         parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
-        assert pq.read_table(tmp_path / "log.parquet").num_rows == count
+        table = pq.read_table(tmp_path / "log.parquet")
+        columns = ["time", *(column.name for column in found.plan.columns)]
+        assert table.column_names == columns
+        moments = [round(t.timestamp() * 1000) for t in table["time"].to_pylist()]
+        assert moments == times(entries) and len(moments) == count
 
 
 ODD = """\

@@ -405,19 +405,31 @@ def test_what_cannot_be_is_said(options, text, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "script",
-    ["{", "a: 1", "- {at: x}", "- {set: {Identification: 1}}", "- {what: 1}",
-     "- {set: {Identification: {major: {wave: tsunami}}}}", "- {set: {Identification: {major: {min: x}}}}",
-     "- {faults: drop}", "- {faults: [drop=9]}", "- {set: {Identification: {major: x}}}",
-     "- {set: {Identification: {major: 300}}}"],
+    ("script", "words"),
+    [
+        ("{", "script.yaml:1:2: this is no YAML"),
+        ("a: 1", "this is no list"),
+        ("- {at: x}", "step 1: `at` is no time in seconds"),
+        ("- {at: -1}", "step 1: `at` is no time in seconds"),
+        ("- {at: true}", "step 1: `at` is no time in seconds"),
+        ("- {}\n- {set: {Identification: 1}}", "step 2: `set` is no mapping"),
+        ("- {what: 1}", "step 1: there is no such step"),
+        ("- {set: {Identification: {major: {wave: tsunami}}}}", "there is no such wave"),
+        ("- {set: {Identification: {major: {min: x}}}}", "are numbers, the last above 0"),
+        ("- {set: {Identification: {major: {period: 0}}}}", "are numbers, the last above 0"),
+        ("- {faults: drop}", "step 1: `faults` is no list of texts"),
+        ("- {faults: [drop=9]}", "the share is not between 0 and 1"),
+        ("- {set: {Identification: {major: x}}}", "`x`"),
+        ("- {set: {Identification: {major: 300}}}", "300 does not fit"),
+    ],
 )  # fmt: skip
-def test_a_wrong_script_is_refused_before_anything_runs(script, tmp_path):
+def test_a_wrong_script_is_refused_before_anything_runs(script, words, tmp_path):
     from icdgen.errors import UserError
     from icdgen.sim import run
 
     path = tmp_path / "script.yaml"
     path.write_text(script)
-    with pytest.raises(UserError):
+    with pytest.raises(UserError, match=words):
         run.build(ICD, "cubeacp", run.Options(script=path))
 
 

@@ -89,19 +89,22 @@ def cubeacp() -> Link:
 
 
 @pytest.mark.parametrize(
-    "name",
+    ("name", "words"),
     [
-        "tcp://",
-        "tcp://localhost",
-        "tcp://127.0.0.1:1",
-        "ftp://x:1",
-        "/dev/no-such-port",
-        "can://x",
-        "can://none/0",
+        ("tcp://", "`tcp://` is no address"),
+        ("tcp://localhost", "`tcp://localhost` is no address"),
+        ("tcp://localhost:0", "`tcp://localhost:0` is no address"),
+        ("tcp://localhost:65536", "`tcp://localhost:65536` is no address"),
+        ("tcp://127.0.0.1:1", "cannot connect to tcp://127.0.0.1:1"),
+        ("ftp://x:1", "there is no port `ftp://x:1`"),
+        ("/dev/no-such-port", "no such file"),
+        ("can://x", "`can://x` is no CAN bus"),
+        ("can:///0", "`can:///0` is no CAN bus"),
+        ("can://none/0", "cannot open can://none/0"),
     ],
 )
-def test_what_cannot_be_opened_is_said(name):
-    with pytest.raises(PortError):
+def test_what_cannot_be_opened_is_said(name, words):
+    with pytest.raises(PortError, match=words):
         open_port(name, {})
 
 

@@ -63,5 +63,8 @@ def test_the_device_reports_its_progress_and_checksums():
 
 
 def test_a_refused_telecommand_ends_the_procedure():
+    session, port, _ = talking(**SETTINGS, faults=["nak=1:Locked"])
+    procedure = Procedure(session.client.link, "upload", {"area": 1}, bytes(100))
     with pytest.raises(FailedError, match="refused"):
-        uploaded(bytes(100), faults=["nak=1:Locked"])
+        session.run(procedure)
+    assert programs(port) == {}, "nothing is stored"
