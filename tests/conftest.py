@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import tempfile
 from functools import cache
 from pathlib import Path
@@ -84,6 +85,10 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
+    for mark in item.iter_markers("needs"):
+        missing = [program for program in mark.args if shutil.which(program) is None]
+        if missing:
+            pytest.skip(f"no {' and no '.join(missing)}: scripts/test installs it")
     if (item.get_closest_marker("pty") or "--pty]" in item.nodeid) and not _terminals():
         pytest.skip("this machine has no pseudo-terminals: /dev/pts is not mounted")
 

@@ -22,7 +22,7 @@ GENERATORS = [
     if shutil.which(tool)
 ]
 
-pytestmark = pytest.mark.skipif(not shutil.which("cmake"), reason="needs cmake")
+pytestmark = pytest.mark.needs("cmake")
 
 
 def run(*command: str | Path, status: int = 0) -> str:

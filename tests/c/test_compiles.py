@@ -5,16 +5,12 @@ and microcontrollers.
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 
 import pytest
 
 from tests.c import harness
 from tests.conftest import ROOT
-
-CORTEX_M = shutil.which("arm-none-eabi-gcc")
-AVR = shutil.which("avr-gcc")
 
 INHERENT = {
     "padded": "members stand in the order of the manual",
@@ -134,7 +130,7 @@ def test_clang_has_nothing_to_say_with_every_warning_there_is(
             )
 
 
-@pytest.mark.skipif(not AVR, reason="needs gcc-avr and avr-libc")
+@pytest.mark.needs("avr-gcc")
 @pytest.mark.parametrize(
     "option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE", "-DICDGEN_SHARED"]
 )
@@ -152,7 +148,7 @@ def test_without_a_warning_where_int_has_16_bits(headers, option):
     )
 
 
-@pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")
+@pytest.mark.needs("arm-none-eabi-gcc")
 @pytest.mark.parametrize("cpu", ["cortex-m0", "cortex-m4", "cortex-m7"])
 @pytest.mark.parametrize("option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE"])
 def test_cortex_m(headers, cpu, option):
@@ -162,7 +158,7 @@ def test_cortex_m(headers, cpu, option):
     )
 
 
-@pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")
+@pytest.mark.needs("arm-none-eabi-gcc")
 def test_cortex_m4_needs_at_most_12_bytes_of_code_a_field(headers, tmp_path):
     source = tmp_path / "size.c"
     source.write_text(harness.wrappers(harness.shipped()))

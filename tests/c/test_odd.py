@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -27,9 +26,7 @@ def test_portable_code_agrees_too(icd, tmp_path):
     assert_no_differences([build(icd, tmp_path, "-DICDGEN_PORTABLE")])
 
 
-@pytest.mark.skipif(
-    not shutil.which("qemu-s390x"), reason="needs qemu-user and gcc-s390x-linux-gnu"
-)
+@pytest.mark.needs("qemu-s390x", "s390x-linux-gnu-gcc")
 def test_big_endian_machines_agree_too(icd, tmp_path):
     harness.generate(icd, tmp_path)
     source = tmp_path / "frames.c"

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-import shutil
 import subprocess
 
 import pytest
@@ -98,7 +97,7 @@ def test_lines_keep_to_the_width_where_names_allow_it(shipped):
             ), f"{path}: {line}"
 
 
-@pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
+@pytest.mark.needs("clang-format")
 def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
     for path, text in shipped.items():
         target = tmp_path / path

@@ -5,7 +5,6 @@ linkers take them; others stay.
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 
 import pytest
@@ -48,7 +47,7 @@ def test_only_names_that_begin_alike_are_shortened_each_to_one_of_its_own():
     assert all(one.isupper() == text.isupper() for text, one in short.items())
 
 
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+@pytest.mark.needs("gcc")
 def test_generated_c_with_long_names_has_no_two_names_that_begin_alike_and_passes_its_self_test(
     tmp_path,
 ):

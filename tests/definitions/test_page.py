@@ -5,7 +5,6 @@ the program that runs.
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 
@@ -28,7 +27,7 @@ def ends_as_shown(icd: str, number: int) -> bool:
     return bool(re.search(documents.layout(blocks("yaml")[number]) + r"\Z", icd))
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.needs("cc")
 def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
     (tmp_path / "train.dbc").write_text(blocks("dbc")[0])
     for name, program in zip(("main.c", "send.c"), blocks("c"), strict=False):
@@ -64,7 +63,7 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
     ] == ["telecommand"]
 
 
-@pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo")
+@pytest.mark.needs("cargo")
 def test_the_program_in_rust_prints_what_the_page_shows(tmp_path):
     (tmp_path / "train.dbc").write_text(blocks("dbc")[0])
     app = tmp_path / "app"
@@ -107,7 +106,7 @@ def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
     assert ends_as_shown(emit.text({"messages": tree["messages"]}), 4)
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.needs("cc")
 def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(
     tmp_path,
 ):

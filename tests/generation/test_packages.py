@@ -86,7 +86,7 @@ def test_python_packages_of_two_projects_are_installed_side_by_side(projects, tm
     )
 
 
-@pytest.mark.skipif(shutil.which("cargo") is None, reason="needs Cargo")
+@pytest.mark.needs("cargo")
 def test_a_program_uses_the_crates_of_two_projects(projects, tmp_path):
     needs = "".join(
         f'{name} = {{ path = "{projects / name / "generated" / "rust"}" }}\n'
@@ -105,7 +105,7 @@ def test_a_program_uses_the_crates_of_two_projects(projects, tmp_path):
     assert run("cargo", "run", "--quiet", "--offline", cwd=tmp_path) == "5 257\n"
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.needs("cc")
 def test_a_program_in_c_uses_nodes_of_one_name_of_two_projects(projects, tmp_path):
     (tmp_path / "main.c").write_text(
         '#include <stdio.h>\n#include "alpha_battery.h"\n#include "beta_battery.h"\n'
@@ -138,7 +138,7 @@ def test_nothing_that_an_icd_names_is_without_the_prefix_in_c(projects):
             assert re.findall(r"(?i)(?<![a-z_])battery_\w+|\"battery", text) == [], path
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.needs("cc")
 def test_the_self_test_of_prefixed_c_passes(projects, tmp_path):
     generated = projects / "beta" / "generated"
     sources = sorted((generated / "c-selftest").rglob("*.c"))

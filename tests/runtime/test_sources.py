@@ -4,7 +4,6 @@ as they lie.
 
 from __future__ import annotations
 
-import shutil
 import sys
 
 import pytest
@@ -61,7 +60,7 @@ def test_the_c_self_test_compiles_without_a_warning(compiler):
     run(compiler, "-std=c99", *STRICT, "-I", C, SELFTEST / "icdgen_selftest.c")
 
 
-@pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
+@pytest.mark.needs("clang-format")
 def test_c_is_as_clang_format_lays_it_out():
     run(
         "clang-format",

@@ -5,7 +5,6 @@ is what gcc makes of them.
 from __future__ import annotations
 
 import random
-import shutil
 import subprocess
 
 import pytest
@@ -366,7 +365,7 @@ def made_up(random: random.Random) -> str:
     )
 
 
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+@pytest.mark.needs("gcc")
 def test_the_layout_is_that_of_gcc(tmp_path):
     structs = [made_up(random.Random(seed)) for seed in range(120)]
     code = ["#include <stdint.h>", "#include <stdio.h>", "#include <string.h>", ENUMS]
