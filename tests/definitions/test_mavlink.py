@@ -212,3 +212,25 @@ def test_what_a_dialect_says_beyond_an_icd_is_reported(tmp_path):
         ("IMP085", "`increment` of `field` is not used (`mode`)"),
         ("IMP085", "`wip` of `message` is not used (`STATE`)"),
     ]
+
+
+def test_an_enumeration_of_two_files_has_the_first_description(tmp_path):
+    def enum(value: int, description: str) -> str:
+        entry = f'<entry value="{value}" name="MODE_{value}A"/>'
+        text = f"<description>{description}</description>" if description else ""
+        return f'<enums><enum name="MODE">{text}{entry}</enum></enums>'
+
+    field = '<field type="uint8_t" name="mode" enum="MODE">Mode.</field>'
+    body = f'<messages><message id="1" name="STATE">{field}</message></messages>'
+    for first, second, summary in (
+        ("Of one.", "Of two.", "Of one."),
+        ("", "Of two.", "Of two."),
+        ("Of one.", "", "Of one."),
+    ):
+        (tmp_path / "one.xml").write_text(
+            f"<mavlink><include>two.xml</include>{enum(1, first)}{body}</mavlink>"
+        )
+        (tmp_path / "two.xml").write_text(f"<mavlink>{enum(2, second)}</mavlink>")
+        (tree,) = run.read(tmp_path / "one.xml", READERS["v20"]).trees.values()
+        (mode,) = tree["enums"]
+        assert mode["summary"] == summary

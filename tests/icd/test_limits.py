@@ -222,6 +222,43 @@ IDS = {
     ),
 }
 
+
+def member_range(last: int) -> str:
+    """Return an enumeration of which a member is a range from 3."""
+    members = f"{{value: 0, name: Stop}}, {{value: 3, to: {last}, name: Go}}"
+    return f"enums: [{{name: State, members: [{members}]}}]\n"
+
+
+def id_ranges(last: int, first: int, bit: int = 7) -> str:
+    """Return the ids of telecommands up to ``last`` and of telemetry from ``first``."""
+    ids = (
+        f"direction_bit: {bit}, telecommand: {{direction: 0, first: 0, last: {last}}}, "
+        f"telemetry: {{direction: 1, first: {first}, last: 255}}"
+    )
+    return f"protocol: {{link: {{ids: {{{ids}}}}}}}\n"
+
+
+def id_in_ranges(id: int) -> str:
+    command = f"messages: [{{name: Reset, id: {id}, kind: telecommand, length: 0}}]\n"
+    return id_ranges(100, 128) + command
+
+
+def linked_ids(bits: int) -> str:
+    framing = "framing: {by: escape, escape: 0x1F, start: 0x7F, end: 0xFF, data: 0x1F}"
+    protocol = f"protocol: {{link: {{buses: {{uart: {{{framing}}}}}}}}}\n"
+    return f"icdgen: 1\n{NODE}, id_bits: {bits}}}\n{protocol}"
+
+
+def can_message(length: int) -> str:
+    """Return a message of a node that sends single CAN packets."""
+    packet = "packets: {Command: {from: host, buses: [can], type: 3}}"
+    can_section = can("source", 8, 1).removeprefix("protocol: {link: {")
+    whole = f"protocol: {{link: {{{packet}, {can_section}"
+    whole = whole.replace("node_address", "max_data_bytes: 8, node_address")
+    data = f"at: 0, bits: {8 * length}, name: Data, type: bytes"
+    return whole + message(length, data)
+
+
 FIELDS: dict[str, tuple[str, Callable[[int], str], int | None, int | None]] = {
     "bits of an integer": (
         "ICD022",
@@ -459,6 +496,22 @@ FRAMED_LINKS = {
 }
 
 BUSES = {
+    "the last value of a range": ("ICD035", member_range, 4, None),
+    "the last id of telecommands": (
+        "ICD103",
+        lambda last: id_ranges(last, 128),
+        0,
+        127,
+    ),
+    "the first id of telemetry": (
+        "ICD103",
+        lambda first: id_ranges(100, first),
+        128,
+        255,
+    ),
+    "an id of the telecommands": ("ICD056", id_in_ranges, None, 100),
+    "bits of ids without frames": ("ICD112", linked_ids, None, 8),
+    "bytes of a message in a CAN packet": ("ICD107", can_message, None, 8),
     "a source address of 4 bits": (
         "ICD100",
         lambda number: can("source", 4, number),

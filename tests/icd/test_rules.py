@@ -172,3 +172,20 @@ entries:
         8,
     )
     assert Path(found.place.file).parent.name == "errata"
+
+
+CRC = "kind: crc, width: 8, polynomial: 7, init: {init}, reflect_in: false, reflect_out: false, xor_out: {xor_out}"
+
+
+@pytest.mark.parametrize(
+    ("init", "xor_out", "check", "is_right"),
+    [(0, 0, 0xF4, True), (0, 0, 0, False), (0, 0xF4, 0, True), (0, 0xF4, 255, False)],
+)
+def test_a_check_value_of_zero_is_compared_as_any_other(
+    tmp_path, init, xor_out, check, is_right
+):
+    checksum = CRC.format(init=init, xor_out=xor_out)
+    text = (
+        f"protocol: {{link: {{checksums: {{crc: {{{checksum}, check: {check}}}}}}}}}\n"
+    )
+    assert ("ICD091" not in codes(tmp_path, text)) == is_right

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
+import signal
 import socket
 import struct
+import subprocess
+import sys
 import threading
 import time
 from http.client import HTTPConnection
@@ -143,3 +147,42 @@ def test_a_path_in_an_error_page_is_text_and_no_markup(ask):
     status, body = ask("/%3Cscript%3Ealert(1)%3C/script%3E&amp;")
     assert status == 404 and "<script" not in body
     assert "&lt;script&gt;alert(1)&lt;/script&gt;&amp;amp;" in body
+
+
+def test_docs_serve_serves_until_it_is_interrupted(demo):
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        "docs",
+        "--serve",
+        "--port",
+        "0",
+        str(demo),
+    ]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    try:
+        line = process.stdout.readline()
+        address = re.search(r"http://localhost:(\d+)/ \(\d+ files\)", line)
+        assert address, line
+        for _ in range(2):
+            connection = HTTPConnection("localhost", int(address[1]), timeout=20)
+            connection.request("GET", "/demo/")
+            answer = connection.getresponse()
+            assert answer.status == 200 and b"Estimated Roll" in answer.read()
+            connection.close()
+        assert process.poll() is None, "it serves until it is interrupted"
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 0
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_a_port_that_is_in_use_is_an_error(icdgen, demo):  # noqa: F811
+    with socket.create_server((HOST, 0)) as server:
+        port = server.getsockname()[1]
+        result = icdgen("docs", "--serve", "--port", port, demo)
+    assert result.status == 2 and f"cannot listen on port {port}" in result.err
