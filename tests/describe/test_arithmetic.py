@@ -8,8 +8,8 @@ from fractions import Fraction
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from icdgen.describe.arithmetic import Arithmetic, arithmetic_of
-from icdgen.describe.steps import steps
+from icdgen.describe.arithmetic import ScaleArithmetic, arithmetic_of
+from icdgen.describe.steps import steps_of_scale
 from icdgen.describe.storage import storage_of
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
@@ -23,8 +23,8 @@ factors = (fractions | decimals).filter(bool)
 
 def arithmetic(
     kind: str, bits: int, factor: Fraction, offset: Fraction = Fraction(0)
-) -> Arithmetic:
-    scale = steps(
+) -> ScaleArithmetic:
+    scale = steps_of_scale(
         Scalar(name="Rate", bits=bits, type=kind, scale=Scale(factor, offset))
     )
     assert scale is not None
@@ -40,7 +40,7 @@ cases = st.builds(
 )
 
 
-def raws(case: Arithmetic) -> list[int]:
+def raws(case: ScaleArithmetic) -> list[int]:
     """The ends of the raw values, and some values between them."""
     first, last = case.steps.raw_min, case.steps.raw_max
     return [first, first + 1, (first + last) // 3, last // 2, last - 1, last]

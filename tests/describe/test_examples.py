@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.describe import describe
-from icdgen.describe.examples import example
+from icdgen.describe.examples import example_of_message
 from tests.conformance.icds import read
 from tests.conftest import ROOT
 
@@ -19,7 +19,7 @@ from tests.conftest import ROOT
 def test_the_value_that_an_example_shows_is_a_number_that_its_frame_holds(path):
     icd = read(ROOT / path)
     shown = [
-        (message, example(message))
+        (message, example_of_message(message))
         for node in describe(icd).nodes
         for message in node.messages
         if message.fields

@@ -13,11 +13,11 @@ from icdgen.describe.groups import (
     FrameBytes,
     Group,
     LoopElements,
-    Row,
     Thresholds,
+    WordRow,
     bytes_of_flags,
+    group_fields,
     grouped_fields,
-    groups,
 )
 from tests.conformance.icds import read
 from tests.conftest import ROOT
@@ -44,7 +44,7 @@ def message(folder, *fields: str, length: int) -> MessageDescription:
 def scalars_of(group: Group) -> list[FieldDescription]:
     """The fields that a group stands for."""
     match group:
-        case Flags() | Row():
+        case Flags() | WordRow():
             return list(group.fields)
         case LoopElements(array, _, loop):
             return list(array.elements[: loop.elements])
@@ -61,7 +61,7 @@ def test_every_field_is_in_one_group_and_groups_keep_the_order_of_fields(
     for one in messages(path):
         grouped = [
             field.model.name
-            for group in groups(one, thresholds)
+            for group in group_fields(one, thresholds)
             for field in scalars_of(group)
         ]
         in_structs = [
@@ -80,7 +80,7 @@ def test_flags_of_a_group_are_neighbouring_bits_of_a_byte_and_words_of_a_row_fol
     path, thresholds
 ):
     for one in messages(path):
-        for group in groups(one, thresholds):
+        for group in group_fields(one, thresholds):
             if isinstance(group, Flags):
                 bits = range(group.shift, group.shift + len(group.fields))
                 wanted = [
@@ -89,7 +89,7 @@ def test_flags_of_a_group_are_neighbouring_bits_of_a_byte_and_words_of_a_row_fol
                 ]
                 assert [field.pieces[0][:2] for field in group.fields] == wanted
                 assert len(group.fields) in thresholds.flags
-            elif isinstance(group, Row):
+            elif isinstance(group, WordRow):
                 step = group.fields[0].model.bits
                 starts = [field.model.at for field in group.fields]
                 assert starts == list(
@@ -104,11 +104,11 @@ def test_members_are_a_row_from_the_threshold_on_and_elements_of_an_array_always
     fields = [f"name: W{n}, at: {16 * n}, bits: 16, type: uint" for n in range(3)]
     fields.append("name: Levels, at: 48, bits: 8, type: uint, count: 2")
     one = message(tmp_path, *fields, length=8)
-    kinds = [type(group) for group in groups(one, SMALL)]
-    assert kinds == [Row, Row]
-    assert [type(group) for group in groups(one, LARGE)] == [FieldDescription] * 3 + [
-        Row
-    ]
+    kinds = [type(group) for group in group_fields(one, SMALL)]
+    assert kinds == [WordRow, WordRow]
+    assert [type(group) for group in group_fields(one, LARGE)] == [
+        FieldDescription
+    ] * 3 + [WordRow]
 
 
 def test_a_loop_reads_all_elements_of_an_array_or_none(tmp_path):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen import codec
-from icdgen.describe.bounds import allowed_ends, bounds
+from icdgen.describe.bounds import allowed_ends, bounds_of_limits
 from icdgen.describe.numbers import (
     bit_range,
     byte_range,
@@ -17,8 +17,8 @@ from icdgen.describe.numbers import (
     factor_text,
     value_text,
 )
-from icdgen.describe.steps import steps
-from icdgen.describe.storage import Storage, holding
+from icdgen.describe.steps import steps_of_scale
+from icdgen.describe.storage import Storage, storage_bits
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
 from icdgen.icd.model import Limits
@@ -39,7 +39,7 @@ def scaled(draw) -> tuple[NodePlace, int]:
 @given(scaled())
 def test_the_steps_give_what_the_reference_codec_gives(case):
     field, raw = case
-    found = steps(field)
+    found = steps_of_scale(field)
     assert found is not None and found.q > 0
     assert (
         found.physical(raw) == field.scale.physical(raw) == codec.physical(field, raw)
@@ -50,7 +50,7 @@ def test_the_steps_give_what_the_reference_codec_gives(case):
 @given(scaled())
 def test_where_they_are_called_exact_doubles_give_the_same(case):
     field, raw = case
-    found = steps(field)
+    found = steps_of_scale(field)
     if found.exact_in_doubles:
         assert (float(raw) * float(found.p) + float(found.c)) / float(
             found.q
@@ -60,18 +60,18 @@ def test_where_they_are_called_exact_doubles_give_the_same(case):
 @given(scaled())
 def test_no_value_lies_outside_the_span(case):
     field, raw = case
-    low, high = steps(field).span
-    assert low <= steps(field).physical(raw) <= high
+    low, high = steps_of_scale(field).span
+    assert low <= steps_of_scale(field).physical(raw) <= high
     assert {low, high} == {
-        steps(field).physical(end) for end in (field.raw_min, field.raw_max)
+        steps_of_scale(field).physical(end) for end in (field.raw_min, field.raw_max)
     }
 
 
 def test_what_no_double_holds_is_not_called_exact():
-    assert not steps(
+    assert not steps_of_scale(
         Scalar(name="wide", at=0, bits=64, type="uint", scale=Scale(Fraction(3)))
     ).exact_in_doubles
-    assert steps(
+    assert steps_of_scale(
         Scalar(name="small", at=0, bits=16, type="int", scale=Scale(Fraction(1, 100)))
     ).exact_in_doubles
 
@@ -83,7 +83,7 @@ LIMITS = Limits(min=Fraction(1), below=Fraction(3))
     ("value", "kept"), [(0.5, [False, True]), (1, [True, True]), (3, [True, False])]
 )
 def test_each_limit_tells_whether_a_value_keeps_it(value, kept):
-    found = bounds(LIMITS)
+    found = bounds_of_limits(LIMITS)
     assert [bound.key for bound in found] == ["min", "below"]
     assert [bound.holds(value) for bound in found] == kept
     assert not any(bound.holds(float("nan")) for bound in found)
@@ -105,7 +105,7 @@ def test_the_ends_are_those_of_the_type_unless_an_inclusive_limit_is_narrower():
 @pytest.mark.parametrize("bits", range(1, 65))
 def test_the_storage_holds_what_it_must_and_is_not_twice_as_wide_as_need_be(bits):
     for signed in (False, True):
-        storage = Storage(holding(bits), signed)
+        storage = Storage(storage_bits(bits), signed)
         field = Scalar(name="it", at=0, bits=bits, type="int" if signed else "uint")
         assert storage.min <= field.raw_min and field.raw_max <= storage.max
         assert storage.bits == 8 or storage.bits // 2 < bits

@@ -11,10 +11,10 @@ from functools import lru_cache
 
 from icdgen.describe.integer_scale import (
     IntegerScale,
-    computable,
+    fits_bits,
     integer_bits,
     integer_scale,
-    within,
+    is_computable,
 )
 from icdgen.describe.steps import EXACT_DOUBLE, EXACT_SINGLE, Steps
 from icdgen.describe.storage import Storage
@@ -52,7 +52,7 @@ class Int64Terms(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Arithmetic:
+class ScaleArithmetic:
     """Arithmetic of a scale for raw values in an integer: physical = (raw*p + c) / q."""
 
     steps: Steps
@@ -71,7 +71,7 @@ class Arithmetic:
         return (
             not self.steps.is_wide
             and self.steps.exact_in_doubles
-            and computable(self.storage, p, c, 64)
+            and is_computable(self.storage, p, c, 64)
         )
 
     @property
@@ -125,7 +125,7 @@ class Arithmetic:
         # must fit after the subtraction.
         setter_bits = (
             32
-            if bits == 32 and within(32, least - scale.offset, most - scale.offset)
+            if bits == 32 and fits_bits(32, least - scale.offset, most - scale.offset)
             else 64
         )
         return IntegerAccess(
@@ -138,6 +138,6 @@ class Arithmetic:
 
 
 @lru_cache(maxsize=4096)
-def arithmetic_of(steps: Steps, storage: Storage) -> Arithmetic:
+def arithmetic_of(steps: Steps, storage: Storage) -> ScaleArithmetic:
     """Return the arithmetic of a scale."""
-    return Arithmetic(steps, storage)
+    return ScaleArithmetic(steps, storage)

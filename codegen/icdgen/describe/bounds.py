@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Final
 
 from icdgen.describe.numbers import exact_text
-from icdgen.describe.steps import steps
+from icdgen.describe.steps import steps_of_scale
 from icdgen.frozen import NamedTuple
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Limits
@@ -66,7 +66,7 @@ class Bound(NamedTuple):
         return self.kind.holds(value, self.value)
 
 
-def bounds(limits: Limits | None) -> tuple[Bound, ...]:
+def bounds_of_limits(limits: Limits | None) -> tuple[Bound, ...]:
     """Return the limits of a field, lower ones first."""
     if limits is None:
         return ()
@@ -74,7 +74,7 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
     return tuple(Bound(kind, value) for kind, value in values if value is not None)
 
 
-def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
+def settable_span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
     """Return the smallest and largest physical value that can be set; None if a
     calibration has no inverse, and for floats.
     """
@@ -100,9 +100,9 @@ def _type_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
     """
     ends = None
     if field.curve is not None:
-        ends = span(field.curve, field)
+        ends = settable_span(field.curve, field)
     elif field.type in ("uint", "int"):
-        scaled = steps(field)
+        scaled = steps_of_scale(field)
         ends = (
             scaled.span
             if scaled
@@ -117,7 +117,7 @@ def range_text(field: AnyScalar) -> str:
 
     An end that is excluded itself reads ``above 0`` or ``below 125``.
     """
-    low, high = _least(field), _most(field)
+    low, high = _lower_end(field), _upper_end(field)
     unit = f" {field.unit.symbol}" if field.unit else ""
     if low is not None and high is not None:
         return f"{_end(*low, 'above ')} to {_end(*high, 'below ')}{unit}"
@@ -131,7 +131,7 @@ def range_text(field: AnyScalar) -> str:
 _End = tuple[Fraction, bool]  # a value, and whether it is excluded itself
 
 
-def _least(field: AnyScalar) -> _End | None:
+def _lower_end(field: AnyScalar) -> _End | None:
     limits = field.limits or Limits()
     ends = [
         (value, False)
@@ -145,7 +145,7 @@ def _least(field: AnyScalar) -> _End | None:
     )
 
 
-def _most(field: AnyScalar) -> _End | None:
+def _upper_end(field: AnyScalar) -> _End | None:
     limits = field.limits or Limits()
     ends = [
         (value, False)

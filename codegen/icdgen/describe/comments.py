@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 
-from icdgen.describe.bounds import Bound, bounds, span
+from icdgen.describe.bounds import Bound, bounds_of_limits, settable_span
 from icdgen.describe.numbers import (
     array_text,
     bit_range,
@@ -24,7 +24,7 @@ from icdgen.describe.numbers import (
     special_text,
     value_text,
 )
-from icdgen.describe.steps import Steps, steps
+from icdgen.describe.steps import Steps, steps_of_scale
 from icdgen.frozen import NamedTuple
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.layout import Array, Counted, LayoutNode, Scalar, VariablePart
@@ -128,7 +128,7 @@ def message_comment(
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += [sharing] if sharing else []
     facts += (
-        f"Repeats {words(part.message)} from {_from(part.at)}."
+        f"Repeats {words(part.message)} from {_start_text(part.at)}."
         for part in message.contains
     )
     if message.may_end_early:
@@ -137,7 +137,7 @@ def message_comment(
         facts.append(
             f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved."
         )
-    head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
+    head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table_sentence(message.table)}"
     return _comment(
         head, (sentence(message.summary), " ".join(facts)), message.errata, {}
     )
@@ -185,23 +185,21 @@ def _conditions(field: NodePlace, message: Message) -> str:
 
 def part_comment(part: Message, positions: Sequence[int]) -> str:
     """Return the comment of the function that returns a contained message."""
-    return (
-        f"{words(part.name)}, repeated from {' and from '.join(map(_from, positions))}."
-    )
+    return f"{words(part.name)}, repeated from {' and from '.join(map(_start_text, positions))}."
 
 
-def _from(at: int) -> str:
+def _start_text(at: int) -> str:
     return f"byte {at // 8}" if at % 8 == 0 else f"bit {at}"
 
 
-def _table(number: int | None) -> str:
+def _table_sentence(number: int | None) -> str:
     return "" if number is None else f" Table {number}."
 
 
 def struct_comment(struct: Struct) -> Comment:
     """Return the comment of a struct: name, length and table; summary."""
     size = f"{'up to ' * bool(struct.layout.inner_parts)}{byte_count(struct.length)}"
-    head = f"{words(struct.name)}: a struct of {size}.{_table(struct.table)}"
+    head = f"{words(struct.name)}: a struct of {size}.{_table_sentence(struct.table)}"
     return _comment(head, (sentence(struct.summary),), struct.errata, {})
 
 
@@ -212,14 +210,16 @@ def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
     ``users`` are the messages and structs that have these fields, by the names of the
     fields.
     """
-    head = f"{words(enum.name)}: an enumeration.{_table(enum.table)}"
-    return _comment(head, (sentence(enum.summary), _used(users)), enum.errata, {})
+    head = f"{words(enum.name)}: an enumeration.{_table_sentence(enum.table)}"
+    return _comment(
+        head, (sentence(enum.summary), _users_sentence(users)), enum.errata, {}
+    )
 
 
-def _used(users: Mapping[str, Sequence[str]]) -> str:
+def _users_sentence(users: Mapping[str, Sequence[str]]) -> str:
     """Return ``Used by Mode in Status and Set Mode; Boot Mode in Status.``"""
     fields = [
-        f"{words(field)} in {_listed(list(map(words, owners)))}"
+        f"{words(field)} in {_listed_names(list(map(words, owners)))}"
         for field, owners in users.items()
     ]
     if len(fields) > _LISTED:
@@ -229,7 +229,7 @@ def _used(users: Mapping[str, Sequence[str]]) -> str:
     return f"Used by {'; '.join(fields)}." if fields else ""
 
 
-def _listed(names: Sequence[str]) -> str:
+def _listed_names(names: Sequence[str]) -> str:
     """Return a list of the first names, and the number of others if there are many."""
     few = (
         names
@@ -266,7 +266,8 @@ def field_comment(
         what = f"how much of {words(last.name)} the frame has, up to {last.most}; identified by its length"
         return Comment(f"{words(field.name)}: {what}.")
     if field.derived is not None:
-        head = f"{words(field.name)}{_unit(field)}: derived as `{words(field.formula)}`, computed in doubles; it has no setter."
+        how = f"derived as `{words(field.formula)}`, computed in doubles"
+        head = f"{words(field.name)}{_unit_text(field)}: {how}; it has no setter."
         return _comment(head, (sentence(field.summary),), field.errata, elsewhere)
     facts = (
         ["Overlay field: reads bits of other fields and has no setter."]
@@ -278,7 +279,7 @@ def field_comment(
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
-        facts.append(_limits(field))
+        facts.append(_limits_sentence(field))
     facts += (
         f"{special_text(special)}: {sentence(special.meaning)}"
         for special in field.special
@@ -296,30 +297,30 @@ def field_comment(
     place = (
         _variable_place(field, message, own_part)
         if own_part
-        else _place(field) + _inner_count(field)
+        else _place_text(field) + _inner_count(field)
     )
     front = message.layout.part_in_front_of(field.node)
     if front is not None and own_part is None:
         # Behind a part of variable length the position depends on the frame.
         place = f"behind {words(front.name)}, in the longest frame {place}"
-    head = f"{words(field.name)}: {place}{_meaning(field)}."
+    head = f"{words(field.name)}: {place}{_values_text(field)}."
     return _comment(
         head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere
     )
 
 
-def _limits(field: NodePlace) -> str:
-    return f"Must be {limits_text(bounds(field.limits), field)}, which setters do not check."
+def _limits_sentence(field: NodePlace) -> str:
+    return f"Must be {limits_text(bounds_of_limits(field.limits), field)}, which setters do not check."
 
 
 def limits_text(limits: Iterable[Bound], field: NodePlace) -> str:
     """Return limits in words: ``above 0 and at most 10 mA``."""
     return " and ".join(
         f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits
-    ) + _unit(field, " ")
+    ) + _unit_text(field, " ")
 
 
-def _place(field: NodePlace) -> str:
+def _place_text(field: NodePlace) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.width // 8)
         where += f", {octets_text(field.count, field.bits)}" if field.count else ""
@@ -377,7 +378,7 @@ def orders_text(field: NodePlace) -> str:
     return ", ".join(filter(None, orders))
 
 
-def _meaning(field: NodePlace) -> str:
+def _values_text(field: NodePlace) -> str:
     text = (
         f", raw {field.raw_min} to {field.raw_max}"
         if field.type in ("uint", "int")
@@ -386,7 +387,7 @@ def _meaning(field: NodePlace) -> str:
     if field.type == "float":
         text = f", {field.bits}-bit float"
     if not field.has_formula:
-        return text + _unit(field, ", in ")
+        return text + _unit_text(field, ", in ")
     how = f"`{words(field.formula)}`"
     if field.curve is not None:
         how = (
@@ -396,7 +397,7 @@ def _meaning(field: NodePlace) -> str:
         )
     range = span_text(field)
     return f"{text}; physical {how}" + (
-        f", {range}{_unit(field, ' ')}" if range else _unit(field, ", in ")
+        f", {range}{_unit_text(field, ' ')}" if range else _unit_text(field, ", in ")
     )
 
 
@@ -405,19 +406,19 @@ def span_text(field: NodePlace) -> str:
     calibration without an inverse.
     """
     if field.curve is not None:
-        ends = span(field.curve, field)
+        ends = settable_span(field.curve, field)
         return " to ".join(repr(float(end)) for end in ends) if ends else ""
-    scaled = steps(field)
+    scaled = steps_of_scale(field)
     return _span_text(scaled) if scaled is not None else ""
 
 
-def takes_text(field: NodePlace, is_narrow: bool) -> str:
+def accepted_values_text(field: NodePlace, is_narrow: bool) -> str:
     """Return the values that setters and encoders accept: ``0 to 6553.5 m/s``, ``Mode,
     0 to 15``.
 
     The raw range is included if the type can store other raw values.
     """
-    unit = _unit(field, " ")
+    unit = _unit_text(field, " ")
     if field.type == "float":
         return f"what {field.bits} bits of a float hold"
     raw, span = f"{field.raw_min} to {field.raw_max}", span_text(field)
@@ -438,10 +439,10 @@ def _span_text(scaled: Steps) -> str:
 
 def physical_name(field: NodePlace) -> str:
     """Return the title of a physical value: ``Roll Angle in deg``."""
-    return f"{words(field.name)}{_unit(field) or ', as a physical value'}"
+    return f"{words(field.name)}{_unit_text(field) or ', as a physical value'}"
 
 
-def _unit(field: NodePlace, before: str = " in ") -> str:
+def _unit_text(field: NodePlace, before: str = " in ") -> str:
     return before + words(field.unit.symbol) if field.unit else ""
 
 
@@ -452,6 +453,6 @@ def text_comment(field: NodePlace) -> str:
 
 def physical_comment(field: NodePlace) -> str:
     """Return the comment of a physical value: title, range and limits."""
-    limits = f" {_limits(field)}" if field.limits is not None else ""
+    limits = f" {_limits_sentence(field)}" if field.limits is not None else ""
     range = span_text(field)
     return f"{physical_name(field)}{f': {range}' if range else ''}.{limits}"

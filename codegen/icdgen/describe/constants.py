@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from icdgen import naming
-from icdgen.describe.bounds import bounds
+from icdgen.describe.bounds import bounds_of_limits
 from icdgen.describe.comments import sentence, words
 from icdgen.frozen import NamedTuple
 from icdgen.icd.places import NodePlace
@@ -37,7 +37,7 @@ class Constant(NamedTuple):
         return self.value.numerator / self.value.denominator
 
 
-def constants(
+def constants_of_field(
     field: NodePlace, name: str, physical_name: str, vocabulary: tuple[str, ...]
 ) -> Iterator[Constant]:
     """List the constants of a field with these names of its raw and physical value."""
@@ -69,7 +69,7 @@ def constants(
             "special", f"{name}_{end}", special.value, True, comment, special.number
         )
     unit = f" in {words(field.unit.symbol)}" if field.unit else ""
-    for bound in bounds(field.limits):
+    for bound in bounds_of_limits(field.limits):
         value, has_raw = bound.value, not field.has_formula and field.type != "float"
         # A limit can be between two raw values or beyond the raw type. It then has no
         # literal of that type.

@@ -22,7 +22,7 @@ class Statement(NamedTuple):
     right: Operand
 
 
-class Derived(NamedTuple):
+class DerivedComputation(NamedTuple):
     """Computation of a derived value.
 
     ``fields`` are local variables with the physical values of fields as doubles;
@@ -57,7 +57,9 @@ class Derived(NamedTuple):
             )
 
 
-def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
+def computation_of(
+    field: FieldDescription, taken: Collection[str] = ()
+) -> DerivedComputation:
     """Return the computation of a derived value.
 
     No local variable has a name of ``taken``.
@@ -82,7 +84,7 @@ def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
         row.append(statements[-1].name)
     result = row[-1]
     assert isinstance(result, str)
-    return Derived(fields, tuple(statements), result)
+    return DerivedComputation(fields, tuple(statements), result)
 
 
 def _free(name: str, taken: Collection[str]) -> str:

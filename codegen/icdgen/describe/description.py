@@ -12,11 +12,11 @@ from copy import copy
 from typing import Any, TypeVar
 
 from icdgen.describe.comments import Comment, field_comment, struct_comment
-from icdgen.describe.constants import Constant, constants
+from icdgen.describe.constants import Constant, constants_of_field
 from icdgen.describe.enums import EnumDescription, enum_widths
-from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
+from icdgen.describe.errata import PartWithErrata, first_owners, owners_elsewhere
 from icdgen.describe.lengths import ElementBytes, LengthTest, length_tests
-from icdgen.describe.named import Named
+from icdgen.describe.named import NamedPart
 from icdgen.describe.scalar import ScalarDescription
 from icdgen.frozen import NamedTuple
 from icdgen.icd.layout import UNDECLARED, Layout, Orders, VariablePart
@@ -39,7 +39,7 @@ class Into(enum.Enum):
     ALL_ARRAYS = 3  # into each element of any array: all scalars
 
 
-class Need(NamedTuple):
+class PresenceCondition(NamedTuple):
     """Condition of an optional field: another field has one of these raw values, in
     ascending order.
     """
@@ -214,7 +214,7 @@ class FieldDescription(ScalarDescription):
         return self.is_narrow if self.struct is None else self.struct.is_narrow
 
     @cached_property
-    def needs(self) -> tuple[Need, ...]:
+    def needs(self) -> tuple[PresenceCondition, ...]:
         """Conditions of an optional field, which must all be met."""
         members = (
             {member.model.name: member for member in self.message.members}
@@ -222,7 +222,7 @@ class FieldDescription(ScalarDescription):
             else {}
         )
         return tuple(
-            Need(members[condition.field], tuple(sorted(condition.values)))
+            PresenceCondition(members[condition.field], tuple(sorted(condition.values)))
             for condition in self.model.conditions
             # In an ICD with errors, a condition can name a field that the message does
             # not have.
@@ -286,7 +286,7 @@ class FieldDescription(ScalarDescription):
         if field.const is None and not field.special and field.limits is None:
             return ()
         return tuple(
-            constants(
+            constants_of_field(
                 field,
                 self.declared_name,
                 self.physical_name,
@@ -393,7 +393,7 @@ class VariablePartDescription(NamedTuple):
 WithFields = TypeVar("WithFields", bound=Message | Struct)
 
 
-class Composite(Named[WithFields]):
+class Composite(NamedPart[WithFields]):
     """Message or struct that an ICD node declares."""
 
     def __init__(
@@ -581,7 +581,7 @@ class Composite(Named[WithFields]):
         )
 
     @cached_property
-    def first_owners(self) -> dict[str, Thing]:
+    def first_owners(self) -> dict[str, PartWithErrata]:
         """First part with each erratum, by its id.
 
         The comment of that part explains the erratum.

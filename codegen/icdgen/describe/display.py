@@ -48,7 +48,7 @@ class Digits(NamedTuple):
     is_fixed: bool = False  # whether trailing zeros are shown
 
 
-class Base(NamedTuple):
+class BitNotation(NamedTuple):
     """Notation of a raw value that is displayed as a bit pattern, such as ``0x`` and 4
     digits of base 16.
     """
@@ -58,14 +58,14 @@ class Base(NamedTuple):
     width: int
 
 
-def base_of(field: AnyScalar) -> Base | None:
+def base_of(field: AnyScalar) -> BitNotation | None:
     """Return how the raw values of a field are written if the ICD displays them in
     hexadecimal or binary; else None.
     """
     kind = field.display.kind if field.display else ""
     if kind == HEX:
-        return Base("0x", 16, -(-field.bits // 4))
-    return Base("0b", 2, field.bits) if kind == BINARY else None
+        return BitNotation("0x", 16, -(-field.bits // 4))
+    return BitNotation("0b", 2, field.bits) if kind == BINARY else None
 
 
 def integer_text(field: AnyScalar, raw: int) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from icdgen import naming
 from icdgen.describe.comments import Comment, enum_comment, member_comment
-from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
-from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding
+from icdgen.describe.errata import PartWithErrata, first_owners, owners_elsewhere
+from icdgen.describe.named import NamedPart
+from icdgen.describe.storage import Storage, storage_bits
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.places import places_in
@@ -38,7 +38,7 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
 
 
 @cached_by_node
-def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
+def users_of_enums(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
     """Return the fields of a node that have an enumeration as their type, by node and
     name of the enumeration.
     """
@@ -54,7 +54,7 @@ def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
     return users_of_enums
 
 
-class EnumDescription(Named[Enum]):
+class EnumDescription(NamedPart[Enum]):
     """Enumeration of ``node``.
 
     Its ``storage`` can store every value, with or without a name.
@@ -65,7 +65,7 @@ class EnumDescription(Named[Enum]):
         self.icd, self.node, self.storage = (
             icd,
             node,
-            Storage(holding(bits), enum.signed),
+            Storage(storage_bits(bits), enum.signed),
         )
 
     @cached_property
@@ -97,7 +97,7 @@ class EnumDescription(Named[Enum]):
         )
 
     @cached_property
-    def first_owners(self) -> dict[str, Thing]:
+    def first_owners(self) -> dict[str, PartWithErrata]:
         """First part with each erratum, by its id.
 
         The comment of that part explains the erratum.
@@ -113,7 +113,9 @@ class EnumDescription(Named[Enum]):
         """Fields of its node that have it as their type, and the messages and structs
         that have these fields.
         """
-        return holders(self.icd, self.node).get((self.model.node, self.model.name), {})
+        return users_of_enums(self.icd, self.node).get(
+            (self.model.node, self.model.name), {}
+        )
 
     def member(self, value: int) -> MemberDescription | None:
         """Return the first member with a value; None if no member has it."""
@@ -122,7 +124,7 @@ class EnumDescription(Named[Enum]):
         )
 
 
-class MemberDescription(Named[Member]):
+class MemberDescription(NamedPart[Member]):
     """Value of an enumeration that has a name: a member, or the first or last value of
     a range (``declared``).
     """

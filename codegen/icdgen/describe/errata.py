@@ -10,7 +10,7 @@ from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 
-Thing = Message | Struct | NodePlace | Enum | Member
+PartWithErrata = Message | Struct | NodePlace | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
@@ -24,7 +24,7 @@ def errata_of_enum(enum: Enum) -> list[Erratum]:
     return _each_once((enum, *enum.members))
 
 
-def _each_once(things: Iterable[Thing | LayoutNode]) -> list[Erratum]:
+def _each_once(things: Iterable[PartWithErrata | LayoutNode]) -> list[Erratum]:
     # An erratum can hold a mapping, so it cannot be compared by its hash.
     by_id: dict[str, Erratum] = {}
     for thing in things:
@@ -33,12 +33,12 @@ def _each_once(things: Iterable[Thing | LayoutNode]) -> list[Erratum]:
     return list(by_id.values())
 
 
-def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
+def first_owners(things: Iterable[PartWithErrata]) -> dict[str, PartWithErrata]:
     """Return the first part with each erratum, by its id.
 
     The comment of that part explains the erratum.
     """
-    owners: dict[str, Thing] = {}
+    owners: dict[str, PartWithErrata] = {}
     for thing in things:
         for erratum in thing.errata:
             owners.setdefault(erratum.id, thing)
@@ -46,7 +46,7 @@ def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
 
 
 def owners_elsewhere(
-    thing: NodePlace | Member, by: Mapping[str, Thing]
+    thing: NodePlace | Member, by: Mapping[str, PartWithErrata]
 ) -> dict[str, str]:
     """Return, for errata of a part that the comment of another part explains, the name
     of that part by the id of the erratum.

@@ -22,7 +22,7 @@ FEW = 8
 """Largest number of constants in arrays for which an example shows them."""
 
 
-class Shown(NamedTuple):
+class ExampleValue(NamedTuple):
     """Field with a value. ``physical`` is the double; None without a scale."""
 
     field: FieldDescription
@@ -35,7 +35,7 @@ class Example(NamedTuple):
     suitable field.
     """
 
-    shown: Shown | None
+    shown: ExampleValue | None
     frame: bytes
     brief: bytes  # the frame without constants in arrays, if there are many
 
@@ -52,7 +52,7 @@ class Example(NamedTuple):
                 start = end + 1
 
 
-def worth_showing(message: MessageDescription) -> FieldDescription | None:
+def field_of_example(message: MessageDescription) -> FieldDescription | None:
     """Return the first field that can be set by a physical value; else the first number
     that is not constant.
     """
@@ -88,9 +88,9 @@ def _is_free_number(member: FieldDescription) -> bool:
     )
 
 
-def example(message: MessageDescription) -> Example:
+def example_of_message(message: MessageDescription) -> Example:
     """Return the example of a message."""
-    field = worth_showing(message)
+    field = field_of_example(message)
     shown = _shown(field) if field else None
     initial = [
         scalar
@@ -127,20 +127,20 @@ def _has_initial_value(place: NodePlace) -> bool:
     return any(scalar is not None and scalar.const is not None for scalar in scalars)
 
 
-def _shown(field: FieldDescription) -> Shown | None:
+def _shown(field: FieldDescription) -> ExampleValue | None:
     """Return the field with the first value that is within its limits and equals the
     raw value of its physical value.
     """
-    for raw in _values(field):
+    for raw in _candidate_values(field):
         physical = codec.physical_double(field.model, raw)
         if all(
             bound.holds(raw if physical is None else physical) for bound in field.bounds
-        ) and (physical is None or _comes_back(field, raw, physical)):
-            return Shown(field, raw, physical)
+        ) and (physical is None or _is_recovered(field, raw, physical)):
+            return ExampleValue(field, raw, physical)
     return None
 
 
-def _values(field: FieldDescription) -> list[int]:
+def _candidate_values(field: FieldDescription) -> list[int]:
     place = field.model
     if place.type == "float":
         return (
@@ -155,7 +155,7 @@ def _values(field: FieldDescription) -> list[int]:
     return [number for number in numbers if place.raw_min <= number <= place.raw_max]
 
 
-def _comes_back(field: FieldDescription, raw: int, physical: float) -> bool:
+def _is_recovered(field: FieldDescription, raw: int, physical: float) -> bool:
     """Return whether setting the physical value gives the raw value: 64-bit integers
     can be finer than doubles.
     """

@@ -43,7 +43,7 @@ class Flags(NamedTuple):
     is_falling: bool
 
 
-class Row(NamedTuple):
+class WordRow(NamedTuple):
     """Words of the same size and byte order, one after the other in the frame and in
     memory.
     """
@@ -72,7 +72,7 @@ class LoopElements(NamedTuple):
     loop: ArrayLoop
 
 
-Group = Flags | Row | LoopElements | StructArray | FieldDescription
+Group = Flags | WordRow | LoopElements | StructArray | FieldDescription
 
 
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
@@ -88,7 +88,7 @@ def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
             yield from member.scalars
 
 
-def groups(
+def group_fields(
     composite: Composite[Any], thresholds: Thresholds, prefix: str = ""
 ) -> list[Group]:
     """Return the `grouped_fields` in their order, with groups in place of their fields;
@@ -158,7 +158,7 @@ def _flags(
     return None
 
 
-def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
+def _row(fields: Fields, begin: int, long_enough: int) -> WordRow | None:
     # Words of the same size follow each other in memory without padding.
     first, end = fields[begin], begin + 1
     bits, at = first.model.bits, first.model.at
@@ -176,7 +176,7 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
         end += 1
     row = fields[begin:end]
     is_array = len(row) > 1 and all(field.index is not None for field in row)
-    return Row(row) if len(row) >= long_enough or is_array else None
+    return WordRow(row) if len(row) >= long_enough or is_array else None
 
 
 def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
@@ -199,7 +199,7 @@ def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
     return {byte for byte, count in counts.items() if count >= at_least}
 
 
-class Segment(NamedTuple):
+class FrameSegment(NamedTuple):
     """Bytes of a frame that one statement writes.
 
     The statement is either complete, or it combines terms for parts of a byte. With
@@ -231,15 +231,15 @@ class FrameBytes:
         """Add a term for some bits of a byte, from bit ``shift`` up."""
         self._parts.setdefault(byte, []).append((shift, term))
 
-    def segments(self) -> Iterator[Segment]:
+    def segments(self) -> Iterator[FrameSegment]:
         """List all bytes of the frame in order, each in one segment."""
         byte = 0
         while byte < self._length:
             if byte in self._whole:
-                segment = Segment(byte, *self._whole[byte])
+                segment = FrameSegment(byte, *self._whole[byte])
             # Terms stand from the lowest bit up, in whatever order they were added.
             elif byte in self._parts:
-                segment = Segment(
+                segment = FrameSegment(
                     byte, 1, None, tuple(term for _, term in sorted(self._parts[byte]))
                 )
             else:
@@ -248,6 +248,6 @@ class FrameBytes:
                     for n in range(byte, self._length)
                     if n in self._whole or n in self._parts
                 )
-                segment = Segment(byte, next(used, self._length) - byte, None)
+                segment = FrameSegment(byte, next(used, self._length) - byte, None)
             yield segment
             byte += segment.length

@@ -75,7 +75,7 @@ def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
     """
     # A raw value beyond the field can be in the storage, and overflow of a signed
     # integer is undefined in C (C99 6.5), so all values of the storage count.
-    bits = 32 if computable(storage, scale.factor, scale.offset, 32) else 64
+    bits = 32 if is_computable(storage, scale.factor, scale.offset, 32) else 64
     ends = Storage(bits, True)
     differences = (
         max(scale.least, ends.min) - scale.offset,
@@ -83,23 +83,23 @@ def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
     )
     return (
         bits
-        if computable(storage, scale.factor, scale.offset, bits)
-        and within(64, *differences)
+        if is_computable(storage, scale.factor, scale.offset, bits)
+        and fits_bits(64, *differences)
         else None
     )
 
 
-def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
+def is_computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
     """Return whether raw * factor + offset does not overflow a signed integer for any
     value of the storage.
     """
     products = storage.min * factor, storage.max * factor
-    return within(
+    return fits_bits(
         bits, *products, *(product + offset for product in products), factor, offset
     )
 
 
-def within(bits: int, *values: int) -> bool:
+def fits_bits(bits: int, *values: int) -> bool:
     """Return whether a signed integer can store the values and their negatives."""
     # Code subtracts the absolute value of a negative term, which must be a literal of
     # the type.

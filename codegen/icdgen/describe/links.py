@@ -26,7 +26,7 @@ TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 INDEX_PARTS = ("type", "counter", "checksum", "size", "time", "meta")
 
 
-class Place(NamedTuple):
+class RoleField(NamedTuple):
     """Field with a role in telemetry that a link reads."""
 
     role: str
@@ -40,7 +40,7 @@ class ReportDescription:
     """
 
     message: Message
-    places: tuple[Place, ...]
+    places: tuple[RoleField, ...]
 
 
 class SentMessage(NamedTuple):
@@ -259,7 +259,7 @@ class LinkDescription:
         message = self._describe(report.message)
         fields = {field.model.name: field for field in message.fields}
         places = tuple(
-            Place(role, fields[name])
+            RoleField(role, fields[name])
             for role, name in report.fields.items()
             if name in fields
         )

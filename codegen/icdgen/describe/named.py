@@ -11,11 +11,11 @@ from icdgen.icd.model import Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 from icdgen.once import cached_property
 
-Part = Message | Struct | LayoutNode | Enum | Member
+ModelPart = Message | Struct | LayoutNode | Enum | Member
 Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 
 
-class Named(Generic[Model]):
+class NamedPart(Generic[Model]):
     """Part of the ICD (``model``) with a name: ``words`` of its identifier, and
     ``name``, the words in snake case.
 
@@ -24,7 +24,7 @@ class Named(Generic[Model]):
     """
 
     def __init__(
-        self, model: Model, part: Part, vocabulary: tuple[str, ...], owner: str
+        self, model: Model, part: ModelPart, vocabulary: tuple[str, ...], owner: str
     ) -> None:
         self.model: Model = model
         self.part, self.owner = part, owner

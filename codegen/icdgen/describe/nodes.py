@@ -26,8 +26,8 @@ from icdgen.describe.lengths import (
     length_tests,
     length_tests_of_frame,
 )
-from icdgen.describe.shared_ids import sharing
-from icdgen.describe.storage import holding
+from icdgen.describe.shared_ids import sharing_sentence
+from icdgen.describe.storage import storage_bits
 from icdgen.frozen import NamedTuple
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import (
@@ -43,7 +43,7 @@ from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
 
 
-class Id(NamedTuple):
+class MessageId(NamedTuple):
     """Id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
 
     name: str
@@ -159,7 +159,7 @@ class MessageDescription(Composite[Message]):
         )
 
     @cached_property
-    def ids(self) -> tuple[Id, ...]:
+    def ids(self) -> tuple[MessageId, ...]:
         """Id of the message, or set id and get id of a configuration."""
         about = {
             "id": f"Id of the {self.model.kind}.",
@@ -171,7 +171,7 @@ class MessageDescription(Composite[Message]):
             for name, comment in about.items()
         )
         return tuple(
-            Id(name, value, comment)
+            MessageId(name, value, comment)
             for name, value, comment in ids
             if value is not None
         )
@@ -211,11 +211,11 @@ class MessageDescription(Composite[Message]):
         node, telemetry_id = self._description.node(self.node), self.model.telemetry_id
         bit = None if telemetry_id is None else node.log_bits.get(telemetry_id)
         return message_comment(
-            self.model, bit, sharing(node.messages_by_id, self.model)
+            self.model, bit, sharing_sentence(node.messages_by_id, self.model)
         )
 
 
-class Direction(NamedTuple):
+class DirectionMessages(NamedTuple):
     """Messages of a node in one direction, each with the name of its id there: ``id``,
     ``set_id`` or ``get_id``.
     """
@@ -372,15 +372,15 @@ class NodeDescription:
         )
 
     @property
-    def directions(self) -> tuple[Direction, ...]:
+    def directions(self) -> tuple[DirectionMessages, ...]:
         """Telecommands, then telemetry; without a direction that has no messages."""
         telecommands = (
             (message, message.telecommand_id_name) for message in self.telecommands
         )
         telemetry = ((message, message.telemetry_id_name) for message in self.telemetry)
         both_directions = (
-            Direction("telecommand", tuple(telecommands)),
-            Direction("telemetry", tuple(telemetry)),
+            DirectionMessages("telecommand", tuple(telecommands)),
+            DirectionMessages("telemetry", tuple(telemetry)),
         )
         return tuple(direction for direction in both_directions if direction.messages)
 
@@ -506,7 +506,7 @@ class Description:
             for message in node.messages
             for id in message.ids
         )
-        return holding(
+        return storage_bits(
             max((*(node.id_bits for node in self.icd.nodes), *used), default=8)
         )
 

@@ -5,12 +5,12 @@ of the frame.
 from __future__ import annotations
 
 from icdgen.describe import steps
-from icdgen.describe.arithmetic import Arithmetic, arithmetic_of
-from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import takes_text
+from icdgen.describe.arithmetic import ScaleArithmetic, arithmetic_of
+from icdgen.describe.bounds import Bound, bounds_of_limits
+from icdgen.describe.comments import accepted_values_text
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.integer_scale import IntegerScale, integer_scale
-from icdgen.describe.named import Named
+from icdgen.describe.named import NamedPart
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.icd.curve import Curve
 from icdgen.icd.layout import Orders
@@ -19,7 +19,7 @@ from icdgen.icd.places import NodePlace
 from icdgen.once import cached_property
 
 
-class ScalarDescription(Named[NodePlace]):
+class ScalarDescription(NamedPart[NodePlace]):
     """Scalar at its place, or the element of an array of scalars."""
 
     storage: Storage
@@ -56,7 +56,7 @@ class ScalarDescription(Named[NodePlace]):
             if enum is not None
             else storage_of(place.bits, place.is_signed)
         )
-        self.steps, self.curve = steps.steps(place), place.curve
+        self.steps, self.curve = steps.steps_of_scale(place), place.curve
         # Derived values have no raw value, only a physical one.
         if place.derived is not None and place.unit is not None:
             self.name = f"{self.name}_{place.unit.identifier}"
@@ -73,7 +73,7 @@ class ScalarDescription(Named[NodePlace]):
         self.physical_name = f"{self.declared_name}_{unit}"
 
     @cached_property
-    def arithmetic(self) -> Arithmetic | None:
+    def arithmetic(self) -> ScaleArithmetic | None:
         """Arithmetic of its scale; None without a scale."""
         return None if self.steps is None else arithmetic_of(self.steps, self.storage)
 
@@ -97,7 +97,7 @@ class ScalarDescription(Named[NodePlace]):
     @property
     def allowed_text(self) -> str:
         """Values that can be set, in words, for messages about other values."""
-        return takes_text(self.model, self.is_narrow)
+        return accepted_values_text(self.model, self.is_narrow)
 
     @property
     def initial_raw(self) -> int:
@@ -195,4 +195,4 @@ class ScalarDescription(Named[NodePlace]):
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
         """Limits, one by one."""
-        return bounds(self.model.limits)
+        return bounds_of_limits(self.model.limits)

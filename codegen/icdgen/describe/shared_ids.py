@@ -11,7 +11,7 @@ from icdgen.icd.variants import Ids, Variant, common_length, is_narrower
 from icdgen.wording import listing
 
 
-def sharing(ids: Ids, message: Message) -> str:
+def sharing_sentence(ids: Ids, message: Message) -> str:
     """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``; empty if no
     message of its node has the same id.
     """

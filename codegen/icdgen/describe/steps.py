@@ -80,7 +80,7 @@ class Steps(NamedTuple):
         )
 
 
-def steps(field: AnyScalar) -> Steps | None:
+def steps_of_scale(field: AnyScalar) -> Steps | None:
     """Return the steps of the scale of a field; None without a scale."""
     return (
         None

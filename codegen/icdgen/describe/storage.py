@@ -22,7 +22,7 @@ class Storage(NamedTuple):
         return (1 << (self.bits - self.signed)) - 1
 
 
-def holding(bits: int) -> int:
+def storage_bits(bits: int) -> int:
     """Return the width of the smallest integer type of at least ``bits`` bits: 8, 16,
     32 or 64.
     """
@@ -32,4 +32,4 @@ def holding(bits: int) -> int:
 @cache
 def storage_of(bits: int, signed: bool) -> Storage:
     """Return the smallest integer type of at least ``bits`` bits."""
-    return Storage(holding(bits), signed)
+    return Storage(storage_bits(bits), signed)

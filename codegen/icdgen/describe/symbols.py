@@ -20,7 +20,7 @@ from icdgen.describe.nodes import Description, MessageDescription, NodeDescripti
 from icdgen.icd.identifiers import Identifier
 
 Symbols = Iterable[Identifier]
-Part = Composite[Any] | EnumDescription
+DescribedPart = Composite[Any] | EnumDescription
 
 
 class NamingPolicy:
@@ -40,7 +40,7 @@ class NamingPolicy:
         # Weak references: a policy lives as long as the program, a description as long
         # as its run.
         self._texts: WeakKeyDictionary[object, dict[str, str]] = WeakKeyDictionary()
-        self._of_parts: WeakKeyDictionary[Part, tuple[Identifier, ...]] = (
+        self._of_parts: WeakKeyDictionary[DescribedPart, tuple[Identifier, ...]] = (
             WeakKeyDictionary()
         )
         self.tables: WeakKeyDictionary[Description, tuple[Identifier, ...]] = (
@@ -58,7 +58,7 @@ class NamingPolicy:
         """
         return ()
 
-    def in_node(self, node: NodeDescription, part: Part) -> Symbols:
+    def in_node(self, node: NodeDescription, part: DescribedPart) -> Symbols:
         """Names of a message, struct or enumeration that are declared again for each
         node that declares or includes it.
         """
@@ -104,7 +104,7 @@ class NamingPolicy:
         """
         return ()
 
-    def of_part(self, part: Part) -> tuple[Identifier, ...]:
+    def of_part(self, part: DescribedPart) -> tuple[Identifier, ...]:
         """Return the names of a message, struct or enumeration, without the names of
         its fields or members.
 
@@ -120,7 +120,7 @@ class NamingPolicy:
         return names
 
     def symbol(
-        self, part: NodeDescription | Part | MemberDescription, role: str
+        self, part: NodeDescription | DescribedPart | MemberDescription, role: str
     ) -> str:
         """Return the name of a part in a role.
 
@@ -135,7 +135,9 @@ class NamingPolicy:
             }
         return texts[role]
 
-    def _symbols_of(self, part: NodeDescription | Part | MemberDescription) -> Symbols:
+    def _symbols_of(
+        self, part: NodeDescription | DescribedPart | MemberDescription
+    ) -> Symbols:
         if isinstance(part, NodeDescription):
             return (*self.node(part), *(self.link(part) if part.is_linked else ()))
         if isinstance(part, MemberDescription):
@@ -147,11 +149,13 @@ def symbols(description: Description, policy: NamingPolicy) -> tuple[Identifier,
     """Return the identifiers of a language in the order of the ICDs, fixed names first."""
     table = policy.tables.get(description)
     if table is None:
-        table = policy.tables[description] = tuple(_symbols(description, policy))
+        table = policy.tables[description] = tuple(_list_symbols(description, policy))
     return table
 
 
-def _symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifier]:
+def _list_symbols(
+    description: Description, policy: NamingPolicy
+) -> Iterator[Identifier]:
     yield from policy.fixed(description)
     for node in description.nodes:
         yield from policy.node(node)
@@ -172,7 +176,7 @@ def _symbols(description: Description, policy: NamingPolicy) -> Iterator[Identif
 
 
 def symbols_of_part(
-    description: Description, part: Part, policy: NamingPolicy
+    description: Description, part: DescribedPart, policy: NamingPolicy
 ) -> Iterator[Identifier]:
     """Yield the identifiers of a message, struct or enumeration, without the
     identifiers of its fields or members.

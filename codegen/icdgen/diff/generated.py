@@ -16,7 +16,7 @@ from icdgen.backends.rust import types as rust_types
 from icdgen.backends.rust.symbols import RUST_NAMES
 from icdgen.describe import EnumDescription, FieldDescription, describe
 from icdgen.describe.description import Composite
-from icdgen.describe.named import Part
+from icdgen.describe.named import ModelPart
 from icdgen.describe.symbols import NamingPolicy, symbols_of_part
 from icdgen.diff.pairs import (
     DeclaredPair,
@@ -78,7 +78,7 @@ class NamesOfIcd:
         return _names(self.symbols(self.owner(declared)))
 
     def names_in_owner(
-        self, part: Part, declared: Declared, owner: DeclaredPart | None = None
+        self, part: ModelPart, declared: Declared, owner: DeclaredPart | None = None
     ) -> tuple[Name, ...]:
         """Return the names of a field or member that is ``declared`` there; ``owner``
         can be another one.
@@ -103,7 +103,7 @@ class NamesOfIcd:
 
 
 def symbols_in(
-    owner: DeclaredPart, declared: DeclaredPart, part: Part
+    owner: DeclaredPart, declared: DeclaredPart, part: ModelPart
 ) -> Iterator[Symbol]:
     """Yield the identifiers that a field or member of ``declared`` has as a part of
     ``owner``.
@@ -269,7 +269,7 @@ class Generated:
         return [(language, old, new) for language, old, new in types if old != new]
 
 
-def _declaration(part: Line | Member) -> Part:
+def _declaration(part: Line | Member) -> ModelPart:
     """Return the object of the model that declares a field or member."""
     return part.node if isinstance(part, Line) else part
 

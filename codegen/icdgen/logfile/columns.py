@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from icdgen import frame_bits, naming
-from icdgen.describe.steps import Steps, steps
+from icdgen.describe.steps import Steps, steps_of_scale
 from icdgen.icd.curve import Curve
 from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
@@ -58,7 +58,7 @@ class Column:
     @property
     def steps(self) -> Steps | None:
         """Computation of the physical value, or None without a scale."""
-        return steps(self.field) if self.field is not None else None
+        return steps_of_scale(self.field) if self.field is not None else None
 
     @property
     def curve(self) -> Curve | None:

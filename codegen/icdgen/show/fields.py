@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 
 from icdgen import frame_bits
-from icdgen.describe.bounds import allowed_ends, bounds
+from icdgen.describe.bounds import allowed_ends, bounds_of_limits
 from icdgen.describe.comments import condition_text, orders_text
 from icdgen.describe.numbers import (
     byte_count,
@@ -133,7 +133,7 @@ def remarks(
     if field.const is not None:
         yield f"always {value_text(field.const)}"
     # Inclusive limits are in the columns `from` and `to`.
-    for bound in bounds(field.limits):
+    for bound in bounds_of_limits(field.limits):
         if bound.key in ("above", "below"):
             yield f"{bound.kind.words} {number(bound.value)}"
     for special in field.special:

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from icdgen.describe.bounds import bounds
+from icdgen.describe.bounds import bounds_of_limits
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.layout import VariablePart
@@ -171,7 +171,9 @@ def _field(field: NodePlace) -> _Object:
         special=[_attributes(special) for special in field.special],
         display=field.display.plain if field.display else None,
         # Exact, like `scale`.
-        limits={bound.key: str(bound.value) for bound in bounds(field.limits)},
+        limits={
+            bound.key: str(bound.value) for bound in bounds_of_limits(field.limits)
+        },
         view=True if field.is_read_only else None,
         when={
             condition.field: list(condition.values) for condition in field.conditions

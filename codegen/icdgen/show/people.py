@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.describe.ids import id_text, pair_bytes
 from icdgen.describe.numbers import length_text
-from icdgen.describe.shared_ids import sharing
+from icdgen.describe.shared_ids import sharing_sentence
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.lines import lines as icd_lines
 from icdgen.icd.located import yaml_text
@@ -248,7 +248,7 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
     ]
     lines += [f"Also called {', '.join(message.aliases)}."] if message.aliases else []
     lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
-    lines += filter(None, [sharing(ids_of(icd, node), message)])
+    lines += filter(None, [sharing_sentence(ids_of(icd, node), message)])
     lines += [
         f"From bit {part.at} it repeats {part.message}." for part in message.contains
     ]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from icdgen import codec, naming
-from icdgen.describe.bounds import bounds, range_text
+from icdgen.describe.bounds import bounds_of_limits, range_text
 from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Enum, Member
 from icdgen.icd.places import AnyScalar
@@ -169,7 +169,7 @@ def _float(field: FrameField, text: str, raw: bool = False) -> int:
         # If the limits exclude the value, too, they explain more than the width of the
         # float.
         if not raw and not all(
-            bound.holds(_exact(field, text)) for bound in bounds(field.limits)
+            bound.holds(_exact(field, text)) for bound in bounds_of_limits(field.limits)
         ):
             raise BadValue(out_of_range(field, text)) from None
         raise BadValue(

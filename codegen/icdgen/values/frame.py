@@ -11,7 +11,7 @@ from dataclasses import field as dataclass_field
 from fractions import Fraction
 
 from icdgen import codec, frame_bits
-from icdgen.describe.bounds import bounds
+from icdgen.describe.bounds import bounds_of_limits
 from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
@@ -257,7 +257,9 @@ def outside(field: AnyScalar, raw: int) -> list[str]:
     elif field.scale:
         value = field.scale.physical(raw)
     unit = f" {field.unit.symbol}" if field.unit else ""
-    broken = (bound for bound in bounds(field.limits) if not bound.holds(value))
+    broken = (
+        bound for bound in bounds_of_limits(field.limits) if not bound.holds(value)
+    )
     return [f"{bound.kind.refusal} {exact_text(bound.value)}{unit}" for bound in broken]
 
 

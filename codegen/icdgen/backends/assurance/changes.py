@@ -57,7 +57,7 @@ _LIMITS = ("min", "max", "above", "below")
 _OF_SCALED = ("formula", "const", "special", *_LIMITS)  # keys of numbers only
 
 
-class Change(NamedTuple):
+class SingleChange(NamedTuple):
     """Change of one value in a line of an ICD: ``key`` of ``source`` has the value
     ``now`` instead of ``old``.
     """
@@ -71,7 +71,7 @@ class Change(NamedTuple):
 
 def of_line(
     node: LayoutNode, layout: Layout, orders: Orders
-) -> Iterator[tuple[Change, LayoutNode]]:
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of a line of a message or struct, each with the resulting node.
 
     Changes that are impossible for the type of the field or the length of the frame are
@@ -129,7 +129,7 @@ def of_line(
         yield from (*_formulas(node, scalar), *_values(node, scalar))
 
 
-def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
+def _derived(node: Derived) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of the formula of a derived value."""
     old, formula = node.derivation, node.scalar.formula
     for text in formulas(formula):
@@ -137,13 +137,13 @@ def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
         with suppress(FormulaError):
             new = parse(text, old.fields)
             if new.sense({}) != old.sense({}):
-                change = Change("formula", node.source, "formula", formula, text)
+                change = SingleChange("formula", node.source, "formula", formula, text)
                 yield change, with_attributes(node, formula=text, derivation=new)
 
 
 def _of_conditions(
     node: LayoutNode, layout: Layout
-) -> Iterator[tuple[Change, LayoutNode]]:
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of a required value of another field, if the ICD states it as a
     number.
     """
@@ -168,7 +168,9 @@ def _of_conditions(
             yield change, with_attributes(node, present_if=present_if)
 
 
-def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, LayoutNode]]:
+def _of_orders(
+    node: LayoutNode, around: Orders
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of the orders of a line.
 
     ``around``: orders in effect outside of the line.
@@ -188,7 +190,7 @@ def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, Layou
         )
         # Different orders can result in the same bits, for example of a single byte.
         if own_bits != other_bits:
-            change = Change(
+            change = SingleChange(
                 key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order]
             )
             yield (
@@ -199,7 +201,9 @@ def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, Layou
             )
 
 
-def _types(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
+def _types(
+    node: LayoutNode, scalar: Scalar
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     source = node.source
     for kind in (
         OTHER_TYPES[scalar.type] if "type" in source and "enum" not in source else ()
@@ -209,11 +213,13 @@ def _types(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNod
             scale, curve = calibration(scalar.formula, kind)
             if "points" in source and kind in ("uint", "int", "float"):
                 curve = scalar.curve
-            change = Change("type", source, "type", scalar.type, kind)
+            change = SingleChange("type", source, "type", scalar.type, kind)
             yield change, with_attributes(node, type=kind, scale=scale, curve=curve)
 
 
-def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
+def _formulas(
+    node: LayoutNode, scalar: Scalar
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of the calibration."""
     if scalar.curve is not None and scalar.curve.points:
         yield from _tables(node, scalar, scalar.curve)
@@ -221,20 +227,22 @@ def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, Layout
     for text in formulas(scalar.formula) if scalar.has_formula else ():
         scale, curve = calibration(text, scalar.type)
         if scale is not None or curve is not None:  # None for a factor of 0
-            change = Change("formula", node.source, "formula", scalar.formula, text)
+            change = SingleChange(
+                "formula", node.source, "formula", scalar.formula, text
+            )
             yield change, with_attributes(node, scale=scale, curve=curve)
 
 
 def _tables(
     node: LayoutNode, scalar: Scalar, old: Curve
-) -> Iterator[tuple[Change, LayoutNode]]:
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     source, printed, outside = (
         node.source,
         plain(node.source["points"]),
         node.source.get("outside", ""),
     )
     variants = [
-        (Change("points", source, "points", printed, points), points, outside)
+        (SingleChange("points", source, "points", printed, points), points, outside)
         for points in tables(printed)
     ]
     if outside and (
@@ -243,7 +251,7 @@ def _tables(
         # Without raw values outside of the points, the key has no effect.
         words = (word for word in OUTSIDE if word != outside)
         variants += [
-            (Change("outside", source, "outside", outside, word), printed, word)
+            (SingleChange("outside", source, "outside", outside, word), printed, word)
             for word in words
         ]
     for change, points, beyond in variants:
@@ -263,7 +271,9 @@ def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
         yield [*points[:index], point, *points[index + 1 :]]
 
 
-def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
+def _values(
+    node: LayoutNode, scalar: Scalar
+) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of constants, special values and limits."""
     if scalar.const is not None:
         for step in (-1, 1):
@@ -280,7 +290,7 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
         for now in named or [source["value"] + step for step in (-1, 1)]:
             new = special(scalar.type, scalar.bits, now, old.meaning)
             if new is not None and new != old:
-                change = Change("special", source, "value", source["value"], now)
+                change = SingleChange("special", source, "value", source["value"], now)
                 specials = (*scalar.special[:index], new, *scalar.special[index + 1 :])
                 yield change, with_attributes(node, special=specials)
     limits = scalar.limits or Limits()
@@ -296,7 +306,7 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
             )
 
 
-def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
+def of_message(message: Message, node: Node) -> Iterator[tuple[SingleChange, Message]]:
     """Yield the changes of the attributes of a message."""
     source = message.source
     for key in ("id", "set_id", "get_id", "length"):
@@ -323,12 +333,12 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             layout = replace(message.layout, orders=orders)
             if _places(message.layout, node.orders) != _places(layout, node.orders):
                 yield (
-                    Change(key.replace("_", " "), source, key, source[key], now),
+                    SingleChange(key.replace("_", " "), source, key, source[key], now),
                     replace(message, layout=layout),
                 )
 
 
-def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
+def of_node(node: Node) -> Iterator[tuple[SingleChange, Node]]:
     """Yield the changes of the attributes of a node."""
     source = node.source.get("node", node.source)
     for key in ("node_type", "interface_version"):
@@ -347,12 +357,14 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
             for layout in layouts
         ):
             yield (
-                Change(key.replace("_", " "), source, key, getattr(node, key), now),
+                SingleChange(
+                    key.replace("_", " "), source, key, getattr(node, key), now
+                ),
                 other,
             )
 
 
-def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
+def of_enum(enum: Enum) -> Iterator[tuple[SingleChange, Enum]]:
     """Yield the changes of the members of an enumeration."""
     for index, member in enumerate(enum.members):
         for key, step in product(("value", "to"), (-1, 1)):
@@ -405,7 +417,7 @@ def _with(thing: T, key: str, value: Any) -> T:
     return replace(thing, **{key: value})
 
 
-def _step(kind: str, source: Map, key: str, value: float, step: int) -> Change:
+def _step(kind: str, source: Map, key: str, value: float, step: int) -> SingleChange:
     """Return the change of a value by ``step``.
 
     ``value``: value of the model. If the line has another value, such as a position
@@ -413,7 +425,7 @@ def _step(kind: str, source: Map, key: str, value: float, step: int) -> Change:
     """
     printed = source.get(key, value)
     old = printed if type(printed) in (int, float) else value
-    return Change(kind, source, key, old, old + step)
+    return SingleChange(kind, source, key, old, old + step)
 
 
 def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:

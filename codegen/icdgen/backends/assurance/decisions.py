@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from icdgen.backends.assurance.paper import Cell, Files, Group, Page, lines_of
+from icdgen.backends.assurance.paper import Cell, Files, ReportPage, RowGroup, lines_of
 from icdgen.backends.assurance.trace import Element
 from icdgen.icd.errata import section
 from icdgen.icd.erratum import Erratum
@@ -32,12 +32,12 @@ _OF_MISSING = (
 
 def papers(
     icd: Icd, elements: Sequence[Element], files: Files
-) -> Iterator[tuple[Page, list[list[Cell]], tuple[str, ...]]]:
+) -> Iterator[tuple[ReportPage, list[list[Cell]], tuple[str, ...]]]:
     """Yield each report with content: its page, the rows of its table, and its columns."""
     errata_rows = list(errata(icd, elements, files))
     if errata_rows:
         groups = [
-            Group(
+            RowGroup(
                 [_folded(row) for row in errata_rows if row[2] == node.name], node.title
             )
             for node in icd.nodes
@@ -56,7 +56,7 @@ def papers(
             "Evidence",
         )
         yield (
-            Page(
+            ReportPage(
                 "errata.html",
                 "Errata",
                 _OF_ERRATA,
@@ -81,12 +81,12 @@ def papers(
         if rows:  # page and table have the same columns
             shown = tuple(map(str.capitalize, keys))
             yield (
-                Page(
+                ReportPage(
                     f"{name}.html",
                     title,
                     says,
                     shown,
-                    [Group([*rows])],
+                    [RowGroup([*rows])],
                     data=(f"{name}.csv",),
                 ),
                 rows,

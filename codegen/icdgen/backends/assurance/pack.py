@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 from icdgen import __version__, backends
 from icdgen.backends.assurance import decisions, measured
 from icdgen.backends.assurance.measured import Measurement
-from icdgen.backends.assurance.paper import Cell, Files, Group, Page, csv_text, lines_of
+from icdgen.backends.assurance.paper import (
+    Cell,
+    Files,
+    ReportPage,
+    RowGroup,
+    csv_text,
+    lines_of,
+)
 from icdgen.backends.assurance.trace import Element, Trace
 from icdgen.backends.assurance.tracing import CHANGES, Symbols, Tracing, title
 from icdgen.icd.model import Icd
@@ -80,12 +87,12 @@ def files(
             measurement.columns, measurement.rows
         )
 
-    home = Page(
+    home = ReportPage(
         "index.html",
         "Assurance pack",
         _HOME,
         _COLUMNS,
-        [Group(_counts(icd, elements))],
+        [RowGroup(_counts(icd, elements))],
         digests,
         (),
     )
@@ -138,7 +145,7 @@ def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]
     ]
 
 
-def _page_of_measurement(measurement: Measurement) -> Page:
+def _page_of_measurement(measurement: Measurement) -> ReportPage:
     facts = (
         *measurement.facts,
         *(("Measured with", tool) for tool in measurement.made_by),
@@ -148,12 +155,12 @@ def _page_of_measurement(measurement: Measurement) -> Page:
         ),
     )
     rows: list[Sequence[Cell]] = list(measurement.rows)
-    return Page(
+    return ReportPage(
         f"{measurement.name}.html",
         measurement.title,
         measurement.says,
         measurement.columns,
-        [Group(rows)],
+        [RowGroup(rows)],
         facts,
         (f"{measurement.name}.csv",),
     )

@@ -19,7 +19,7 @@ Cell = str | Sequence[str]
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class RowGroup:
     """Rows under a heading; without a title, rows only."""
 
     rows: list[Sequence[Cell]]
@@ -28,7 +28,7 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True)
-class Page:
+class ReportPage:
     """Page of a report.
 
     ``file``: its name. ``facts``: summary. ``says``: paragraphs on what it shows and
@@ -39,7 +39,7 @@ class Page:
     title: str
     says: tuple[str, ...]
     columns: tuple[str, ...]
-    groups: list[Group]
+    groups: list[RowGroup]
     facts: tuple[tuple[str, str], ...] = ()
     data: tuple[str, ...] = ()  # names of the CSV files with this content
 

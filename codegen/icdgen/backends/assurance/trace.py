@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from icdgen.backends.assurance import changes
-from icdgen.backends.assurance.changes import Change
+from icdgen.backends.assurance.changes import SingleChange
 from icdgen.backends.assurance.noticing import MessageWatch
 from icdgen.backends.assurance.shared_ids import SharedIds
 from icdgen.icd.erratum import Erratum
@@ -26,7 +26,7 @@ Noticed = dict[str, list[int]]
 class Traced:
     """Change with the vectors that detect it."""
 
-    change: Change
+    change: SingleChange
     noticed: Noticed
 
 

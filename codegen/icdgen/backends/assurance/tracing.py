@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from icdgen import backends
-from icdgen.backends.assurance.paper import Cell, Files, Group, Page
+from icdgen.backends.assurance.paper import Cell, Files, ReportPage, RowGroup
 from icdgen.backends.assurance.trace import Element, Noticed
 from icdgen.frozen import NamedTuple
 from icdgen.icd.located import Map
@@ -150,9 +150,9 @@ class Tracing:
         node: Node,
         elements: Sequence[Element],
         facts: tuple[tuple[str, str], ...],
-    ) -> Page:
+    ) -> ReportPage:
         """Return the page of a node, grouped by message."""
-        groups: list[Group] = []
+        groups: list[RowGroup] = []
         for element in elements:
             if element.owner is None:
                 rows: list[Sequence[Cell]] = []
@@ -162,7 +162,7 @@ class Tracing:
                     else element.name
                 )
                 # Messages, enumerations and structs start a group; their parts follow.
-                groups.append(Group(rows, heading, _notes(element)))
+                groups.append(RowGroup(rows, heading, _notes(element)))
             groups[-1].rows.append(self._shown(element))
         languages = (title(language) for language in self.symbols.languages)
         columns = (
@@ -176,7 +176,7 @@ class Tracing:
             "Vectors",
         )
         file = f"trace-{node.name}.html"
-        return Page(
+        return ReportPage(
             file,
             f"Trace: {node.title}",
             _SAYS,

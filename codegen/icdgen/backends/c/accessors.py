@@ -11,12 +11,12 @@ from icdgen.backends.c.text import WIDTH, described
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor, Kind, accessors_of
-from icdgen.describe.derived import derived
+from icdgen.describe.derived import computation_of
 from icdgen.describe.description import Composite
 from icdgen.frozen import NamedTuple
 
 
-class AccessorCode(NamedTuple):
+class CAccessorCode(NamedTuple):
     """Code of the getter and setter of a physical value.
 
     Without a setter, for overlay fields and calibrations without an inverse,
@@ -34,12 +34,12 @@ class AccessorCode(NamedTuple):
     elements: int = 0  # of an array: both functions have the index as a parameter
 
 
-def double_accessors(message: Composite[Any]) -> list[AccessorCode]:
+def double_accessors(message: Composite[Any]) -> list[CAccessorCode]:
     """Return the accessors in double precision."""
     return [*map(_double, of_kind(message, "double")), *map(_derived, message.derived)]
 
 
-def integer_accessors(message: Composite[Any]) -> list[AccessorCode]:
+def integer_accessors(message: Composite[Any]) -> list[CAccessorCode]:
     """Return the accessors in whole thousandths or millionths of the unit."""
     return list(map(_integer, of_kind(message, "integer")))
 
@@ -53,12 +53,12 @@ def of_kind(message: Composite[Any], kind: Kind) -> list[Accessor]:
     ]
 
 
-def _double(accessor: Accessor) -> AccessorCode:
+def _double(accessor: Accessor) -> CAccessorCode:
     field, assignment = accessor.field, ""
     if accessor.is_settable:
         function, *arguments = physical.double_setter(field)
         assignment = call(f"return {function}", (f"&{_member(field)}", *arguments))
-    return AccessorCode(
+    return CAccessorCode(
         accessor.name,
         "double",
         accessor.comment,
@@ -70,10 +70,10 @@ def _double(accessor: Accessor) -> AccessorCode:
     )
 
 
-def _integer(accessor: Accessor) -> AccessorCode:
+def _integer(accessor: Accessor) -> CAccessorCode:
     field, integers = accessor.field, accessor.integers
     refused = physical.integer_range(integers)
-    return AccessorCode(
+    return CAccessorCode(
         accessor.name,
         f"int{integers.bits}_t",
         accessor.comment,
@@ -89,8 +89,8 @@ def _integer(accessor: Accessor) -> AccessorCode:
     )
 
 
-def _derived(field: FieldDescription) -> AccessorCode:
-    computation = derived(field, taken=RESERVED | {"message"})
+def _derived(field: FieldDescription) -> CAccessorCode:
+    computation = computation_of(field, taken=RESERVED | {"message"})
     lines = [
         _constant(f"const double {name}", _as_double(operand))
         for name, operand in computation.fields
@@ -101,7 +101,7 @@ def _derived(field: FieldDescription) -> AccessorCode:
         # each step a double, so that all targets compute the same bits.
         lines.append(_constant(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
-    return AccessorCode(
+    return CAccessorCode(
         field.name,
         "double",
         about,

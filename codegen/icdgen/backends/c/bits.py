@@ -13,7 +13,7 @@ BITS = "{bits}"
 """Placeholder of the bits of the field in expressions."""
 
 
-class Read(NamedTuple):
+class ReadExpression(NamedTuple):
     """Expression that reads a field: terms to combine by ``|``, and the raw value over
     the result.
     """
@@ -28,33 +28,33 @@ class Read(NamedTuple):
         return self.value.format(bits=joined(self.terms))
 
 
-def read(field: FieldDescription, frame: str = "buffer") -> Read:
+def read(field: FieldDescription, frame: str = "buffer") -> ReadExpression:
     """Return the expression of the raw value, for a float its bits, over the bytes at
     ``frame``.
     """
     bits = field.model.bits
     if field.is_word:
-        return Read(
+        return ReadExpression(
             32,
             (_load(field, frame),),
             f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS,
         )
     pieces = field.pieces
     if field.model.type == "bool":
-        return Read(
+        return ReadExpression(
             32,
             (f"{_byte(pieces[0], frame)} & {mask(pieces[0].mask, 8)}",),
             f"({BITS}) != 0u",
         )
     wide = 64 if bits > 32 else 32
     if len(pieces) == 1:
-        return Read(
+        return ReadExpression(
             wide, (_low_bits(pieces[0], frame),), _from_bits(field, wide, joined=False)
         )
     terms = tuple(
         _shifted(piece, wide, frame) for piece in sorted(pieces, key=lambda p: p.at)
     )
-    return Read(wide, terms, _from_bits(field, wide, joined=True))
+    return ReadExpression(wide, terms, _from_bits(field, wide, joined=True))
 
 
 def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:

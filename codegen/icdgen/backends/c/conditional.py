@@ -9,7 +9,7 @@ from icdgen.backends.c.names import enumerator
 from icdgen.backends.c.statement import assigned_byte, either
 from icdgen.backends.c.types import mask
 from icdgen.describe import FieldDescription
-from icdgen.describe.description import Need
+from icdgen.describe.description import PresenceCondition
 
 
 def presence_test(field: FieldDescription) -> str:
@@ -28,7 +28,7 @@ def absent_value(field: FieldDescription) -> str:
     )
 
 
-def _test(need: Need) -> str:
+def _test(need: PresenceCondition) -> str:
     """Return the test whether a field has one of the values."""
     field, member = need.field, f"message->{need.field.name}"
     if field.model.type == "bool":

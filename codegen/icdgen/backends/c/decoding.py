@@ -19,9 +19,9 @@ from icdgen.describe.groups import (
     Flags,
     Group,
     LoopElements,
-    Row,
     Thresholds,
-    groups,
+    WordRow,
+    group_fields,
 )
 from icdgen.describe.lengths import ElementBytes
 
@@ -43,9 +43,9 @@ def elements_of_iteration(group: LoopElements) -> tuple[FieldDescription, ...]:
     )
 
 
-def macro_of(group: Flags | Row) -> str:
+def macro_of(group: Flags | WordRow) -> str:
     """Return the end of the name of the macro for a group."""
-    if isinstance(group, Row):
+    if isinstance(group, WordRow):
         return f"ROW_{group.fields[0].order.upper()}"
     return f"{len(group.fields)}_FLAGS{'_FALLING' if group.is_falling else ''}"
 
@@ -56,7 +56,7 @@ def groups_of(composite: Composite[Any], prefix: str = "") -> list[Group]:
 
     Names of arrays of structs start with ``prefix``.
     """
-    return groups(composite, THRESHOLDS, prefix)
+    return group_fields(composite, THRESHOLDS, prefix)
 
 
 def decode_statements(message: MessageDescription, groups: list[Group]) -> list[str]:
@@ -255,7 +255,7 @@ def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> 
     return f"{loop('element', f'{array_loop.elements}u', array_loop.per_iteration)}\n{body}{STEP}}}"
 
 
-def _group(group: Flags | Row | LoopElements, message: Composite[Any]) -> str:
+def _group(group: Flags | WordRow | LoopElements, message: Composite[Any]) -> str:
     if isinstance(group, LoopElements):
         lines = (
             number(element, f"message->{element.member}", "part")

@@ -26,7 +26,7 @@ from icdgen.describe.groups import (
     FrameBytes,
     Group,
     LoopElements,
-    Row,
+    WordRow,
 )
 
 
@@ -143,7 +143,7 @@ class _Frame:
                 # written by one statement.
                 self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _add_group(self, group: Flags | Row | LoopElements | StructArray) -> None:
+    def _add_group(self, group: Flags | WordRow | LoopElements | StructArray) -> None:
         if isinstance(group, LoopElements):
             loop = group.loop
             fields = elements_of_iteration(group)
@@ -157,7 +157,7 @@ class _Frame:
             return
         names = [field.member for field in group.fields]
         byte, source = group.byte, (C_NAMES.symbol(self.composite, "t"), "message")
-        if isinstance(group, Row):
+        if isinstance(group, WordRow):
             arguments = (
                 *source,
                 f"&buffer[{byte}]",

@@ -20,7 +20,7 @@ TYPES: dict[type, str] = {
 }  # fmt: skip
 
 
-class Row(NamedTuple):
+class InitialiserValue(NamedTuple):
     """Value of an initialiser, with a comment; subject to a condition of the
     preprocessor if there is one.
     """

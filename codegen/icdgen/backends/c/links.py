@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from icdgen.backends.c.facts import Row, boolean, or_none
+from icdgen.backends.c.facts import InitialiserValue, boolean, or_none
 from icdgen.backends.c.stream_rows import (
     content_name,
     field_row,
@@ -110,7 +110,7 @@ class LinkCode(NamedTuple):
 
 def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
     """Return the links of a node, and their tables."""
-    tables = _Tables(link, assumed)
+    tables = _LinkTables(link, assumed)
     links = tables.links()
     return LinkCode(tables.tables, links)
 
@@ -118,18 +118,18 @@ def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
 class _Part(NamedTuple):
     """Member of a link, which is absent in that of a bus where no client needs it."""
 
-    row: Row
+    row: InitialiserValue
     buses: Collection[str] = BUSES
     absent: str = "NULL"
 
-    def on(self, bus: str | None) -> Row:
+    def on(self, bus: str | None) -> InitialiserValue:
         """Return the member in the link of a bus, or in that of the node (None)."""
         if bus is None or bus in self.buses:
             return self.row
         return self.row._replace(value=self.absent)
 
 
-class _Tables(TableSet):
+class _LinkTables(TableSet):
     """Tables of a node.
 
     Each method declares a table and returns the expression that refers to it.
@@ -161,7 +161,7 @@ class _Tables(TableSet):
                 "icd_link_t",
                 [
                     *(each.on(bus) for each in before),
-                    Row(f"{{{every}}}", "exchanges on UART, I2C, CAN"),
+                    InitialiserValue(f"{{{every}}}", "exchanges on UART, I2C, CAN"),
                     *(each.on(bus) for each in after),
                 ],
                 assumed if bus is None else (),
@@ -185,37 +185,51 @@ class _Tables(TableSet):
             "telemetry", (self.message(sent, "0u") for sent in telemetry)
         )
         return [
-            _Part(Row(self.array("nodes", "char *const", nodes), "whose messages")),
-            _Part(Row(f"{len(facts.owners)}u", "how many")),
-            _Part(Row(boolean(facts.little), "byte order: little")),
             _Part(
-                Row(
+                InitialiserValue(
+                    self.array("nodes", "char *const", nodes), "whose messages"
+                )
+            ),
+            _Part(InitialiserValue(f"{len(facts.owners)}u", "how many")),
+            _Part(InitialiserValue(boolean(facts.little), "byte order: little")),
+            _Part(
+                InitialiserValue(
                     boolean(facts.node.bit_order == "msb0"),
                     "bit 0 is the most significant one",
                 )
             ),
             _Part(
-                Row(
+                InitialiserValue(
                     f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
                     "ids of telemetry",
                 )
             ),
             _Part(
-                Row(f"{len(link.reasons)}u", "how many codes of refusals"),
+                InitialiserValue(f"{len(link.reasons)}u", "how many codes of refusals"),
                 self.refusing(),
                 "0u",
             ),
             _Part(
-                Row(f"{len(facts.unsolicited)}u", "how many unsolicited"), {UART}, "0u"
+                InitialiserValue(f"{len(facts.unsolicited)}u", "how many unsolicited"),
+                {UART},
+                "0u",
             ),
-            _Part(Row(_count(sent), "how many can be sent")),
-            _Part(Row(_count(requested), "how many can be requested")),
-            _Part(Row(sent, "what can be sent")),
-            _Part(Row(requested, "what can be requested")),
-            _Part(Row(longest, "longest telecommand, reply, any")),
-            _Part(Row(f"{facts.longest_data}u", "longest without id and checksum")),
-            _Part(Row(f"{received_bytes(link)}u", "buffer for what is received")),
-            _Part(Row(self.stream(), "framing"), ()),
+            _Part(InitialiserValue(_count(sent), "how many can be sent")),
+            _Part(InitialiserValue(_count(requested), "how many can be requested")),
+            _Part(InitialiserValue(sent, "what can be sent")),
+            _Part(InitialiserValue(requested, "what can be requested")),
+            _Part(InitialiserValue(longest, "longest telecommand, reply, any")),
+            _Part(
+                InitialiserValue(
+                    f"{facts.longest_data}u", "longest without id and checksum"
+                )
+            ),
+            _Part(
+                InitialiserValue(
+                    f"{received_bytes(link)}u", "buffer for what is received"
+                )
+            ),
+            _Part(InitialiserValue(self.stream(), "framing"), ()),
         ]
 
     def after_exchanges(self) -> list[_Part]:
@@ -230,38 +244,51 @@ class _Tables(TableSet):
         packet = facts.acknowledge
         log_mask, log_file, log_message = self.optional("LOGS", self.logs())
         return [
-            _Part(Row(self.checksum(), "checksums of messages"), checked),
+            _Part(InitialiserValue(self.checksum(), "checksums of messages"), checked),
             _Part(
-                Row(self.numbers("reasons", "uint32_t", codes, 8), "codes of refusals"),
+                InitialiserValue(
+                    self.numbers("reasons", "uint32_t", codes, 8), "codes of refusals"
+                ),
                 self.refusing(),
             ),
             _Part(
-                Row(self.part("framing", facts.framing), "framing of the UART"), {UART}
+                InitialiserValue(
+                    self.part("framing", facts.framing), "framing of the UART"
+                ),
+                {UART},
             ),
             _Part(
-                Row(f"{packet.overhead if packet else 0}u", "bytes of an acknowledge"),
+                InitialiserValue(
+                    f"{packet.overhead if packet else 0}u", "bytes of an acknowledge"
+                ),
                 {UART},
                 "0u",
             ),
-            _Part(Row(self.unsolicited(), "unsolicited"), {UART}),
+            _Part(InitialiserValue(self.unsolicited(), "unsolicited"), {UART}),
             log_message,
-            _Part(Row(self.can(), "CAN"), {CAN}),
-            _Part(Row(settings, "times and limits: icd_client_settings_t")),
-            _Part(Row(or_none(facts.node.node_type), "node type")),
-            _Part(Row(or_none(facts.node.interface_version), "interface version")),
-            _Part(Row(or_none(facts.i2c_address), "I2C address")),
+            _Part(InitialiserValue(self.can(), "CAN"), {CAN}),
             _Part(
-                Row(
+                InitialiserValue(settings, "times and limits: icd_client_settings_t")
+            ),
+            _Part(InitialiserValue(or_none(facts.node.node_type), "node type")),
+            _Part(
+                InitialiserValue(
+                    or_none(facts.node.interface_version), "interface version"
+                )
+            ),
+            _Part(InitialiserValue(or_none(facts.i2c_address), "I2C address")),
+            _Part(
+                InitialiserValue(
                     boolean(facts.i2c_repeated_start),
                     "I2C: a read may follow its write without a stop",
                 )
             ),
-            _Part(Row(or_none(facts.boot_ms), "boot time in ms")),
+            _Part(InitialiserValue(or_none(facts.boot_ms), "boot time in ms")),
             log_mask,
             log_file,
             *self.optional("FILES", self.of_files()),
             _Part(
-                Row(
+                InitialiserValue(
                     self.report("identification", link.identification), "identification"
                 ),
                 (),
@@ -283,7 +310,7 @@ class _Tables(TableSet):
             "unsolicited",
             "icd_unsolicited_t",
             (
-                Row(
+                InitialiserValue(
                     f"{{{id}u, {contained}u, {telemetry[contained].length}u}}",
                     plain(telemetry[contained].name),
                 )
@@ -293,13 +320,15 @@ class _Tables(TableSet):
 
     def logs(self) -> Iterator[_Part]:
         facts = self.facts_of_link
-        yield _Part(Row(self.log_mask(), "mask of logs"), ())
-        yield _Part(Row(self.part("log_file", facts.log_file), "log files"), ())
-        yield _Part(Row(self.log_message(), "unsolicited logs"), {UART})
+        yield _Part(InitialiserValue(self.log_mask(), "mask of logs"), ())
+        yield _Part(
+            InitialiserValue(self.part("log_file", facts.log_file), "log files"), ()
+        )
+        yield _Part(InitialiserValue(self.log_message(), "unsolicited logs"), {UART})
 
     def of_files(self) -> Iterator[_Part]:
-        yield _Part(Row(self.time(), "packed times"), ())
-        yield _Part(Row(self.index(), "index of files"), ())
+        yield _Part(InitialiserValue(self.time(), "packed times"), ())
+        yield _Part(InitialiserValue(self.index(), "index of files"), ())
 
     def optional(self, what: str, parts: Iterable[_Part]) -> Iterator[_Part]:
         """List members that a program can omit, together with their tables."""
@@ -314,7 +343,7 @@ class _Tables(TableSet):
             table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]
         ]
 
-    def messages(self, name: str, rows: Iterable[Row]) -> str:
+    def messages(self, name: str, rows: Iterable[InitialiserValue]) -> str:
         """Return the messages of a direction.
 
         A last row of zeros is there because a program can omit all others.
@@ -323,10 +352,12 @@ class _Tables(TableSet):
         return self.array(
             name,
             "icd_message_t",
-            [*messages, Row("{0u, 0u, 0u}", "the end")] if messages else (),
+            [*messages, InitialiserValue("{0u, 0u, 0u}", "the end")]
+            if messages
+            else (),
         )
 
-    def message(self, sent: SentMessage, flags: str) -> Row:
+    def message(self, sent: SentMessage, flags: str) -> InitialiserValue:
         """Return the row of a message."""
         conditions = []
         if not any(sent.message is needed for needed in self.link.always_needed):
@@ -339,7 +370,7 @@ class _Tables(TableSet):
             ]
             if any(sent.message is needed for needed in self.link.in_procedures):
                 conditions.append("!defined(ICDGEN_NO_FILES)")
-        return Row(
+        return InitialiserValue(
             f"{{{sent.id}u, {flags}, {sent.message.length}u}}",
             plain(sent.message.name),
             f" || \\\n{STEP * 2}".join(conditions),
@@ -352,7 +383,7 @@ class _Tables(TableSet):
         if report is None:
             return "NULL"
         rows = [
-            Row(
+            InitialiserValue(
                 f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}",
                 plain(field.model.name),
             )
@@ -361,10 +392,10 @@ class _Tables(TableSet):
         places = self.array(f"{name}_places", "icd_place_t", rows)
         message = report.message
         ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
-        row = Row(f"{ids}, {message.length}u, {len(rows)}u, {places}")
+        row = InitialiserValue(f"{ids}, {message.length}u, {len(rows)}u, {places}")
         return self.add(name, "icd_report_t", [row])
 
-    def telecommand(self, sent: SentMessage) -> Row:
+    def telecommand(self, sent: SentMessage) -> InitialiserValue:
         """Return the row of a telecommand, with a comment on assumed facts."""
         message = sent.message
         flags = ["ICD_ACKNOWLEDGED"] if message.acknowledge else []
@@ -394,22 +425,26 @@ class _Tables(TableSet):
             "can",
             can,
             *(
-                Row(
+                InitialiserValue(
                     f"{{{can.parts[role].bits}u, {can.parts[role].shift}u}}",
                     f"{role}: bits, shift",
                 )
                 for role in CAN_PARTS
             ),
-            Row(f"{{{types}}}", "types"),
-            Row(f"{{{extended_types}}}", "types of messages of several packets"),
-            Row(self.part("can_extended", form), "messages of several packets"),
+            InitialiserValue(f"{{{types}}}", "types"),
+            InitialiserValue(
+                f"{{{extended_types}}}", "types of messages of several packets"
+            ),
+            InitialiserValue(
+                self.part("can_extended", form), "messages of several packets"
+            ),
         )
 
     def checksum(self) -> str:
         checksum = self.facts_of_link.checksum
         if checksum is None:
             return "NULL"
-        algorithm = Row(self.algorithm(checksum.algorithm), "algorithm")
+        algorithm = InitialiserValue(self.algorithm(checksum.algorithm), "algorithm")
         return self.part("checksum", checksum, algorithm)
 
     def algorithms(self) -> None:
@@ -417,7 +452,10 @@ class _Tables(TableSet):
         for each in self.facts_of_link.checksums.values():
             name = algorithm_table(each.name)
             crc = self.crc(name, each.crc, each.kind == CRC)
-            rows = [Row(f"ICD_CHECK_{each.kind.upper()}"), Row(f"{_CRC}{{{crc}}}")]
+            rows = [
+                InitialiserValue(f"ICD_CHECK_{each.kind.upper()}"),
+                InitialiserValue(f"{_CRC}{{{crc}}}"),
+            ]
             self.add(name, "icd_checksum_algorithm_t", rows)
 
     def stream(self) -> str:
@@ -445,12 +483,14 @@ class _Tables(TableSet):
         request = "NULL"
         if form.request:
             exchange = exchanges[form.request.exchange]
-            row = Row(f"{exchange}, {form.request.packet}u")
+            row = InitialiserValue(f"{exchange}, {form.request.packet}u")
             request = self.add("request", "icd_telemetry_request_t", [row])
         escaping = "NULL"
         if form.escaping:
             escaping = self.add(
-                "escaping", "icd_escaping_t", [Row(_escaping(form.escaping))]
+                "escaping",
+                "icd_escaping_t",
+                [InitialiserValue(_escaping(form.escaping))],
             )
         around = (
             # -1 means that no packet has this direction. 0 is a packet without header
@@ -459,30 +499,30 @@ class _Tables(TableSet):
             for each in DIRECTIONS
         )
         parts = [
-            Row(
+            InitialiserValue(
                 f"ICD_DELIMITED_BY_{form.delimited_by.upper()}, {boolean(form.per_id)}",
                 "a sequence for each id",
             ),
-            Row(
+            InitialiserValue(
                 f"{len(form.packets)}u, {{{', '.join(map(str, around))}}}, {packets}",
                 "packet formats",
             ),
-            Row(
+            InitialiserValue(
                 f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}",
                 "messages",
             ),
-            Row(
+            InitialiserValue(
                 f"{len(form.confirming)}u, {confirming}",
                 "telemetry that only responds",
             ),
-            Row(request, "request of telemetry"),
-            Row(escaping, "escape characters"),
+            InitialiserValue(request, "request of telemetry"),
+            InitialiserValue(escaping, "escape characters"),
         ]
         return self.add(
             "stream", "icd_stream_form_t", parts, self.assumed.of_section("link")
         )
 
-    def packet(self, form: Stream, number: int) -> Row:
+    def packet(self, form: Stream, number: int) -> InitialiserValue:
         """Return the row of a packet format; its fields and its checksum are separate
         tables.
         """
@@ -494,9 +534,11 @@ class _Tables(TableSet):
         check = "NULL"
         if packet.check:
             name, algorithm = f"check{suffix}", packet.check.algorithm
-            row = Row(self.algorithm(algorithm), "algorithm")
+            row = InitialiserValue(self.algorithm(algorithm), "algorithm")
             covered = f"{packet.check.covered_from}u, {packet.check.covered_trailer}u, {boolean(packet.check.is_seeded)}"
-            check = self.add(name, "icd_check_form_t", [row, Row(covered, "covered")])
+            check = self.add(
+                name, "icd_check_form_t", [row, InitialiserValue(covered, "covered")]
+            )
         sizes = (
             f"{len(packet.fields)}u, {packet.header_bytes}u, {packet.trailer_bytes}u"
         )
@@ -507,7 +549,7 @@ class _Tables(TableSet):
             for each in DIRECTIONS
         )
         sent = ", ".join(boolean(each in packet.directions) for each in DIRECTIONS)
-        return Row(
+        return InitialiserValue(
             f"{{{{{ids}}}, {fields}, {check}, {sizes}, "
             f"ICD_PACKET_{content_name(packet).upper()}, {{{sent}}}, {packet.reserved}u}}",
             plain(packet.name),
@@ -522,7 +564,9 @@ class _Tables(TableSet):
             given = [exchanges.request, exchanges.command]
             declared = [each for each in given if each]
             names = self.exchanges(f"{bus}_exchanges", declared)
-            row = Row(", ".join(names.get(each, "NULL") for each in reversed(given)))
+            row = InitialiserValue(
+                ", ".join(names.get(each, "NULL") for each in reversed(given))
+            )
             on[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
         return on
 
@@ -554,7 +598,7 @@ class _Tables(TableSet):
             poll = "NULL"
             if exchange.poll:
                 until = number_place(exchange.poll.until, ID_BYTES)
-                row = Row(f"{exchange.poll.telemetry}u, {until}")
+                row = InitialiserValue(f"{exchange.poll.telemetry}u, {until}")
                 poll = self.add("outcome_poll", "icd_outcome_poll_t", [row])
             rows.append(
                 f"{{{sources}, {responses},\n{STEP * 3}{counts}, {exchange.timeout}u, {poll}}}"
@@ -611,21 +655,27 @@ class _Tables(TableSet):
             row = mask.bits.get(bit)
             id, length = (row.id, row.length) if row else (None, mask.slot_bytes)
             text = f"bit {bit}" + (f": {plain(row.name)}" if row and row.name else "")
-            rows.append(Row(f"{{{or_none(id)}, {length}u}}", text))
+            rows.append(InitialiserValue(f"{{{or_none(id)}, {length}u}}", text))
         return self.part(
-            "log_mask", mask, Row(self.array("log_bits", "icd_log_bit_t", rows))
+            "log_mask",
+            mask,
+            InitialiserValue(self.array("log_bits", "icd_log_bit_t", rows)),
         )
 
     def log_message(self) -> str:
         mask = self.facts_of_link.mask
         if mask is None:
             return "NULL"
-        sizes = Row(f"{mask.size}u, {mask.slot_bytes}u", "size of the mask, slot_bytes")
+        sizes = InitialiserValue(
+            f"{mask.size}u, {mask.slot_bytes}u", "size of the mask, slot_bytes"
+        )
         return self.part("log_message", self.facts_of_link.log_message, sizes)
 
     def time(self) -> str:
         rows = [
-            Row(f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name)
+            InitialiserValue(
+                f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name
+            )
             for name, part in self.link.time
         ]
         return self.add("packed_time", "icd_time_form_t", rows) if rows else "NULL"
@@ -633,7 +683,10 @@ class _Tables(TableSet):
     def index(self) -> str:
         form = self.link.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
-        rows = (Row(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields)
+        rows = (
+            InitialiserValue(f"{{{span.at}u, {span.bytes}u}}", name)
+            for name, span in fields
+        )
         return self.part("index_entry", form, *rows)
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from icdgen.backends.c.facts import Row, boolean
+from icdgen.backends.c.facts import InitialiserValue, boolean
 from icdgen.backends.c.names import (
     PROCEDURE_PARAMETERS,
     input_parameters,
@@ -20,7 +20,7 @@ from icdgen.backends.c.text import plain
 from icdgen.describe.links import Assumptions, LinkDescription
 from icdgen.describe.nodes import Description, NodeDescription
 from icdgen.describe.procedures import input_text, procedure_text
-from icdgen.describe.storage import holding
+from icdgen.describe.storage import storage_bits
 from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import BUSES
 from icdgen.icd.model import Enum
@@ -99,7 +99,7 @@ class ProcedureCode:
     ) -> None:
         self.node, self.link, self.procedure = node, link, model
         self._description: Description = link.description
-        self.tables = _Tables(link, assumed).of_procedure(model)
+        self.tables = _ProcedureTables(link, assumed).of_procedure(model)
 
     @property
     def name(self) -> str:
@@ -260,10 +260,10 @@ class ProcedureCode:
             return "bool"
         if each.enum is not None:
             return self._enum(each.enum)
-        return f"uint{holding(each.most.bit_length())}_t"
+        return f"uint{storage_bits(each.most.bit_length())}_t"
 
 
-class _Tables(TableSet):
+class _ProcedureTables(TableSet):
     """Tables of a procedure."""
 
     def of_procedure(self, procedure: Procedure) -> list[Table]:
@@ -272,7 +272,7 @@ class _Tables(TableSet):
         The tables of its steps come first, because C needs their declarations before
         the table that refers to them.
         """
-        self._rows: dict[str, list[Row]] = {
+        self._rows: dict[str, list[InitialiserValue]] = {
             name: [] for name in ("sends", "polls", "receives", "checksums", "tests")
         }
         steps = [self.step(step) for step in procedure.steps]
@@ -289,23 +289,25 @@ class _Tables(TableSet):
         )
         receives = len(self._rows["receives"])
         rows = [
-            Row(
+            InitialiserValue(
                 f"{self.array('steps', 'icd_step_form_t', steps)}, {len(steps)}u",
                 "steps",
             ),
-            Row(arrays, ", ".join(self._rows)),
-            Row(
+            InitialiserValue(arrays, ", ".join(self._rows)),
+            InitialiserValue(
                 self.array("inputs", "icd_input_form_t", map(self.input, inputs)),
                 "inputs",
             ),
-            Row(f"{len(inputs)}u, {receives}u", "how many inputs, receives"),
-            Row(self.blocks(procedure.blocks), "blocks"),
-            Row(
+            InitialiserValue(
+                f"{len(inputs)}u, {receives}u", "how many inputs, receives"
+            ),
+            InitialiserValue(self.blocks(procedure.blocks), "blocks"),
+            InitialiserValue(
                 f"{content.most if content else 0}u", "largest number of bytes to send"
             ),
-            Row(f"{procedure.most_entries}u", "largest number of entries"),
-            Row(f"{procedure.time}u", "longest duration in ms"),
-            Row(f"{procedure.requests}u", "largest number of requests"),
+            InitialiserValue(f"{procedure.most_entries}u", "largest number of entries"),
+            InitialiserValue(f"{procedure.time}u", "longest duration in ms"),
+            InitialiserValue(f"{procedure.requests}u", "largest number of requests"),
         ]
         self.add(
             "form",
@@ -315,7 +317,7 @@ class _Tables(TableSet):
         )
         return self.tables
 
-    def step(self, step: Step) -> Row:
+    def step(self, step: Step) -> InitialiserValue:
         """Return the row of a step; what it does is in another table."""
         index, text = 0, ""
         if isinstance(step, Send):
@@ -333,15 +335,15 @@ class _Tables(TableSet):
         again = boolean(getattr(step, "again", False))
         to = getattr(step, "to", 0)
         kind = f"ICD_STEP_{_KINDS[type(step)]}"
-        return Row(f"{{{kind}, {index}u, {again}, {to}u}}", plain(text))
+        return InitialiserValue(f"{{{kind}, {index}u, {again}, {to}u}}", plain(text))
 
     def _row(self, table: str, row: str) -> int:
         """Return the index of a row, which is added unless it is there."""
         rows = self._rows[table]
         # Steps often repeat the same message or test. They then share the row.
-        if Row(row) not in rows:
-            rows.append(Row(row))
-        return rows.index(Row(row))
+        if InitialiserValue(row) not in rows:
+            rows.append(InitialiserValue(row))
+        return rows.index(InitialiserValue(row))
 
     def send(self, step: Send) -> str:
         # NULL stands for zeros, which need no table.
@@ -396,10 +398,10 @@ class _Tables(TableSet):
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
         return f"{{{self.algorithm(step.algorithm)}, {flags}, {value(step.value)}}}"
 
-    def input(self, each: Input) -> Row:
+    def input(self, each: Input) -> InitialiserValue:
         values = self.shared("values", "uint32_t", (f"{n}u" for n in each.values))
         optional = boolean(each.is_optional)
-        return Row(
+        return InitialiserValue(
             f"{{{each.most}u, {values}, {len(each.values)}u, {optional}}}", each.name
         )
 
@@ -413,7 +415,7 @@ class _Tables(TableSet):
                 "map_messages",
                 "icd_map_message_t",
                 [
-                    Row(
+                    InitialiserValue(
                         f"{{{_id(message.telecommand_id)}, {_id(message.telemetry_id)}}}",
                         plain(message.name),
                     )
@@ -422,12 +424,12 @@ class _Tables(TableSet):
             )
             flags = (map.msb0, map.received, map.beyond_end)
             rows = [
-                Row(f"{messages}, {len(map.messages)}u", "messages"),
-                Row(
+                InitialiserValue(f"{messages}, {len(map.messages)}u", "messages"),
+                InitialiserValue(
                     f"{map.messages[0].length}u, {map.at}u, {map.bytes}u",
                     "length of a message, offset and bytes of the map",
                 ),
-                Row(
+                InitialiserValue(
                     ", ".join(boolean(flag) for flag in flags),
                     "bit 0 is the most significant one, received, beyond the end",
                 ),
@@ -437,16 +439,22 @@ class _Tables(TableSet):
             "blocks",
             "icd_blocks_form_t",
             [
-                Row(boolean(blocks.sends), "sends"),
+                InitialiserValue(boolean(blocks.sends), "sends"),
                 # 0 is the register of the offset, so it can mean that there is none.
-                Row(f"{blocks.total or 0}u", "register with the number of bytes"),
-                Row(f"{blocks.begin}u, {blocks.size}u", "first step, bytes of a block"),
-                Row(
+                InitialiserValue(
+                    f"{blocks.total or 0}u", "register with the number of bytes"
+                ),
+                InitialiserValue(
+                    f"{blocks.begin}u, {blocks.size}u", "first step, bytes of a block"
+                ),
+                InitialiserValue(
                     f"{blocks.packet_bytes}u, {blocks.first_packet}u, {blocks.fill:#04x}u",
                     "bytes of a packet, first number, fill",
                 ),
-                Row(f"{blocks.rounds}u, {blocks.most}u", "rounds, bytes in all"),
-                Row(form, "map"),
+                InitialiserValue(
+                    f"{blocks.rounds}u, {blocks.most}u", "rounds, bytes in all"
+                ),
+                InitialiserValue(form, "map"),
             ],
         )
 

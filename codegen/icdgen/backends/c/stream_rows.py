@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.c.facts import Row, boolean
+from icdgen.backends.c.facts import InitialiserValue, boolean
 from icdgen.backends.c.text import plain
 from icdgen.icd.responses import AGAIN, KINDS
 from icdgen.protocol.exchange import NumberPlace, Response
@@ -50,7 +50,7 @@ def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
     ]
 
 
-def field_row(field: PacketField) -> Row:
+def field_row(field: PacketField) -> InitialiserValue:
     """Return the row of a field of packets."""
     pair = field.values
     if field.role == "id":
@@ -61,7 +61,7 @@ def field_row(field: PacketField) -> Row:
         pair = field.plus & (1 << WORD) - 1, field.unit
     values = ", ".join(f"{value:#x}u" for value in pair)
     numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
-    return Row(
+    return InitialiserValue(
         f"{{ICD_FIELD_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
     )
 
@@ -114,7 +114,7 @@ def stream_flags(form: Stream, row: StreamRow) -> list[str]:
     return [f"ICD_STREAM_{name}" for name, is_set in flags.items() if is_set]
 
 
-def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Row:
+def message_row(form: Stream, row: StreamRow, exchange: str | None) -> InitialiserValue:
     """Return the row of a message in packets."""
     values = (
         f"{row.id:#x}u, {row.least}u, {row.most}u",
@@ -122,4 +122,4 @@ def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Row:
         f"{row.seed}u, {row.packet}u, {row.requests or 0:#x}u",
         exchange or "NULL",
     )
-    return Row(f"{{{', '.join(values)}}}", plain(row.name))
+    return InitialiserValue(f"{{{', '.join(values)}}}", plain(row.name))

@@ -19,7 +19,7 @@ from icdgen.describe.arrays import all_struct_arrays
 from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
-from icdgen.describe.symbols import NamingPolicy, Part, Symbols
+from icdgen.describe.symbols import DescribedPart, NamingPolicy, Symbols
 from icdgen.icd.procedures import BYTES
 
 FILE = "C names at file scope"
@@ -74,7 +74,7 @@ class CNames(NamingPolicy):
                 FILE, f"{node.name.upper()}_ENUMS_H", owner, None, "ENUMS_H"
             )
 
-    def in_node(self, node: NodeDescription, part: Part) -> Symbols:
+    def in_node(self, node: NodeDescription, part: DescribedPart) -> Symbols:
         if not isinstance(part, MessageDescription):
             return
         for direction in part.directions:

@@ -20,7 +20,7 @@ from icdgen.describe import (
 )
 from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.description import VariablePartDescription
-from icdgen.describe.nodes import Direction
+from icdgen.describe.nodes import DirectionMessages
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
@@ -44,7 +44,7 @@ class Accessors(NamedTuple):
     rows: list[str]
 
 
-class FieldRow(NamedTuple):
+class SelftestField(NamedTuple):
     """Field with its entries in the table of a message's fields."""
 
     field: FieldDescription
@@ -75,12 +75,12 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         text = render(
             "node.c.j2",
             origin=origin(node.model, with_digest=True),
-            **_Rows(icd, node).all(),
+            **_SelftestFile(icd, node).all(),
         )
         yield PurePosixPath(f"nodes/{node.name}.c"), text
 
 
-class _Rows:
+class _SelftestFile:
     """Template values of the file of one node."""
 
     def __init__(self, icd: Icd, node: NodeDescription) -> None:
@@ -121,7 +121,7 @@ class _Rows:
                 yield stem, _unsigned(unknown), "NULL"
 
     def dispatcher(
-        self, direction: Direction, id_bits: int
+        self, direction: DirectionMessages, id_bits: int
     ) -> tuple[str, list[str], bool, list[str]]:
         """Return the name of a dispatcher, rows of ids with message lengths (-1 for
         unknown ids), whether ids are shared, and frames of shared ids.
@@ -192,7 +192,7 @@ class _Rows:
             ),
         }
 
-    def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
+    def vector(self, row: Row, fields: list[SelftestField]) -> list[str]:
         data = bytearray(
             row.frame.ljust(
                 fields[0].field.message.model.length if fields else 0, b"\0"
@@ -214,7 +214,7 @@ class _Rows:
         description: FieldDescription,
         vectors: MessageVectors,
         tables_by_line: dict[tuple[int, ...], str],
-    ) -> FieldRow:
+    ) -> SelftestField:
         """Return the row of a field.
 
         ``tables_by_line``: stem of the tables for each line of the ICD.
@@ -236,7 +236,7 @@ class _Rows:
             for accessor in accessors_of(description, "text", "double", "integer")
             if accessor.kind != "integer" or accessor.is_settable
         }
-        return FieldRow(
+        return SelftestField(
             field=description,
             stem=stem,
             tables=tables,

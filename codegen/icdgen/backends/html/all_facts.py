@@ -25,7 +25,7 @@ _NOT_SHOWN = ("source", "assumptions", "summary")
 _PACKETS = ("link", "packets")
 
 
-class Row(NamedTuple):
+class FactRow(NamedTuple):
     """Fact with its description, its value and, if it is assumed, the reason."""
 
     about: str
@@ -35,7 +35,7 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class FactTable:
     """Table of facts.
 
     ``anchor`` is unique in the page.
@@ -43,10 +43,10 @@ class Part:
 
     anchor: str
     title: str
-    rows: list[Row]
+    rows: list[FactRow]
 
 
-def facts_of_code(facts: Facts) -> list[Part]:
+def facts_of_code(facts: Facts) -> list[FactTable]:
     """Return each fact that generated code uses, defaults included, by section of the
     ICD.
     """
@@ -63,7 +63,7 @@ def facts_of_code(facts: Facts) -> list[Part]:
             if value is None or value == ():
                 continue
             rows.append(
-                Row(
+                FactRow(
                     capitalized(fact.about),
                     value_text(fact, value),
                     why.get((path, fact.key), ""),
@@ -75,8 +75,11 @@ def facts_of_code(facts: Facts) -> list[Part]:
 
 
 def with_others(
-    relations: Relations, facts: Facts, parts: list[Part], section: Mapping[str, Any]
-) -> list[Part]:
+    relations: Relations,
+    facts: Facts,
+    parts: list[FactTable],
+    section: Mapping[str, Any],
+) -> list[FactTable]:
     """Return the facts of generated code, each section followed by its remaining
     content: names, units and texts.
     """
@@ -103,12 +106,12 @@ def with_others(
             continue
         # A list of mappings becomes a row for each entry.
         if path == _PACKETS:
-            rows = [Row(key, _packet_text(value))]
+            rows = [FactRow(key, _packet_text(value))]
         elif isinstance(value, list) and value and isinstance(value[0], Mapping):
             path, rows = (*path, key), [_entry(entry) for entry in value]
         else:
             url = urls.get(value, "") if isinstance(value, str) else ""
-            rows = [Row(_about(form, key), _value_text(form, key, value), "", url)]
+            rows = [FactRow(_about(form, key), _value_text(form, key, value), "", url)]
         # Buses, and the other parts of a link, are sections of their own.
         own = replaced_part(path)
         part = _part(".".join(own), [])
@@ -176,10 +179,10 @@ def _field_text(row: Mapping[str, Any]) -> str:
     return f"{row.get('name', row['role'])}{value} of {row['bits']} bits{enum}"
 
 
-def _entry(row: Mapping[str, Any]) -> Row:
+def _entry(row: Mapping[str, Any]) -> FactRow:
     """Return the row of a list entry, labeled by the name of the entry."""
     other_keys = {key: value for key, value in row.items() if key != "name"}
-    return Row(str(row.get("name", "")), as_text(other_keys))
+    return FactRow(str(row.get("name", "")), as_text(other_keys))
 
 
 def title_of(path: str) -> str:
@@ -187,8 +190,8 @@ def title_of(path: str) -> str:
     return path.removeprefix("link.buses.").replace(".", ": ").replace("_", " ")
 
 
-def _part(path: str, rows: list[Row]) -> Part:
-    return Part(
+def _part(path: str, rows: list[FactRow]) -> FactTable:
+    return FactTable(
         f"facts-{path.replace('.', '-')}",
         title_of(path),
         rows,

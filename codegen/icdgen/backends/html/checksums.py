@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from icdgen.backends.html.all_facts import Row, value_text
+from icdgen.backends.html.all_facts import FactRow, value_text
 from icdgen.backends.html.texts import capitalized
 from icdgen.frozen import NamedTuple
 from icdgen.icd.checksum import CRC, FLETCHER, FLETCHER_255, SUM, XOR
@@ -26,7 +26,7 @@ class Sum(NamedTuple):
     """Checksum with its parameters, and its value of the characters 123456789."""
 
     name: str
-    rows: list[Row]
+    rows: list[FactRow]
     check: str
 
 
@@ -40,13 +40,13 @@ def of_node(node_facts: Facts, section: Mapping[str, Any]) -> list[Sum]:
     return sums
 
 
-def _rows(algorithm: ChecksumAlgorithm) -> Iterator[Row]:
-    yield Row("Kind", _KINDS.get(algorithm.kind, f"CRC-{algorithm.crc.width}"))
+def _rows(algorithm: ChecksumAlgorithm) -> Iterator[FactRow]:
+    yield FactRow("Kind", _KINDS.get(algorithm.kind, f"CRC-{algorithm.crc.width}"))
     for fact in facts_of(Crc):
         value = getattr(algorithm.crc, fact.name)
         has_fact = algorithm.kind == CRC or fact.name in _OF_ALL_KINDS
         if has_fact and value is not None:
-            yield Row(capitalized(fact.about), value_text(fact, value))
+            yield FactRow(capitalized(fact.about), value_text(fact, value))
     if algorithm.seeds:
         seeds = (f"{message} {seed}" for message, seed in algorithm.seeds.items())
-        yield Row("A byte after all others, by message", ", ".join(seeds))
+        yield FactRow("A byte after all others, by message", ", ".join(seeds))

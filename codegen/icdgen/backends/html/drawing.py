@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import groupby, islice, zip_longest
 
 from icdgen import frame_bits
-from icdgen.backends.html.labels import Box, Label, fit
+from icdgen.backends.html.labels import Box, BoxLabel, fit
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
@@ -38,11 +38,11 @@ class Shape:
     anchor: str = ""
     # x, y, width, height
     rects: list[Box] = field(default_factory=list)
-    labels: list[Label] = field(default_factory=list)
+    labels: list[BoxLabel] = field(default_factory=list)
 
 
 @dataclass
-class Drawing:
+class FrameDrawing:
     """Drawing; all coordinates are in units of the view box."""
 
     height: int
@@ -59,7 +59,7 @@ class Drawing:
 
 def draw(
     message: Message, node: Node, links: Links, first: int = 0, end: int | None = None
-) -> Drawing | None:
+) -> FrameDrawing | None:
     """Return the drawing of the bytes from ``first`` to before ``end`` (default: all);
     None for an empty range.
     """
@@ -189,7 +189,7 @@ class _Canvas:
             grid += run if len(run) <= _FEW else [run[0], (-1, run[0][1]), run[-1]]
         return grid, [first for first, _ in grid]
 
-    def drawing(self) -> Drawing:
+    def drawing(self) -> FrameDrawing:
         rects = self._rects()
         for shape in self.shapes:
             shape.rects = rects[shape.key]
@@ -218,7 +218,7 @@ class _Canvas:
             "across": self.across, "cell": self.cell, "left": LEFT, "top": TOP, "row": self.row, "rows": self.rows,
             "first": self.first,
         }  # fmt: skip
-        return Drawing(
+        return FrameDrawing(
             height=self._y(len(self.grid)) + 2,
             columns=columns,
             rows=rows,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from icdgen.backends.html.relations import Place, Relations
+from icdgen.backends.html.relations import PageLink, Relations
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Node
 
@@ -13,21 +13,21 @@ _LEVELS = ("certain", "likely", "open")
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ErratumEntry:
     """Erratum or note, its places, and the names of affected messages."""
 
     erratum: Erratum
-    places: list[Place]
-    more: list[Place]
+    places: list[PageLink]
+    more: list[PageLink]
     messages: list[str]
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class NodeErrata:
     """Errata and notes of a node: anchor, title and entries of both kinds."""
 
     node: Node
-    kinds: list[tuple[str, str, list[Entry]]]
+    kinds: list[tuple[str, str, list[ErratumEntry]]]
 
 
 def values(relations: Relations) -> dict[str, object]:
@@ -50,12 +50,12 @@ def values(relations: Relations) -> dict[str, object]:
     }
 
 
-def _group(relations: Relations, node: Node) -> Group:
+def _group(relations: Relations, node: Node) -> NodeErrata:
     errata = [
         _entry(relations, erratum) for erratum in node.errata if not erratum.is_note
     ]
     notes = [_entry(relations, erratum) for erratum in node.errata if erratum.is_note]
-    return Group(
+    return NodeErrata(
         node,
         [
             (f"{node.name}-errata", "Errata", errata),
@@ -64,10 +64,10 @@ def _group(relations: Relations, node: Node) -> Group:
     )
 
 
-def _entry(relations: Relations, erratum: Erratum) -> Entry:
+def _entry(relations: Relations, erratum: Erratum) -> ErratumEntry:
     # Equal ids of different nodes are distinguished by their titles.
     places = relations.places[erratum.id, erratum.title]
-    return Entry(
+    return ErratumEntry(
         erratum,
         places[:_FEW],
         places[_FEW:],

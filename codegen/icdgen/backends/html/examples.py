@@ -19,21 +19,21 @@ _MOST = 60  # maximum number of fields of a message whose values are shown
 _MOST_BYTES = 1 << 16  # maximum length of all frames of a page together
 
 
-class Cell(NamedTuple):
+class ExampleCell(NamedTuple):
     raw: str
     value: str
 
 
-class Example(NamedTuple):
+class ExampleFrame(NamedTuple):
     """Frame with the values of its fields."""
 
     why: str
     hex: str
     frame: bytes
-    cells: list[Cell]
+    cells: list[ExampleCell]
 
 
-class Frames(NamedTuple):
+class PageVectors(NamedTuple):
     """Golden vectors on a page: purpose and bytes of each frame, in order.
 
     ``are_all``: whether they are all frames of the message.
@@ -43,7 +43,7 @@ class Frames(NamedTuple):
     are_all: bool
 
 
-def frames(message: Message, node: Node) -> Frames:
+def frames(message: Message, node: Node) -> PageVectors:
     """Return the frames of the golden vectors of a message; of a message with very long
     frames, the first ones.
     """
@@ -58,7 +58,7 @@ def frames(message: Message, node: Node) -> Frames:
                 break
             purposes[frame] = why
     rows = [(why, frame.hex(" ").upper()) for frame, why in purposes.items()]
-    return Frames(rows, are_all)
+    return PageVectors(rows, are_all)
 
 
 def _all_frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
@@ -69,7 +69,7 @@ def _all_frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
             yield f"chosen values {index}", codec.encode(node, message, raw)
 
 
-def examples(message: Message, node: Node) -> list[Example]:
+def examples(message: Message, node: Node) -> list[ExampleFrame]:
     """Return a pseudo-random frame and a frame of ones, both from the golden vectors;
     empty for a message without bytes.
     """
@@ -91,35 +91,37 @@ def examples(message: Message, node: Node) -> list[Example]:
         if scalar_count(message.layout) <= _MOST:
             raw = codec.decode(node, message, frame)
             cells = [_cell(field, raw.get(field.name)) for field in message.fields]
-        results.append(Example(why, frame.hex(" ").upper(), frame, cells))
+        results.append(ExampleFrame(why, frame.hex(" ").upper(), frame, cells))
     return results
 
 
-def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
+def _cell(field: NodePlace, raw: int | bytes | None) -> ExampleCell:
     if raw is None:
-        return Cell("", "not there")
+        return ExampleCell("", "not there")
     if isinstance(raw, bytes):
         # 47 characters are the 16 bytes that are shown, with spaces between them.
         shown = raw.hex(" ").upper()
         content = codec.text(raw) if field.type == "text" else ""
-        return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(content))
+        return ExampleCell(
+            shown if len(raw) <= 16 else f"{shown[:47]} …", clean(content)
+        )
     if field.type == "float":
         value = floats.text_of(codec.float_value(field, raw), field.bits)
         if digits_of(field) is not None:
             value = number_text(field, codec.value_double(field, raw))
-        return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
+        return ExampleCell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
     if field.enum is not None:
         member = field.enum.member_of(raw)
         name = member.name if member else "no member"
-        return Cell(_raw(field, raw), name)
+        return ExampleCell(_raw(field, raw), name)
     if field.type == "bool":
-        return Cell(str(raw), "true" if raw else "false")
+        return ExampleCell(str(raw), "true" if raw else "false")
     physical = (
         codec.physical(field, raw)
         if field.curve is None
         else codec.value_double(field, raw)
     )
-    return Cell(
+    return ExampleCell(
         _raw(field, raw),
         "" if physical is None else number_text(field, physical).replace("-", MINUS),
     )

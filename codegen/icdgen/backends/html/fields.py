@@ -10,7 +10,7 @@ from itertools import groupby
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.repeats import ShownField
-from icdgen.backends.html.sections import Section
+from icdgen.backends.html.sections import MessageSection
 from icdgen.icd.model import Message
 from icdgen.icd.places import NodePlace
 from icdgen.show.fields import remarks
@@ -77,7 +77,7 @@ def rows(message: Message, links: Links) -> list[FieldRow]:
 
 
 def split(
-    field_rows: list[FieldRow], sections: list[Section]
+    field_rows: list[FieldRow], sections: list[MessageSection]
 ) -> list[list[FieldRow | FlagRow]]:
     """Return the rows of each section, with consecutive flags as grids."""
     index_of_key = {row.key: index for index, row in enumerate(field_rows)}

@@ -27,7 +27,7 @@ _LONG = 12_000  # characters of a page whose sections are folded
 
 
 @dataclass
-class Section:
+class GuideSection:
     """Content below a heading, as plain text."""
 
     title: str
@@ -37,7 +37,7 @@ class Section:
 
 
 @dataclass
-class Page:
+class GuidePage:
     """Page of the documentation.
 
     ``name``: path below ``docs`` without suffix, for example ``guides/scales``.
@@ -46,7 +46,7 @@ class Page:
 
     name: str
     html: str
-    sections: list[Section] = field(default_factory=list)
+    sections: list[GuideSection] = field(default_factory=list)
     topics: tuple[str, ...] = ()  # words for the search, from the line of the index
 
     @property
@@ -65,7 +65,7 @@ class Page:
 
 
 @cache
-def pages() -> tuple[Page, ...]:
+def pages() -> tuple[GuidePage, ...]:
     """Return all pages in the order of the index, which comes first; empty if the
     documentation is not installed.
     """
@@ -104,9 +104,9 @@ def topics_of(index: str) -> dict[str, tuple[str, ...]]:
     }
 
 
-def groups() -> dict[str, list[Page]]:
+def groups() -> dict[str, list[GuidePage]]:
     """Return the pages by folder: index, guides, reference and explanation."""
-    by_folder: dict[str, list[Page]] = {}
+    by_folder: dict[str, list[GuidePage]] = {}
     for page in pages():
         by_folder.setdefault(page.name.rpartition("/")[0], []).append(page)
     return by_folder
@@ -142,7 +142,7 @@ def _anchors(title: str) -> Iterator[str]:
     yield from (f"{anchor_of(title)}-{number}" for number in count(1))
 
 
-def _page(path: Path, name: str = "") -> Page:
+def _page(path: Path, name: str = "") -> GuidePage:
     from markdown_it import MarkdownIt
 
     # The manual contains no HTML; disabling it makes its text safe.
@@ -150,7 +150,7 @@ def _page(path: Path, name: str = "") -> Page:
         ["table", "strikethrough"]
     )
     tokens = reader.parse(path.read_text("utf-8"))
-    page = Page(name or path.stem, "")
+    page = GuidePage(name or path.stem, "")
     taken = set(_OF_EVERY_PAGE)
     for number, token in enumerate(tokens):
         if token.type == "heading_open":
@@ -160,7 +160,7 @@ def _page(path: Path, name: str = "") -> Page:
             )
             taken.add(anchor)
             token.attrSet("id", anchor)
-            page.sections.append(Section(title, anchor, int(token.tag[1:])))
+            page.sections.append(GuideSection(title, anchor, int(token.tag[1:])))
         elif token.type == "inline":
             _mend_links(token, path)
             # The text of a heading is already its title.

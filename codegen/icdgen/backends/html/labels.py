@@ -9,7 +9,7 @@ _ADVANCE = 0.54  # average width of a letter, relative to the font size
 _LEADING = 1.18  # distance of lines, relative to the font size
 
 
-class Label(NamedTuple):
+class BoxLabel(NamedTuple):
     """Line of text centered at ``x`` with baseline ``y``.
 
     ``key``: whether it is only the number of the field.
@@ -25,7 +25,7 @@ class Label(NamedTuple):
 Box = tuple[int, int, int, int]  # x, y, width, height
 
 
-def fit(boxes: list[Box], name: str, number: int) -> list[Label]:
+def fit(boxes: list[Box], name: str, number: int) -> list[BoxLabel]:
     """Return the name in each box that is large enough, in several lines if needed;
     otherwise the number in the largest box.
     """
@@ -34,10 +34,12 @@ def fit(boxes: list[Box], name: str, number: int) -> list[Label]:
         return labels
     x, y, width, height = max(boxes, key=lambda box: (box[2] * box[3], -box[1]))
     # The baseline of 11 units is 4 below the middle.
-    return [Label(x + width // 2, round(y + height / 2 + 4, 1), 11, str(number), True)]
+    return [
+        BoxLabel(x + width // 2, round(y + height / 2 + 4, 1), 11, str(number), True)
+    ]
 
 
-def _in_box(box: Box, name: str) -> list[Label]:
+def _in_box(box: Box, name: str) -> list[BoxLabel]:
     x, y, width, height = box
     for size in _SIZES:
         # Margins: 3 units above and below, 4 on either side.
@@ -47,7 +49,7 @@ def _in_box(box: Box, name: str) -> list[Label]:
             # The baseline is 0.36 of the font size below the middle of capital letters.
             top = y + height / 2 - (len(lines) - 1) * size * _LEADING / 2 + size * 0.36
             return [
-                Label(
+                BoxLabel(
                     x + width // 2, round(top + index * size * _LEADING, 1), size, line
                 )
                 for index, line in enumerate(lines)

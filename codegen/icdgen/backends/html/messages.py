@@ -13,7 +13,7 @@ from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
 from icdgen.describe.numbers import count_text, length_text
-from icdgen.describe.shared_ids import sharing
+from icdgen.describe.shared_ids import sharing_sentence
 from icdgen.icd import wire_ids
 from icdgen.icd.lines import lines
 from icdgen.icd.model import Message, Node, framed_link
@@ -100,7 +100,13 @@ def _facts(
             f"last {count(message.reserved, 'byte')}" if message.reserved else "",
             "",
         ),
-        ("Id", sharing(describe(relations.icd).node(node).messages_by_id, message), ""),
+        (
+            "Id",
+            sharing_sentence(
+                describe(relations.icd).node(node).messages_by_id, message
+            ),
+            "",
+        ),
         ("Group", message.group, ""),
         ("Period", f"{message.period_ms} ms" if message.period_ms else "", ""),
         *responses.of_message(relations, node, message),
@@ -157,8 +163,8 @@ def _plan(
     relations: Relations,
     node: Node,
     message: Message,
-    drawings: list[drawing.Drawing],
-    shares: list[sections.Section],
+    drawings: list[drawing.FrameDrawing],
+    shares: list[sections.MessageSection],
 ) -> dict[str, object]:
     repeats = relations.links.repeats(message)
     enums = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.html import examples, protocol, texts, wire
-from icdgen.backends.html.relations import Place, Relations, document, manual
+from icdgen.backends.html.relations import PageLink, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
 from icdgen.icd.lines import lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
@@ -146,18 +146,18 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "loggable": [(row, received.get(row.id)) for row in node.loggable],
         "enums": [
             (
-                Place(enum.name, relations.links.enum(enum)),
+                PageLink(enum.name, relations.links.enum(enum)),
                 len(enum.members),
                 enum.summary,
             )
             for enum in node.enums
         ],
         "included": [
-            Place(included_node.title, relations.links.node(included_node.name))
+            PageLink(included_node.title, relations.links.node(included_node.name))
             for included_node in relations.icd.included(node)
         ],
         "speakers": [
-            Place(speaker.title, relations.links.node(speaker.name))
+            PageLink(speaker.title, relations.links.node(speaker.name))
             for speaker in relations.speakers[node.name]
             if speaker is not node
         ],

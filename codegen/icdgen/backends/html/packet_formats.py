@@ -79,7 +79,7 @@ _ROLES = {
 _FIELD_KEYS = ("role", "in_trailer", "at", "size", "shift", "bits", "little", "values")
 
 
-class Place(NamedTuple):
+class FormatField(NamedTuple):
     """Field of the packet format: role, position, purpose and value."""
 
     role: str
@@ -244,14 +244,14 @@ def _boxes(rows: Iterable[Section]) -> Iterator[tuple[str, str, float, str]]:
         )
 
 
-def places(packet: Packet, enum_urls: Mapping[str, str]) -> list[Place]:
+def places(packet: Packet, enum_urls: Mapping[str, str]) -> list[FormatField]:
     """Return each field, in order.
 
     ``enum_urls``: links to the enumerations, by name.
     """
     id_parts = dict(_id_parts(packet))
     return [
-        Place(
+        FormatField(
             row["role"],
             f"{part}, {bit_range(row['at'], row['bits'])}",
             _about(row) + id_parts.get(id(row), ""),
@@ -326,7 +326,7 @@ def _covered(covers: Mapping[str, str]) -> str:
     return f"the {DATA}" if first == last == DATA else f"from the {first} to the {last}"
 
 
-class Part(NamedTuple):
+class TransmittedPart(NamedTuple):
     """Transmitted bytes with their meaning."""
 
     kind: str
@@ -336,7 +336,7 @@ class Part(NamedTuple):
 
 def packet(
     form: Stream, link: Link, id: int, direction: Direction, data: bytes
-) -> list[Part]:
+) -> list[TransmittedPart]:
     """Return the parts of a message in its packet format, before byte stuffing."""
     sent = stream_encode(_unstuffed(link), id, data, direction)
     # An id has one row per direction.
@@ -344,7 +344,7 @@ def packet(
     return _parts(form.packets[row.packet], sent)
 
 
-def request(form: Stream, link: Link, telemetry_id: int) -> list[Part]:
+def request(form: Stream, link: Link, telemetry_id: int) -> list[TransmittedPart]:
     """Return the parts of the packet that requests telemetry, before byte stuffing;
     none if no packet does.
     """
@@ -363,7 +363,7 @@ def _unstuffed(link: Link) -> Link:
     return link._replace(stream=link.stream._replace(delimited_by="datagram"))
 
 
-def _parts(packet: PacketFormat, sent: bytes) -> list[Part]:
+def _parts(packet: PacketFormat, sent: bytes) -> list[TransmittedPart]:
     # Kinds are classes of the style sheet.
     head, end = packet.header_bytes, len(sent) - packet.trailer_bytes
     before, behind = (
@@ -372,8 +372,8 @@ def _parts(packet: PacketFormat, sent: bytes) -> list[Part]:
     )
     of_packet = f" of {packet.name}" if packet.name else ""
     parts = [
-        Part("id", sent[:head], f"header{of_packet}: {before}"),
-        Part("data", sent[head:end], f"data, {count(end - head, 'byte')}"),
-        Part("crc", sent[end:], f"trailer{of_packet}: {behind}"),
+        TransmittedPart("id", sent[:head], f"header{of_packet}: {before}"),
+        TransmittedPart("data", sent[head:end], f"data, {count(end - head, 'byte')}"),
+        TransmittedPart("crc", sent[end:], f"trailer{of_packet}: {behind}"),
     ]
     return [part for part in parts if part.data]

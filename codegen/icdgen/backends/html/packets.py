@@ -7,7 +7,7 @@ from typing import Any
 
 from icdgen.backends.html import packet_formats
 from icdgen.backends.html.links import free_name, slug
-from icdgen.backends.html.relations import Place, Relations
+from icdgen.backends.html.relations import PageLink, Relations
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
 from icdgen.icd.packets import BOTH, DEVICE, HOST, Packet, Packets, declared_packets
@@ -29,7 +29,7 @@ class Content(NamedTuple):
 
     label: str
     text: str
-    messages: list[Place]
+    messages: list[PageLink]
 
 
 class PacketView(NamedTuple):
@@ -43,7 +43,7 @@ class PacketView(NamedTuple):
     summary: str
     contents: list[Content]
     boxes: list[tuple[str, str, float, str]]
-    places: list[packet_formats.Place]
+    places: list[packet_formats.FormatField]
 
 
 def packet_views(relations: Relations, node: Node, stream: Stream) -> list[PacketView]:

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from icdgen import frame_bits
-from icdgen.describe.bounds import bounds
+from icdgen.describe.bounds import bounds_of_limits
 from icdgen.describe.display import base_of, digits_of
-from icdgen.describe.steps import EXACT_DOUBLE, steps
+from icdgen.describe.steps import EXACT_DOUBLE, steps_of_scale
 from icdgen.icd.layout import Derived, Layout, VariablePart
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.places import NodePlace, places_in
@@ -179,7 +179,7 @@ class _Fields:
     def _field(self, field: NodePlace, name: str) -> dict[str, object]:
         """Return the data of a field without inapplicable keys."""
         node, places, variable = self._node, self._places, self._parts
-        scaled, curve, how = steps(field), field.curve, field.derived
+        scaled, curve, how = steps_of_scale(field), field.curve, field.derived
         earlier = [part.node for part in variable[:-1]]
         digits, base = digits_of(field), base_of(field)
         pieces = (
@@ -196,7 +196,7 @@ class _Fields:
                 integer(bound.value.numerator),
                 integer(bound.value.denominator),
             ]
-            for bound in bounds(field.limits)
+            for bound in bounds_of_limits(field.limits)
         }
         plan: dict[str, object] = {
             "name": name,

@@ -16,8 +16,8 @@ from icdgen.backends.html import (
     sequences,
     texts,
 )
-from icdgen.backends.html.all_facts import Row, as_text
-from icdgen.backends.html.relations import Place, Relations
+from icdgen.backends.html.all_facts import FactRow, as_text
+from icdgen.backends.html.relations import PageLink, Relations
 from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import CAN, bus_link
 from icdgen.icd.model import Node, buses_of
@@ -29,7 +29,7 @@ from icdgen.protocol.sections import CanPart
 _WIDTH = 720
 
 
-class Box(NamedTuple):
+class BusBox(NamedTuple):
     """Box of a drawing at ``x`` with two lines of text.
 
     ``above``: numbers of its bits.
@@ -68,7 +68,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         ),
         "identifier": _identifier(node_facts, section),
         "types": [
-            Row(
+            FactRow(
                 f"{packet.section['type']} · {packet.name}",
                 packet.section.get("summary", ""),
             )
@@ -87,7 +87,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         ],
         "parts": all_facts.with_others(relations, node_facts, parts, section),
         "assumptions": [
-            Row(
+            FactRow(
                 f"{assumption.section}: {assumption.key.replace('_', ' ')}",
                 as_text(assumption.value),
                 assumption.why,
@@ -97,7 +97,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     }
 
 
-def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
+def lines(section: dict[str, Any]) -> list[tuple[str, list[FactRow]]]:
     """Return the settings of each bus."""
     settings_by_bus = []
     buses = {
@@ -111,23 +111,23 @@ def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     return settings_by_bus
 
 
-def _settings(section: dict[str, Any], prefix: str) -> Iterator[Row]:
+def _settings(section: dict[str, Any], prefix: str) -> Iterator[FactRow]:
     for key, value in section.items():
         label = f"{prefix}{key.replace('_', ' ')}"
         # bool is a subclass of int.
         if isinstance(value, int) and not isinstance(value, bool):
-            yield Row(label, f"0x{value:02X}" if "address" in key else f"{value:,}")
+            yield FactRow(label, f"0x{value:02X}" if "address" in key else f"{value:,}")
         elif isinstance(value, str):
-            yield Row(label, value)
+            yield FactRow(label, value)
         elif isinstance(value, list) and all(isinstance(item, str) for item in value):
-            yield Row(label, " or ".join(value))
+            yield FactRow(label, " or ".join(value))
         elif key in ("write", "read") and isinstance(value, dict):
             yield from _settings(value, f"{key}, ")
         elif key == "line":
             yield from _settings(value, "")
 
 
-def _framing(node_facts: Facts) -> list[Box]:
+def _framing(node_facts: Facts) -> list[BusBox]:
     form = node_facts.framing
     if form is None:
         return []
@@ -163,18 +163,18 @@ def _framed(relations: Relations, node: Node, node_facts: Facts) -> dict[str, ob
     }
 
 
-def _row(pieces: list[tuple[str, str, float, str]]) -> list[Box]:
+def _row(pieces: list[tuple[str, str, float, str]]) -> list[BusBox]:
     """Return adjacent boxes with widths in proportion to their shares."""
     # 1 unit on either side is for the outline.
     total, x, boxes = sum(share for _, _, share, _ in pieces), 0.0, []
     for text, about, share, above in pieces:
         width = (_WIDTH - 2) * share / total
-        boxes.append(Box(round(1 + x, 1), round(width, 1), text, about, above))
+        boxes.append(BusBox(round(1 + x, 1), round(width, 1), text, about, above))
         x += width
     return boxes
 
 
-def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
+def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[BusBox]:
     if node_facts.can is None:
         return []
     names = {
@@ -213,7 +213,7 @@ def errors(relations: Relations, node_facts: Facts) -> list[tuple[int, str, str,
 
 def entries(
     relations: Relations, node: Node, url: str
-) -> Iterator[tuple[str, str, Place]]:
+) -> Iterator[tuple[str, str, PageLink]]:
     """Yield the search entries of the page: words, title and place of each section."""
     node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
     for title, rows in lines(section):
@@ -221,7 +221,7 @@ def entries(
         yield (
             f"line bus serial interface {words}",
             f"{title} settings",
-            Place(node.title, f"{url}#lines"),
+            PageLink(node.title, f"{url}#lines"),
         )
     crc = "crc checksum polynomial init reflect calculator"
     sections = [
@@ -295,4 +295,4 @@ def entries(
     # A section without content is not on the page, so it has no anchor.
     for is_there, words, title, anchor in sections:
         if is_there:
-            yield words, title, Place(node.title, f"{url}#{anchor}")
+            yield words, title, PageLink(node.title, f"{url}#{anchor}")

@@ -22,7 +22,7 @@ from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 
 
-class Place(NamedTuple):
+class PageLink(NamedTuple):
     """Name of an object and the link to its page from the top of the site."""
 
     text: str
@@ -34,7 +34,7 @@ class Contained(NamedTuple):
     message or is contained in it, from bit ``at``.
     """
 
-    place: Place
+    place: PageLink
     at: int
     length: int
 
@@ -57,11 +57,11 @@ class Relations:
             for owner in icd.nodes
         }
         # Fields of an enumeration type
-        self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)
-        self.units: dict[str, tuple[Unit, list[Place]]] = {}  # unit with its fields
+        self.uses: dict[tuple[str, str], list[PageLink]] = defaultdict(list)
+        self.units: dict[str, tuple[Unit, list[PageLink]]] = {}  # unit with its fields
         # Places of an erratum by its id and title: files of different nodes can use the
         # same id.
-        self.places: dict[tuple[str, str], list[Place]] = defaultdict(list)
+        self.places: dict[tuple[str, str], list[PageLink]] = defaultdict(list)
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.contains: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.logged: dict[tuple[str, str], list[tuple[Node, Loggable]]] = defaultdict(
@@ -87,10 +87,10 @@ class Relations:
         }
         for message in node.messages:
             self._errata(
-                message.errata, Place(message.name, self.links.message(message))
+                message.errata, PageLink(message.name, self.links.message(message))
             )
             for name, field in self.shown_fields(message):
-                place = Place(
+                place = PageLink(
                     f"{message.name}: {name}", self.links.field(message, field)
                 )
                 self._errata(field.errata, place)
@@ -110,12 +110,12 @@ class Relations:
                     self.contained_in[other.node, other.name].append(outer)
         for enum in node.enums:
             url = self.links.enum(enum)
-            self._errata(enum.errata, Place(enum.name, url))
+            self._errata(enum.errata, PageLink(enum.name, url))
             for member in enum.members:
                 anchor = self.links.anchor(enum, str(member.value))
                 self._errata(
                     member.errata,
-                    Place(f"{enum.name}: {member.name}", f"{url}#{anchor}"),
+                    PageLink(f"{enum.name}: {member.name}", f"{url}#{anchor}"),
                 )
         # Log masks refer to frames by their telemetry id.
         by_id = {
@@ -129,20 +129,20 @@ class Relations:
                 self.logged[message.node, message.name].append((node, row))
             self._errata(
                 row.errata,
-                Place(
+                PageLink(
                     f"Log mask bit {row.bit}", self.links.node(node.name) + "#log-mask"
                 ),
             )
 
-    def _errata(self, errata: tuple[Erratum, ...], place: Place) -> None:
+    def _errata(self, errata: tuple[Erratum, ...], place: PageLink) -> None:
         for erratum in errata:
             self.places[erratum.id, erratum.title].append(place)
 
-    def place(self, message: Message) -> Place:
+    def place(self, message: Message) -> PageLink:
         """Return the message as a link."""
-        return Place(message.name, self.links.message(message))
+        return PageLink(message.name, self.links.message(message))
 
-    def ids(self, message: Message) -> list[texts.Id]:
+    def ids(self, message: Message) -> list[texts.PageId]:
         """Return the ids of a message in the notation of its protocol."""
         return texts.ids(
             message, self._speaker(self.icd.node(message.node)).facts.stream

@@ -7,9 +7,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from icdgen.backends.html.all_facts import Row
+from icdgen.backends.html.all_facts import FactRow
 from icdgen.backends.html.packets import packet_urls
-from icdgen.backends.html.relations import Place, Relations
+from icdgen.backends.html.relations import PageLink, Relations
 from icdgen.backends.html.texts import capitalized
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Message, Node, framed_link
@@ -67,9 +67,9 @@ class ResponseRow(NamedTuple):
 class RequestRow(NamedTuple):
     """Requests of telemetry by a packet with its id."""
 
-    packet: Place  # empty text if the link has one packet format
-    response: Place | None  # packet that carries the telemetry without its id
-    messages: list[Place]
+    packet: PageLink  # empty text if the link has one packet format
+    response: PageLink | None  # packet that carries the telemetry without its id
+    messages: list[PageLink]
     rows: list[ResponseRow]
     timeout: str
 
@@ -106,7 +106,7 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
         "telecommands": rows,
         "requests": requests,
         "reasons": [
-            Row(capitalized(about), str(reasons[cause]))
+            FactRow(capitalized(about), str(reasons[cause]))
             for cause, about in _CAUSES.items()
             if cause in reasons
         ],
@@ -131,8 +131,8 @@ def request_row(relations: Relations, node: Node) -> RequestRow | None:
     response: str | None = section.get("response")
     ids = {row.id for row in stream.telemetry if row.is_requested}
     return RequestRow(
-        Place(name, urls[name]),
-        Place(response, urls[response]) if response else None,
+        PageLink(name, urls[name]),
+        PageLink(response, urls[response]) if response else None,
         [
             relations.place(message)
             for message in relations.icd.messages_of(node)
@@ -225,7 +225,7 @@ def _rows(
     rows = []
     for kind, row in declared.items():
         place = (
-            Place(f"packet {row['packet']}", packets[row["packet"]])
+            PageLink(f"packet {row['packet']}", packets[row["packet"]])
             if "packet" in row
             else places[row["message"]]
         )

@@ -17,7 +17,7 @@ from icdgen.protocol import facts
 _MOST = 300  # searched characters of a text
 
 
-class Entry(NamedTuple):
+class SearchEntry(NamedTuple):
     """Entry of the index.
 
     ``own``: words of its identifier, if they differ from the title. ``about``: further
@@ -34,11 +34,11 @@ class Entry(NamedTuple):
     aliases: tuple[str, ...] = ()
 
 
-def entries(relations: Relations) -> Iterator[Entry]:
+def entries(relations: Relations) -> Iterator[SearchEntry]:
     """Yield nodes, messages, enumerations, units, fields, members and errata."""
     links = relations.links
     for node in relations.icd.nodes:
-        yield Entry(
+        yield SearchEntry(
             "node",
             node.title,
             node.summary,
@@ -50,7 +50,7 @@ def entries(relations: Relations) -> Iterator[Entry]:
     for unit, _ in relations.units.values():
         about = f"unit {unit.identifier} {unit.summary}"
         phrases = (unit.symbol, unit.identifier)
-        yield Entry(
+        yield SearchEntry(
             "unit",
             unit.symbol,
             unit.quantity,
@@ -64,7 +64,7 @@ def entries(relations: Relations) -> Iterator[Entry]:
             for words_, title, place in protocol.entries(
                 relations, node, links.protocol(node.name)
             ):
-                yield Entry(
+                yield SearchEntry(
                     "protocol",
                     title,
                     place.text,
@@ -75,7 +75,7 @@ def entries(relations: Relations) -> Iterator[Entry]:
                 )
         if node.loggable:
             url = f"{links.node(node.name)}#log-mask"
-            yield Entry(
+            yield SearchEntry(
                 "protocol",
                 "Log mask",
                 node.title,
@@ -95,7 +95,7 @@ def entries(relations: Relations) -> Iterator[Entry]:
                 [*(f"table {table}" for table in erratum.tables), erratum.why]
             )
             title = f"{erratum.id} {erratum.title}"
-            yield Entry(
+            yield SearchEntry(
                 erratum.label.lower(),
                 title,
                 node.title,
@@ -111,7 +111,7 @@ def entries(relations: Relations) -> Iterator[Entry]:
             url = page.url if section.level == 1 else f"{page.url}#{section.anchor}"
             context = "guide" if section.level == 1 else f"guide · {page.title}"
             topics = page.topics if section.level == 1 else ()
-            yield Entry(
+            yield SearchEntry(
                 "guide", section.title, context, "", section.text, (), url, topics
             )
 
@@ -134,7 +134,9 @@ def script(relations: Relations) -> str:
     return f'"use strict";\nglobalThis.icdgenSearchIndex = [\n{lines}\n];\n'
 
 
-def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[Entry]:
+def _of_message(
+    relations: Relations, node: Node, message: Message
+) -> Iterator[SearchEntry]:
     links = relations.links
     ids = relations.ids(message)
     shown_ids = "/".join(
@@ -159,7 +161,7 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     )
     about = f"{speakers} {message.group} {buses} {message.summary}"
     context = f"{message.kind} {shown_ids} · {node.title}"
-    yield Entry(
+    yield SearchEntry(
         "message",
         message.name,
         context,
@@ -178,7 +180,7 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
         about = f"{node.name} {own} {unit} {field.summary}"
         context = f"{message.name} · {node.title}"
         url = links.field(message, field)
-        yield Entry(
+        yield SearchEntry(
             "field", name, context, _words(field, node), about, (), url, field.aliases
         )
 
@@ -196,14 +198,14 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
 
 def _of_enum(
     relations: Relations, node: Node, enum: Enum, is_error: bool
-) -> Iterator[Entry]:
+) -> Iterator[SearchEntry]:
     links, own = (
         relations.links,
         " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower(),
     )
     about = f"enum {node.name} {enum.summary}"
     phrases = tuple(_table(enum.table))
-    yield Entry(
+    yield SearchEntry(
         "enumeration",
         enum.name,
         node.title,
@@ -220,7 +222,7 @@ def _of_enum(
         phrases = (
             (f"error {member.value}", f"error code {member.value}") if is_error else ()
         )
-        yield Entry(
+        yield SearchEntry(
             "member",
             member.name,
             context,

@@ -20,7 +20,7 @@ _SHARE = 10  # fields of a section
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class MessageSection:
     """Section of the bytes from ``first`` to before ``end``.
 
     ``keys``: numbers of the fields, from 1. ``url``: page of the contained message.
@@ -54,7 +54,7 @@ class Section:
         )
 
 
-def bands(relations: Relations, message: Message) -> list[Section]:
+def bands(relations: Relations, message: Message) -> list[MessageSection]:
     """Return a section for each contained message, or else for each array, and sections
     for the bytes between them.
 
@@ -66,14 +66,14 @@ def bands(relations: Relations, message: Message) -> list[Section]:
 
 def _messages(
     relations: Relations, message: Message, repeats: Repeats
-) -> list[Section]:
+) -> list[MessageSection]:
     """Return the contained messages and the bytes between them; empty if they overlap
     or are not aligned to bytes.
     """
     parts = sorted(
         relations.contains[message.node, message.name], key=lambda part: part.at
     )
-    found_sections: list[Section] = []
+    found_sections: list[MessageSection] = []
     end = 0
     for part in parts:
         first = part.at // 8
@@ -83,7 +83,7 @@ def _messages(
         found_sections += _between(message, repeats, end, first)
         end = first + part.length
         found_sections.append(
-            Section(
+            MessageSection(
                 part.place.text,
                 first,
                 end,
@@ -101,7 +101,7 @@ def _messages(
     )
 
 
-def _arrays(message: Message, repeats: Repeats) -> list[Section]:
+def _arrays(message: Message, repeats: Repeats) -> list[MessageSection]:
     """Return the first element of each represented array and the bytes between them."""
     if not repeats.arrays:
         return []
@@ -115,7 +115,9 @@ def _arrays(message: Message, repeats: Repeats) -> list[Section]:
     ]
     if remaining_keys:
         section_list.append(
-            Section("Derived values", message.length, message.length, remaining_keys)
+            MessageSection(
+                "Derived values", message.length, message.length, remaining_keys
+            )
         )
     return section_list
 
@@ -126,7 +128,7 @@ def _around(
     arrays: list[Repeat],
     first: int,
     inside: Repeat | None,
-) -> Iterator[Section]:
+) -> Iterator[MessageSection]:
     """Yield the sections of the message or of the first element of ``inside``, which
     begins at byte ``first``.
 
@@ -137,7 +139,7 @@ def _around(
         (f"{inside.name} × {inside.times}", True) if inside else ("", False)
     )
 
-    def between(start: int, stop: int) -> list[Section]:
+    def between(start: int, stop: int) -> list[MessageSection]:
         return [
             replace(s, title=title or s.title, is_element=is_element)
             for s in _between(message, repeats, start, stop)
@@ -151,12 +153,12 @@ def _around(
     yield from between(first, end)
 
 
-def shares(message: Message, repeats: Repeats) -> list[Section]:
+def shares(message: Message, repeats: Repeats) -> list[MessageSection]:
     """Return the fields in order, in several sections if there are many."""
     fields = repeats.fields
     keys = [field.key for field in fields]
     if not _is_long(repeats):
-        return [Section("Fields", 0, message.length, keys)]
+        return [MessageSection("Fields", 0, message.length, keys)]
     # Double ceiling division: first the number of sections, then their size.
     size = -(-len(keys) // -(-len(keys) // _SHARE))  # sections of similar size
     with_bits = [field.place for field in fields if _has_bits(field.place)]
@@ -171,7 +173,7 @@ def shares(message: Message, repeats: Repeats) -> list[Section]:
             -(-max(place.at + place.bits for place in places) // 8),
         )
         section_list.append(
-            Section(
+            MessageSection(
                 f"Fields {section_keys[0]} to {section_keys[-1]}",
                 first,
                 end,
@@ -185,7 +187,9 @@ def _has_bits(place: NodePlace) -> bool:
     return not place.is_count and place.derived is None
 
 
-def _folded(repeats: Repeats, section_list: list[Section]) -> list[Section]:
+def _folded(
+    repeats: Repeats, section_list: list[MessageSection]
+) -> list[MessageSection]:
     """Return the sections. In a long message, fold all sections but the first."""
     if not _is_long(repeats):
         return section_list
@@ -201,10 +205,12 @@ def _is_long(repeats: Repeats) -> bool:
     return sum(weights) > _LONG
 
 
-def _between(message: Message, repeats: Repeats, first: int, end: int) -> list[Section]:
+def _between(
+    message: Message, repeats: Repeats, first: int, end: int
+) -> list[MessageSection]:
     title = byte_range(first, end - first).capitalize()
     return (
-        [Section(title, first, end, _keys(message, repeats, first, end))]
+        [MessageSection(title, first, end, _keys(message, repeats, first, end))]
         if end > first
         else []
     )

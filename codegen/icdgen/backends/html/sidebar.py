@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends.html import protocol
-from icdgen.backends.html.relations import Place, Relations
+from icdgen.backends.html.relations import PageLink, Relations
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import Node
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 _OTHER = "Other messages"
 
 
-class Group(NamedTuple):
+class SidebarGroup(NamedTuple):
     """Group of links.
 
     ``all``: page that lists the whole group.
     """
 
     title: str
-    links: list[Place]
+    links: list[PageLink]
     all: str
 
 
@@ -88,29 +88,34 @@ def script(relations: Relations, node: Node) -> str:
     return f'"use strict";\nglobalThis.icdgenContents = {json.dumps(data, separators=(",", ":"))};\n'
 
 
-def _groups(relations: Relations, node: Node) -> list[Group]:
+def _groups(relations: Relations, node: Node) -> list[SidebarGroup]:
     """Return the groups of a node; groups of included nodes come last."""
-    groups: dict[str, list[Place]] = defaultdict(list)
+    groups: dict[str, list[PageLink]] = defaultdict(list)
     for message in node.messages:
         groups[message.group or _OTHER].append(
-            Place(message.name, _within(relations.links.message(message), node))
+            PageLink(message.name, _within(relations.links.message(message), node))
         )
     group_list = [
-        Group(title, links, "index.html#messages") for title, links in groups.items()
+        SidebarGroup(title, links, "index.html#messages")
+        for title, links in groups.items()
     ]
     if node.enums:
         enums = [
-            Place(enum.name, _within(relations.links.enum(enum), node))
+            PageLink(enum.name, _within(relations.links.enum(enum), node))
             for enum in node.enums
         ]
-        group_list.append(Group("Enumerations", enums, "index.html#enumerations"))
+        group_list.append(
+            SidebarGroup("Enumerations", enums, "index.html#enumerations")
+        )
     for other in relations.icd.included(node):
         links = [
-            Place(message.name, _within(relations.links.message(message), node))
+            PageLink(message.name, _within(relations.links.message(message), node))
             for message in other.messages
         ]
         group_list.append(
-            Group(other.title, links, _within(relations.links.node(other.name), node))
+            SidebarGroup(
+                other.title, links, _within(relations.links.node(other.name), node)
+            )
         )
     return group_list
 

@@ -63,7 +63,7 @@ def type_name(field: NodePlace) -> str:
     )
 
 
-class Id(NamedTuple):
+class PageId(NamedTuple):
     """One id of a message, with its purpose: ``id``, ``set`` or ``get``."""
 
     purpose: str
@@ -74,7 +74,7 @@ class Id(NamedTuple):
     hexadecimal: str  # ``92``; empty if the text is hexadecimal
 
 
-def ids(message: Message, form: Stream | None) -> list[Id]:
+def ids(message: Message, form: Stream | None) -> list[PageId]:
     """Return the ids of a message in the notation of the packets of its node."""
     if message.kind == CONFIGURATION:
         values = [("set", message.set_id or 0), ("get", message.get_id or 0)]
@@ -82,7 +82,7 @@ def ids(message: Message, form: Stream | None) -> list[Id]:
         values = [("id", message.id or 0)]
     is_hexadecimal = bool(pair_bytes(form))
     return [
-        Id(purpose, id, id_text(form, id), "" if is_hexadecimal else f"{id:02X}")
+        PageId(purpose, id, id_text(form, id), "" if is_hexadecimal else f"{id:02X}")
         for purpose, id in values
     ]
 

@@ -9,7 +9,7 @@ from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.packages import Packages
 from icdgen.backends.rust.names import field_name
 from icdgen.describe import MessageDescription
-from icdgen.describe.examples import worth_showing
+from icdgen.describe.examples import field_of_example
 from icdgen.frozen import NamedTuple
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def snippets(
 
 
 def _values(message: MessageDescription, packages: Packages) -> dict[str, object]:
-    field = worth_showing(message)
+    field = field_of_example(message)
     enum = field.enum if field else None
     # The first member is often 0, which looks like the initial value.
     member = enum.members[-1] if enum and enum.members else None

@@ -28,7 +28,7 @@ from icdgen.wording import count
 _SHOWN = 24  # maximum number of shown data bytes
 
 
-class Chunk(NamedTuple):
+class WireChunk(NamedTuple):
     """Bytes of one meaning as text.
 
     ``kind`` is frame, id, data, crc or note.
@@ -39,18 +39,18 @@ class Chunk(NamedTuple):
     title: str
 
 
-class Line(NamedTuple):
+class WireLine(NamedTuple):
     """Bytes of one transmission."""
 
     label: str
-    chunks: list[Chunk]
+    chunks: list[WireChunk]
 
 
 @dataclass
 class Bus:
     name: str
     note: str
-    lines: list[Line]
+    lines: list[WireLine]
 
 
 class Speaker(NamedTuple):
@@ -162,9 +162,11 @@ def _hex(data: bytes) -> str:
     return f"{data[: _SHOWN - 4].hex(' ').upper()} … {data[-4:].hex(' ').upper()}"
 
 
-def _data(data: bytes) -> list[Chunk]:
+def _data(data: bytes) -> list[WireChunk]:
     return (
-        [Chunk("data", _hex(data), f"data, {count(len(data), 'byte')}")] if data else []
+        [WireChunk("data", _hex(data), f"data, {count(len(data), 'byte')}")]
+        if data
+        else []
     )
 
 
@@ -183,20 +185,20 @@ def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
     return None
 
 
-def _crc_chunk(sent: bytes, speaker: Speaker, direction: str, bus: str) -> Chunk:
+def _crc_chunk(sent: bytes, speaker: Speaker, direction: str, bus: str) -> WireChunk:
     form = speaker.facts.checksum
     assert form is not None
     is_telecommand = direction == "telecommand"
     always = form.telecommand_always if is_telecommand else form.telemetry_always
     text = form.algorithm.name + ("" if bus in always else ", optional")
-    return Chunk("crc", _hex(sent), text)
+    return WireChunk("crc", _hex(sent), text)
 
 
 def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
     form = wire.facts.stream
     if form is None:
         return None
-    lines: list[Line] = []
+    lines: list[WireLine] = []
     ids: dict[Direction, int | None] = {
         "telecommand": message.telecommand_id,
         "telemetry": message.telemetry_id,
@@ -216,16 +218,19 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
 
 
 def _packet_lines(
-    label: str, parts: list[packet_formats.Part], sent: bytes
-) -> Iterator[Line]:
+    label: str, parts: list[packet_formats.TransmittedPart], sent: bytes
+) -> Iterator[WireLine]:
     """Yield a line with the parts of a packet.
 
     If byte stuffing changed the packet, a second line has the transmitted bytes.
     """
-    yield Line(label, [Chunk(part.kind, _hex(part.data), part.title) for part in parts])
+    yield WireLine(
+        label, [WireChunk(part.kind, _hex(part.data), part.title) for part in parts]
+    )
     if sent != b"".join(part.data for part in parts):
-        yield Line(
-            "in wire order", [Chunk("data", _hex(sent), "stuffed, between delimiters")]
+        yield WireLine(
+            "in wire order",
+            [WireChunk("data", _hex(sent), "stuffed, between delimiters")],
         )
 
 
@@ -235,19 +240,19 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
     lines = []
     if message.telecommand_id is not None:
         lines.append(
-            Line("Telecommand", _framed(wire.link, message.telecommand_id, data))
+            WireLine("Telecommand", _framed(wire.link, message.telecommand_id, data))
         )
         checked = _check(wire, "telecommand", "uart")
         if checked:
             lines.append(
-                Line(
+                WireLine(
                     "with CRC",
                     _framed(wire.link, message.telecommand_id, data, checked),
                 )
             )
     if message.telemetry_id is not None:
-        lines.append(Line("Request", _framed(wire.link, message.telemetry_id, b"")))
-        lines.append(Line("Answer", _framed(wire.link, message.telemetry_id, data)))
+        lines.append(WireLine("Request", _framed(wire.link, message.telemetry_id, b"")))
+        lines.append(WireLine("Answer", _framed(wire.link, message.telemetry_id, data)))
     return Bus(
         "UART",
         _uart_note(buses_of(wire.section)["uart"].get("line", {}), wire.facts.framing),
@@ -257,7 +262,7 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
 
 def _framed(
     link: Link, id: int, data: bytes, checked: Speaker | None = None
-) -> list[Chunk]:
+) -> list[WireChunk]:
     """Return the transmitted bytes, split at the borders of id, data and checksum."""
     # On the UART, a message has the bytes of an I2C write between the framing bytes.
     body = i2c_write(checked.link if checked else link, id, data, checked is not None)
@@ -275,13 +280,13 @@ def _framed(
         line[at:to] for at, to in zip([0, *ends], ends, strict=False)
     )
     chunks = [
-        Chunk("frame", _hex(start), "start of message"),
-        Chunk("id", _hex(id_sent), f"id {id}"),
+        WireChunk("frame", _hex(start), "start of message"),
+        WireChunk("id", _hex(id_sent), f"id {id}"),
     ]
     chunks += _data(data_sent)
     if checked:
         chunks.append(_crc_chunk(check_sent, checked, "telecommand", "uart"))
-    return [*chunks, Chunk("frame", _hex(line[ends[-1] :]), "end of message")]
+    return [*chunks, WireChunk("frame", _hex(line[ends[-1] :]), "end of message")]
 
 
 def _uart_note(section: dict[str, Any], framing: Framing) -> str:
@@ -302,37 +307,37 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
         return None
     # The first byte has the 7-bit address and, as lowest bit, the direction: 0 to
     # write, 1 to read (UM10204, 3.1.10).
-    write = Chunk("frame", f"{address << 1:02X}", "address, write")
+    write = WireChunk("frame", f"{address << 1:02X}", "address, write")
     lines = []
     if message.telecommand_id is not None:
         sent = [write, _id(message.telecommand_id), *_data(data)]
-        lines.append(Line("Telecommand", sent))
+        lines.append(WireLine("Telecommand", sent))
         lines += _with_crc(wire, "telecommand", message.telecommand_id, data, sent)
     if message.telemetry_id is not None:
         how = "repeated start" if wire.facts.i2c_repeated_start else "stop and start"
-        restart = Chunk(
+        restart = WireChunk(
             "note",
             how,
             " or ".join(buses_of(wire.section)["i2c"].get("telemetry_request", [])),
         )
-        read = Chunk("frame", f"{address << 1 | 1:02X}", "address, read")
+        read = WireChunk("frame", f"{address << 1 | 1:02X}", "address, read")
         answer = [write, _id(message.telemetry_id), restart, read, *_data(data)]
-        lines.append(Line("Request and answer", answer))
+        lines.append(WireLine("Request and answer", answer))
         lines += _with_crc(wire, "telemetry", message.telemetry_id, data, answer)
     return Bus("I²C", f"7-bit address {address:02X}.", lines)
 
 
-def _id(id: int) -> Chunk:
-    return Chunk("id", f"{id:02X}", f"id {id}")
+def _id(id: int) -> WireChunk:
+    return WireChunk("id", f"{id:02X}", f"id {id}")
 
 
 def _with_crc(
-    wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk]
-) -> Iterator[Line]:
+    wire: Wire, direction: str, id: int, data: bytes, sent: list[WireChunk]
+) -> Iterator[WireLine]:
     checked = _check(wire, direction, "i2c")
     if checked:
         checked_bytes = i2c_write(checked.link, id, data, True)
-        yield Line(
+        yield WireLine(
             "with CRC",
             [
                 *sent,
@@ -346,7 +351,7 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     if form is None:
         return None
     node = form.node_address
-    lines: list[Line] = []
+    lines: list[WireLine] = []
     if message.telecommand_id is not None:
         sent = CanMessage("telecommand", message.telecommand_id, 0, node, data)
         lines += _packets(wire, form, sent, "Telecommand")
@@ -365,7 +370,9 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     return Bus("CAN", note, lines) if lines else None
 
 
-def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator[Line]:
+def _packets(
+    wire: Wire, form: Can, message: CanMessage, label: str
+) -> Iterator[WireLine]:
     """Yield one packet, or the extended packets of a long message; of many, the first
     two and the last.
     """
@@ -375,7 +382,7 @@ def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator
     except (TooLongError, UnsupportedError):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
-        yield Line(
+        yield WireLine(
             label, [_identifier(wire, form, packets[0].id), *_data(packets[0].data)]
         )
         return
@@ -383,22 +390,26 @@ def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator
     for index, packet in enumerate(packets):
         if 2 <= index < len(packets) - 1:
             if index == 2:
-                yield Line(
+                yield WireLine(
                     "",
-                    [Chunk("note", f"… {count(len(packets) - 3, 'more packet')}", "")],
+                    [
+                        WireChunk(
+                            "note", f"… {count(len(packets) - 3, 'more packet')}", ""
+                        )
+                    ],
                 )
             continue
         left_at = form.extended.left_at
-        left = Chunk("crc", _hex(packet.data[left_at:]), "packets left")
+        left = WireChunk("crc", _hex(packet.data[left_at:]), "packets left")
         chunks = [
             _identifier(wire, form, packet.id),
             *_data(packet.data[:left_at]),
             left,
         ]
-        yield Line(f"{label} {index + 1}/{len(packets)}", chunks)
+        yield WireLine(f"{label} {index + 1}/{len(packets)}", chunks)
 
 
-def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
+def _identifier(wire: Wire, form: Can, id: int) -> WireChunk:
     parts = {
         role: id >> part.shift & (1 << part.bits) - 1
         for role, part in form.parts.items()
@@ -409,6 +420,6 @@ def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
     )
     addressing = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
     bits = sum(part.bits for part in form.parts.values())
-    return Chunk(
+    return WireChunk(
         "id", f"{id:0{(bits + 3) // 4}X}", f"{name}: type {parts['type']}, {addressing}"
     )

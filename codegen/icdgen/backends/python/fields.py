@@ -13,7 +13,7 @@ from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.accessors import Accessor
 from icdgen.describe.constants import Constant
-from icdgen.describe.derived import derived
+from icdgen.describe.derived import computation_of
 from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.integer_scale import IntegerScale
 from icdgen.icd import floats
@@ -233,7 +233,7 @@ def view_info(field: FieldDescription) -> str:
     if field.enum is not None:
         items.append(f"enum={PYTHON_NAMES.symbol(field.enum, 'class')}")
     if place.derived is not None:
-        operands = (operand for _, operand in derived(field).fields)
+        operands = (operand for _, operand in computation_of(field).fields)
         attributes = tuple(
             operand.physical_name if operand.is_scaled else operand.name
             for operand in operands

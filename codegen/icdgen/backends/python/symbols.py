@@ -11,7 +11,7 @@ from icdgen.backends.python import names
 from icdgen.describe import EnumDescription, FieldDescription, NodeDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
-from icdgen.describe.symbols import NamingPolicy, Part, Symbols
+from icdgen.describe.symbols import DescribedPart, NamingPolicy, Symbols
 from icdgen.icd.model import Message
 from icdgen.naming import DEVICES, camel, words
 
@@ -62,7 +62,7 @@ class PythonNames(NamingPolicy):
                     if text in uses:
                         yield Identifier(own, text, uses[text].format(text), None)
 
-    def in_node(self, node: NodeDescription, part: Part) -> Symbols:
+    def in_node(self, node: NodeDescription, part: DescribedPart) -> Symbols:
         # The module of a node also has the classes of included nodes.
         if part.node.name != node.name:
             yield self._class(part, node.name)
@@ -107,7 +107,7 @@ class PythonNames(NamingPolicy):
                         scope, text, names.IN_MESSAGE[text].format(text), None
                     )
 
-    def _class(self, part: Part, node: str) -> Identifier:
+    def _class(self, part: DescribedPart, node: str) -> Identifier:
         return part.identifier(
             f"module {self._package}.{node}", part.camel_name, "class"
         )
@@ -115,7 +115,7 @@ class PythonNames(NamingPolicy):
     def _files(self, node: str) -> str:
         return f"files of {self._package}.{node}"
 
-    def _members(self, part: Part) -> str:
+    def _members(self, part: DescribedPart) -> str:
         return f"members of {self._package}.{part.node.name}.{part.camel_name}"
 
 

@@ -120,13 +120,13 @@ def _functions() -> dict[str, object]:
         types,
     )
     from icdgen.describe.comments import presence_comment, sentence, words
-    from icdgen.describe.examples import example
+    from icdgen.describe.examples import example_of_message
     from icdgen.describe.numbers import byte_count, count_text
 
     functions = (
         accessors.accessors, accessors.curve_of, accessors.field_row, accessors.scale_of, accessors.texts, byte_count,
         conditional.presence_test, conditional.read_optional, conditional.write_optional, count_text,
-        elements.array_functions, example, examples.byte_array, examples.client_message, examples.is_short,
+        elements.array_functions, example_of_message, examples.byte_array, examples.client_message, examples.is_short,
         examples.read_example, examples.write_example, messages.bytes_of, messages.counted_text,
         messages.counter_value, messages.default, messages.derives, messages.element_bytes, messages.typed_constant,
         messages.fits, messages.flag_bytes, messages.imports, messages.literal, messages.overlay_value,

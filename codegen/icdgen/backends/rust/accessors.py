@@ -25,7 +25,7 @@ from icdgen.describe.description import Composite
 from icdgen.frozen import NamedTuple
 
 
-class AccessorCode(NamedTuple):
+class RustAccessorCode(NamedTuple):
     """Code of the getter of a physical number, and of the setter if ``raw`` is not
     empty.
     """
@@ -39,7 +39,7 @@ class AccessorCode(NamedTuple):
     refused: str = ""  # values that the setter refuses
 
 
-def accessors(field: FieldDescription) -> list[AccessorCode]:
+def accessors(field: FieldDescription) -> list[RustAccessorCode]:
     """Return the accessors of a field with a scale or calibration."""
     return [
         _code(accessor)
@@ -59,11 +59,11 @@ def texts(composite: Composite[Any]) -> list[Accessor]:
     return sorted(accessors, key=lambda accessor: not accessor.field.count)
 
 
-def _code(accessor: Accessor) -> AccessorCode:
+def _code(accessor: Accessor) -> RustAccessorCode:
     field = accessor.field
     if accessor.kind == "single":
         # A single has a getter only. The accessor in double precision sets the field.
-        return AccessorCode(accessor.name, "f32", accessor.comment, single(field))
+        return RustAccessorCode(accessor.name, "f32", accessor.comment, single(field))
     if accessor.kind == "integer":
         type, refused = f"i{accessor.integers.bits}", "if it does not fit"
         value, raw = (
@@ -79,14 +79,14 @@ def _code(accessor: Accessor) -> AccessorCode:
         )
         refused += " not finite"
     if not accessor.is_settable:
-        return AccessorCode(accessor.name, type, accessor.comment, value)
+        return RustAccessorCode(accessor.name, type, accessor.comment, value)
     of_element, no_element = (
         ("an element of ", ", or if there is no such element")
         if field.count
         else ("", "")
     )
     what = f"Set {of_element}{accessor.title} to the nearest raw value, ties to even"
-    return AccessorCode(
+    return RustAccessorCode(
         accessor.name,
         type,
         accessor.comment,

@@ -14,7 +14,7 @@ from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.arrays import loop_of
-from icdgen.describe.storage import holding
+from icdgen.describe.storage import storage_bits
 from icdgen.icd.pieces import Piece
 
 _ARRAY_WIDTH = 60
@@ -61,7 +61,7 @@ def reading(
             if byte in tables
             else f"bytes[{byte}] & {mask(1 << shift)} != 0"
         )
-    size = holding(place.bits)
+    size = storage_bits(place.bits)
     if field.is_word:
         return _whole(field, size)
     if len(row) == 1:

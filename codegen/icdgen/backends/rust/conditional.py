@@ -11,7 +11,7 @@ from icdgen.backends.rust import bits
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import assigned, string
 from icdgen.describe import FieldDescription
-from icdgen.describe.description import Need
+from icdgen.describe.description import PresenceCondition
 
 
 def presence_test(field: FieldDescription) -> str:
@@ -42,7 +42,7 @@ def read_optional(field: FieldDescription) -> str:
     )
 
 
-def _test(need: Need) -> str:
+def _test(need: PresenceCondition) -> str:
     """Return the test whether a field has one of the values."""
     field, member = need.field, f"self.{field_name(need.field)}"
     if field.model.type == "bool":

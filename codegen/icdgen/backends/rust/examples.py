@@ -10,7 +10,7 @@ from icdgen.backends.rust.names import ENUMS_MODULE, field_name, setter
 from icdgen.backends.rust.symbols import RUST_NAMES
 from icdgen.backends.rust.text import double, integer, mask
 from icdgen.describe import MessageDescription, NodeDescription
-from icdgen.describe.examples import Shown
+from icdgen.describe.examples import ExampleValue
 from icdgen.describe.links import LinkDescription
 
 _SHORT = 8
@@ -48,7 +48,7 @@ def client_message(
     return next(scaled, short[0] if short else None)
 
 
-def read_example(shown: Shown) -> str:
+def read_example(shown: ExampleValue) -> str:
     """Return the assertion that ``message`` has the value."""
     field = shown.field
     if shown.physical is not None:
@@ -61,7 +61,7 @@ def read_example(shown: Shown) -> str:
     )
 
 
-def write_example(shown: Shown) -> str:
+def write_example(shown: ExampleValue) -> str:
     """Return the statement that sets the value in ``command``."""
     field = shown.field
     # The first accessor is that of the double. Without a setter, the raw value is set.
@@ -72,7 +72,7 @@ def write_example(shown: Shown) -> str:
     return f"command.{field_name(field)} = {_value(shown)}{into};"
 
 
-def _value(shown: Shown) -> str:
+def _value(shown: ExampleValue) -> str:
     """Return the literal of the raw value."""
     field, raw = shown.field, shown.raw
     if field.enum is not None:

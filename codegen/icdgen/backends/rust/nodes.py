@@ -12,7 +12,7 @@ from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.lengths import LengthTest
 from icdgen.describe.nodes import MessageOfId
-from icdgen.describe.storage import holding
+from icdgen.describe.storage import storage_bits
 from icdgen.icd.model import Node
 
 
@@ -46,7 +46,7 @@ def about(node: NodeDescription) -> str:
 
 def typed(value: int) -> str:
     """Return type and literal of a number: ``u8 = 10``."""
-    return f"u{holding(value.bit_length())} = {integer(value)}"
+    return f"u{storage_bits(value.bit_length())} = {integer(value)}"
 
 
 def guarded(candidate: MessageOfId, path: str) -> str:

@@ -18,7 +18,7 @@ from icdgen.describe.contained import (
 from icdgen.frozen import NamedTuple
 
 
-class Part(NamedTuple):
+class ContainedConversion(NamedTuple):
     """Conversion to a contained message, or to an array of them if it is contained
     several times.
     """
@@ -30,7 +30,7 @@ class Part(NamedTuple):
     message: str
 
 
-def parts_of(message: MessageDescription) -> list[Part]:
+def parts_of(message: MessageDescription) -> list[ContainedConversion]:
     """Return the conversions of a composite message."""
     conversions = []
     for contained in contained_messages(message):
@@ -41,7 +41,7 @@ def parts_of(message: MessageDescription) -> list[Part]:
             tuple(_values(contained, message, begin)) for begin in contained.positions
         )
         conversions.append(
-            Part(
+            ContainedConversion(
                 part_comment(contained.message.model, contained.positions),
                 kind,
                 count > 1,

@@ -10,7 +10,7 @@ from icdgen.backends.rust.text import assigned, double, integer, mask, whole_dou
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.arithmetic import IntegerAccess
-from icdgen.describe.derived import derived
+from icdgen.describe.derived import computation_of
 from icdgen.describe.steps import Steps, wide_parts
 
 # A derived value computes in local variables. These must not shadow the functions of
@@ -146,7 +146,7 @@ def _quotient(steps: Steps, raw: str) -> str:
 
 def derived_statements(field: FieldDescription) -> Iterator[str]:
     """List the lines of the method of a derived value."""
-    computation = derived(field, _TAKEN)
+    computation = computation_of(field, _TAKEN)
     for name, operand in computation.fields:
         yield assigned(f"let {name} =", _as_double(operand), ";", STEP * 2)
     for name, value in computation.expressions(double, "power({}, {})"):

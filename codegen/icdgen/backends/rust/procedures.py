@@ -28,7 +28,7 @@ from icdgen.describe import Description
 from icdgen.describe.comments import sentence
 from icdgen.describe.links import LinkDescription
 from icdgen.describe.procedures import input_text, source_text
-from icdgen.describe.storage import holding
+from icdgen.describe.storage import storage_bits
 from icdgen.frozen import dataclass
 from icdgen.icd.buses import BUSES
 from icdgen.icd.enumeration import Enum
@@ -44,7 +44,7 @@ _OWN = ("memory", "on_block", "on_entry")
 
 
 @dataclass(frozen=True, slots=True)
-class Accessor:
+class OutputMethod:
     """Method that returns an output."""
 
     about: str
@@ -70,7 +70,7 @@ class ProcedureText:
     data: str  # the bytes to send
     memory: str
     into_sink: str
-    outputs: tuple[Accessor, ...]
+    outputs: tuple[OutputMethod, ...]
     memory_constant: str  # "" if the procedure has no blocks
     memory_bytes: str
     table: str
@@ -119,7 +119,7 @@ class NodeProcedures:
         for procedure in link.facts.procedures:
             # A node can have procedures of the nodes that it includes. Code that is the
             # same is generated once, in the module of the included node.
-            text = _Writer(procedure, link.facts, description, crate).text()
+            text = _ProcedureWriter(procedure, link.facts, description, crate).text()
             owners = (
                 name
                 for name in description.node(self.node).included
@@ -138,7 +138,7 @@ class NodeProcedures:
         return any("link::" in text.table for text in self.own)
 
 
-class _Writer:
+class _ProcedureWriter:
     """Writes the code of a procedure."""
 
     def __init__(
@@ -278,7 +278,9 @@ class _Writer:
         if each.enum is not None:
             type = self._enum_path(each.enum)
         else:
-            type = "bool" if each.is_flag else f"u{holding(each.most.bit_length())}"
+            type = (
+                "bool" if each.is_flag else f"u{storage_bits(each.most.bit_length())}"
+            )
         return f"Option<{type}>" if each.is_optional else type
 
     def _number(self, each: model.Input) -> str:
@@ -301,7 +303,7 @@ class _Writer:
         name = RUST_NAMES.symbol(described, "type")
         return f"crate::{described.node.name}::enums::{name}"
 
-    def _output(self, output: model.Output) -> Accessor:
+    def _output(self, output: model.Output) -> OutputMethod:
         value = f"self.0.output({output.register})"
         type, converted = "u32", value
         if output.enum is not None:
@@ -313,7 +315,7 @@ class _Writer:
         words = output.name.replace("_", " ")
         about = doc([f"Return the {words}; None until the procedure succeeded."], STEP)
         name = f"r#{output.name}" if output.name in RESERVED else output.name
-        return Accessor(about, name, type, converted)
+        return OutputMethod(about, name, type, converted)
 
     def _memory_bytes(self) -> str:
         blocks = self._procedure.blocks

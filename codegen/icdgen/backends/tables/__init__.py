@@ -15,7 +15,7 @@ from icdgen.backends.tables import rows
 from icdgen.icd.model import Icd
 
 
-class _Tables:
+class _TablesBackend:
     """Base class of both table formats.
 
     Cells can contain any name, so names never conflict.
@@ -30,7 +30,7 @@ class _Tables:
         return iter(())
 
 
-class CsvBackend(_Tables):
+class CsvBackend(_TablesBackend):
     """Backend of ``icdgen --lang csv``."""
 
     name = "csv"
@@ -45,7 +45,7 @@ class CsvBackend(_Tables):
                 yield PurePosixPath(f"{node.name}.csv"), text.getvalue()
 
 
-class XlsxBackend(_Tables):
+class XlsxBackend(_TablesBackend):
     """Backend of ``icdgen --lang xlsx``."""
 
     name = "xlsx"

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from icdgen import naming
-from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
+from icdgen.backends.xtce.places import BitRun, gaps, run_of, run_of_all
 from icdgen.backends.xtce.types import (
-    Type,
-    Types,
+    GeneratedType,
+    TypeBuilder,
     is_complete,
     most_first,
     type_of,
@@ -23,7 +23,7 @@ from icdgen.icd.layout import is_variable
 from icdgen.icd.model import TELECOMMAND, Special
 
 
-class Row(NamedTuple):
+class XtceParameter(NamedTuple):
     """Parameter or argument of XTCE."""
 
     name: str
@@ -37,11 +37,11 @@ class Row(NamedTuple):
     most: int = 0  # of a variable-length field: maximum number of elements or bytes
 
 
-class Entry(NamedTuple):
+class ContainerEntry(NamedTuple):
     """Entry of a container: a parameter, an argument, or a fixed value."""
 
     name: str
-    run: Run
+    run: BitRun
     is_array: bool = False
     # Condition of presence: raw values of other fields
     needs: tuple[tuple[str, tuple[int, ...]], ...] = ()
@@ -51,27 +51,27 @@ class Entry(NamedTuple):
 
 
 @dataclass
-class Base:
+class BaseContainer:
     """Base container of telemetry messages that share an id: the constants that
     distinguish them.
     """
 
     name: str
     id: int
-    entries: dict[str, Entry] = field(default_factory=dict)
+    entries: dict[str, ContainerEntry] = field(default_factory=dict)
 
 
 @dataclass
-class Frame:
+class MessageContainer:
     """Message in one direction."""
 
     name: str
     message: MessageDescription
     id: int
-    rows: list[Row] = field(default_factory=list)
-    entries: list[Entry] = field(default_factory=list)
+    rows: list[XtceParameter] = field(default_factory=list)
+    entries: list[ContainerEntry] = field(default_factory=list)
     size: int = 0  # bits of each frame, if optional entries leave it undefined
-    base: Base | None = None  # of a message that shares its id
+    base: BaseContainer | None = None  # of a message that shares its id
     # Constants of the base and their values
     discriminators: list[tuple[str, int]] = field(default_factory=list)
     # omitted content that XTCE cannot represent; a command with omissions is not
@@ -91,7 +91,7 @@ _PLAIN: dict[str, Any] = {
 }
 
 
-def _encoding_name(of: Type) -> str:
+def _encoding_name(of: GeneratedType) -> str:
     """Return the name of a type that has only an encoding."""
     if of.kind == "Binary":
         return f"bytes{of.bits // 8}"
@@ -104,38 +104,38 @@ def _camel(name: str) -> str:
 
 
 @dataclass
-class Frames:
+class ContainerBuilder:
     """Builder of the frames of a direction.
 
     Each begins with ``head`` bits before the data.
     """
 
     direction: str
-    types: Types
+    types: TypeBuilder
     head: int
     shared: dict[int, int]  # shared id -> number of bytes that all its frames have
     taken: set[str]  # names of containers or commands, and of parameters
     # Base containers of shared ids
-    bases: dict[int, Base] = field(default_factory=dict)
-    reserved: dict[str, Row] = field(default_factory=dict)
+    bases: dict[int, BaseContainer] = field(default_factory=dict)
+    reserved: dict[str, XtceParameter] = field(default_factory=dict)
 
-    def frame(self, message: MessageDescription) -> Frame:
+    def frame(self, message: MessageDescription) -> MessageContainer:
         """Return a message as a frame of the direction."""
         is_sent = self.direction == TELECOMMAND
         id = message.model.telecommand_id if is_sent else message.model.telemetry_id
         assert id is not None
-        frame = Frame(
+        frame = MessageContainer(
             unique(_camel(message.name) or "Message", self.taken), message, id
         )
         if id in self.shared and not is_sent:
             frame.base = self.bases.setdefault(
-                id, Base(unique(f"Id{id}", self.taken), id)
+                id, BaseContainer(unique(f"Id{id}", self.taken), id)
             )
         parts = tuple(_parts(message))
         for part in parts:
             self._give_name(frame, part)
         needed = {need.field.name for part in parts for need in part.needs}
-        entries: list[Entry] = []
+        entries: list[ContainerEntry] = []
         for part in parts:
             run = (
                 run_of_all(part.model.elements(), message.node)
@@ -180,8 +180,8 @@ class Frames:
         return frame
 
     def _variable_entry(
-        self, frame: Frame, last: VariablePartDescription
-    ) -> Entry | None:
+        self, frame: MessageContainer, last: VariablePartDescription
+    ) -> ContainerEntry | None:
         """Return the entry of a variable-length field with a counter.
 
         None if XTCE cannot represent it: structs, or no counting field.
@@ -206,13 +206,13 @@ class Frames:
             last, frame.names[last.counter.name], _type_name(frame, name), run.is_little
         )
         _add_row(frame, part, type_, last.model.most)
-        return Entry(
+        return ContainerEntry(
             name,
             run._replace(at=self.head + run.at),
             is_array=not part.model.is_bytes or bool(part.count),
         )
 
-    def _give_name(self, frame: Frame, part: FieldDescription) -> str:
+    def _give_name(self, frame: MessageContainer, part: FieldDescription) -> str:
         """Assign a name to a parameter or argument.
 
         Parameter names are global; argument names belong to their command.
@@ -228,7 +228,9 @@ class Frames:
         )
         return name
 
-    def _entry(self, frame: Frame, part: FieldDescription, run: Run) -> Entry:
+    def _entry(
+        self, frame: MessageContainer, part: FieldDescription, run: BitRun
+    ) -> ContainerEntry:
         name = frame.names[part.name]
         _add_row(
             frame, part, self.types.of(part, _type_name(frame, name), run.is_little)
@@ -239,7 +241,7 @@ class Frames:
             and run.at + run.bits <= 8 * self.shared[frame.id]
         ):
             self._add_discriminator(frame, frame.base, part.model.const, part, run)
-        return Entry(
+        return ContainerEntry(
             name,
             run._replace(at=self.head + run.at),
             bool(part.count),
@@ -247,7 +249,12 @@ class Frames:
         )
 
     def _add_discriminator(
-        self, frame: Frame, base: Base, value: int, part: FieldDescription, run: Run
+        self,
+        frame: MessageContainer,
+        base: BaseContainer,
+        value: int,
+        part: FieldDescription,
+        run: BitRun,
     ) -> None:
         """Add a constant to the base container, where consumers read it before they
         select the message.
@@ -262,41 +269,49 @@ class Frames:
         )
         self.reserved.setdefault(
             name,
-            Row(name, self.types.name(type_, _encoding_name(type_)), is_reserved=True),
+            XtceParameter(
+                name, self.types.name(type_, _encoding_name(type_)), is_reserved=True
+            ),
         )
-        base.entries[name] = Entry(name, run, at=self.head + run.at)
+        base.entries[name] = ContainerEntry(name, run, at=self.head + run.at)
         frame.discriminators.append((name, value))
 
     def _needs(
-        self, frame: Frame, part: FieldDescription
+        self, frame: MessageContainer, part: FieldDescription
     ) -> tuple[tuple[str, tuple[int, ...]], ...]:
         return tuple((frame.names[need.field.name], need.values) for need in part.needs)
 
-    def _constant(self, frame: Frame, part: FieldDescription) -> Iterator[Entry]:
+    def _constant(
+        self, frame: MessageContainer, part: FieldDescription
+    ) -> Iterator[ContainerEntry]:
         """Yield fixed values for the bits of a constant of a command, adjacent bits
         joined.
         """
         value = part.model.const or 0
-        runs: list[tuple[Run, int]] = []
+        runs: list[tuple[BitRun, int]] = []
         for piece in part.pieces:
-            run = Run(
+            run = BitRun(
                 self.head + 8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits
             )
             here = value >> piece.at & piece.low_mask
             if runs and runs[-1][0].at + runs[-1][0].bits == run.at:
                 before, above = runs.pop()
                 run, here = (
-                    Run(before.at, before.bits + run.bits),
+                    BitRun(before.at, before.bits + run.bits),
                     above << run.bits | here,
                 )
             runs.append((run, here))
         needs = self._needs(frame, part)
         return (
-            Entry(part.model.name, run, needs=needs, value=_hex(here, run.bits))
+            ContainerEntry(
+                part.model.name, run, needs=needs, value=_hex(here, run.bits)
+            )
             for run, here in runs
         )
 
-    def _lay_out(self, frame: Frame, entries: list[Entry], end: int) -> None:
+    def _lay_out(
+        self, frame: MessageContainer, entries: list[ContainerEntry], end: int
+    ) -> None:
         """Assign positions to entries, and add entries for reserved bits.
 
         If possible, each entry follows the previous one.
@@ -324,34 +339,38 @@ class Frames:
         frame.entries = [entry._replace(at=entry.run.at) for entry in entries]
         frame.size = end if any(entry.needs for entry in entries) else 0
 
-    def _reserved(self, run: Run) -> Entry:
+    def _reserved(self, run: BitRun) -> ContainerEntry:
         if self.direction == TELECOMMAND:
-            return Entry("", run, value=_hex(0, run.bits))
+            return ContainerEntry("", run, value=_hex(0, run.bits))
         name = f"Reserved{run.bits}"
         is_wide = run.bits > 64
         type_ = (
-            Type("Binary", run.bits)
+            GeneratedType("Binary", run.bits)
             if is_wide
-            else Type("Integer", run.bits, "unsigned", most_first(run.bits))
+            else GeneratedType("Integer", run.bits, "unsigned", most_first(run.bits))
         )
         self.reserved.setdefault(
             name,
-            Row(name, self.types.name(type_, _encoding_name(type_)), is_reserved=True),
+            XtceParameter(
+                name, self.types.name(type_, _encoding_name(type_)), is_reserved=True
+            ),
         )
-        return Entry(name, run)
+        return ContainerEntry(name, run)
 
 
-def _type_name(frame: Frame, name: str) -> str:
+def _type_name(frame: MessageContainer, name: str) -> str:
     """Return the name of a type that only one parameter or argument uses."""
     return name if name.startswith(frame.name) else f"{frame.name}_{name}"
 
 
-def _add_row(frame: Frame, part: FieldDescription, type_: str, most: int = 0) -> None:
+def _add_row(
+    frame: MessageContainer, part: FieldDescription, type_: str, most: int = 0
+) -> None:
     """Declare the parameter or argument of a field, and note its omissions."""
     model = part.model
     name, special = frame.names[part.name], model.special
     frame.rows.append(
-        Row(
+        XtceParameter(
             name,
             type_,
             model.name,

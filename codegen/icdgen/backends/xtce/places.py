@@ -11,7 +11,7 @@ from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import NodePlace
 
 
-class Run(NamedTuple):
+class BitRun(NamedTuple):
     """Consecutive bits of a frame.
 
     ``at`` counts from the most significant bit of each byte. For a number with the
@@ -31,12 +31,12 @@ class Run(NamedTuple):
         return not self.is_little or (self.at % 8 == 0 and self.bits % 8 == 0)
 
 
-def run_of(field: NodePlace, node: Node) -> Run | None:
+def run_of(field: NodePlace, node: Node) -> BitRun | None:
     """Return the bits of a field in the frame; None if XTCE cannot represent their
     order.
     """
     if field.is_bytes:
-        return Run(field.at, field.bits)
+        return BitRun(field.at, field.bits)
     orders = field.orders_in_effect(node.orders)
     pieces = sorted(
         pieces_at(field.at, field.bits, orders.byte, orders.bit),
@@ -50,13 +50,13 @@ def run_of(field: NodePlace, node: Node) -> Run | None:
         ]
     )
     if falling is not None:
-        return Run(falling, field.bits)
+        return BitRun(falling, field.bits)
     # Least significant bit first.
     rising = _joined([(8 * piece.byte + piece.shift, piece.bits) for piece in pieces])
-    return None if rising is None else Run(rising, field.bits, is_little=True)
+    return None if rising is None else BitRun(rising, field.bits, is_little=True)
 
 
-def run_of_all(fields: Iterable[NodePlace], node: Node) -> Run | None:
+def run_of_all(fields: Iterable[NodePlace], node: Node) -> BitRun | None:
     """Return the bits of all elements of an array; None if they are not consecutive."""
     runs = [run_of(field, node) for field in fields]
     usual_runs = [
@@ -74,7 +74,7 @@ def run_of_all(fields: Iterable[NodePlace], node: Node) -> Run | None:
     return (
         None
         if start is None
-        else Run(start, sum(run.bits for run in usual_runs), usual_runs[0].is_little)
+        else BitRun(start, sum(run.bits for run in usual_runs), usual_runs[0].is_little)
     )
 
 
@@ -87,15 +87,15 @@ def _joined(places: Sequence[tuple[int, int]]) -> int | None:
     )
 
 
-def gaps(taken: Iterable[Run], start: int, end: int) -> list[Run]:
+def gaps(taken: Iterable[BitRun], start: int, end: int) -> list[BitRun]:
     """Return the unused bits from ``start`` to ``end``.
 
     Gaps of more than 64 bits are split at byte boundaries.
     """
     unused, at = [], start
-    for run in (*sorted(taken), Run(end, 0)):
+    for run in (*sorted(taken), BitRun(end, 0)):
         for upto in _cuts(at, run.at):
-            unused.append(Run(at, upto - at))
+            unused.append(BitRun(at, upto - at))
             at = upto
         at = max(at, run.at + run.bits)
     return unused

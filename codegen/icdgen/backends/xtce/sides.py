@@ -5,9 +5,15 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from icdgen.backends.xtce.frames import Base, Entry, Frame, Frames, Row
-from icdgen.backends.xtce.places import Run
-from icdgen.backends.xtce.types import Type, Types, most_first
+from icdgen.backends.xtce.frames import (
+    BaseContainer,
+    ContainerBuilder,
+    ContainerEntry,
+    MessageContainer,
+    XtceParameter,
+)
+from icdgen.backends.xtce.places import BitRun
+from icdgen.backends.xtce.types import GeneratedType, TypeBuilder, most_first
 from icdgen.describe import NodeDescription
 from icdgen.frozen import NamedTuple
 from icdgen.icd.model import TELECOMMAND, Icd
@@ -16,8 +22,8 @@ _UNPRINTABLE = re.compile("[^ -~\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]+"
 
 
 _PACKET = {
-    "Version": Run(0, 3), "Type": Run(3, 1), "SecondaryHeader": Run(4, 1), "Apid": Run(5, 11),
-    "SequenceFlags": Run(16, 2), "SequenceCount": Run(18, 14), "Length": Run(32, 16),
+    "Version": BitRun(0, 3), "Type": BitRun(3, 1), "SecondaryHeader": BitRun(4, 1), "Apid": BitRun(5, 11),
+    "SequenceFlags": BitRun(16, 2), "SequenceCount": BitRun(18, 14), "Length": BitRun(32, 16),
 }  # fmt: skip
 # Other fields are 0; the sender sets counter and length
 _IN_COMMANDS = {"Type": 1, "SequenceFlags": 3}
@@ -31,22 +37,22 @@ class Head(NamedTuple):
 
     id: str
     bits: int
-    rows: tuple[Row, ...]
-    entries: tuple[Entry, ...]
+    rows: tuple[XtceParameter, ...]
+    entries: tuple[ContainerEntry, ...]
 
 
-class Side(NamedTuple):
+class DirectionContent(NamedTuple):
     """Telemetry or telecommands of a file."""
 
-    types: dict[str, Type]  # by name
+    types: dict[str, GeneratedType]  # by name
     head: Head
-    rows: list[Row]  # parameters; arguments belong to their commands
-    frames: list[Frame]
-    bases: list[Base]  # of frames that share an id
+    rows: list[XtceParameter]  # parameters; arguments belong to their commands
+    frames: list[MessageContainer]
+    bases: list[BaseContainer]  # of frames that share an id
     notes: list[str]
 
 
-def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
+def side(icd: Icd, node: NodeDescription, direction: str) -> DirectionContent | None:
     """Return the content of a direction; None if the node has no messages in it."""
     messages = next(
         (
@@ -58,7 +64,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
     )
     if not messages:
         return None
-    types = Types()
+    types = TypeBuilder()
     id_bits = max(
         node.model.id_bits,
         *(
@@ -75,7 +81,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
         for entry in node.ids(direction)
         if entry.is_shared
     }
-    maker = Frames(
+    maker = ContainerBuilder(
         direction,
         types,
         head.bits,
@@ -102,23 +108,27 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
         *(row for frame in frames for row in frame.rows),
     ]
     named = {name: type_ for type_, name in types.names.items()}
-    return Side(named, head, rows, frames, list(maker.bases.values()), notes)
+    return DirectionContent(
+        named, head, rows, frames, list(maker.bases.values()), notes
+    )
 
 
-def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) -> Head:
+def _head(
+    id_bits: int, protocol: dict[str, Any], direction: str, types: TypeBuilder
+) -> Head:
     """Return the header of all messages of a direction."""
     header = protocol.get("link", {}).get("header", ())
     # The header of CCSDS 133.0-B-2 is recognized by the positions of its fields.
     is_packet = [(row.get("at"), row.get("bits")) for row in header] == [
         run[:2] for run in _PACKET.values()
     ]
-    places = _PACKET if is_packet else {"Id": Run(0, -(-id_bits // 8) * 8)}
+    places = _PACKET if is_packet else {"Id": BitRun(0, -(-id_bits // 8) * 8)}
     id = "Apid" if is_packet else "Id"
     rows, entries = [], []
     for name, run in places.items():
         if direction == TELECOMMAND and name != id:
             entries.append(
-                Entry(
+                ContainerEntry(
                     name,
                     run,
                     value=f"{_IN_COMMANDS.get(name, 0):0{-(-run.bits // 8) * 2}X}",
@@ -126,11 +136,11 @@ def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) 
             )
             continue
         type_ = types.name(
-            Type("Integer", run.bits, "unsigned", most_first(run.bits)),
+            GeneratedType("Integer", run.bits, "unsigned", most_first(run.bits)),
             f"uint{run.bits}",
         )
-        rows.append(Row(name, type_))
-        entries.append(Entry(name, run))
+        rows.append(XtceParameter(name, type_))
+        entries.append(ContainerEntry(name, run))
     return Head(
         id, sum(run.bits for run in places.values()), tuple(rows), tuple(entries)
     )

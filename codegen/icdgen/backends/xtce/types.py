@@ -9,7 +9,7 @@ from math import ceil, floor
 from typing import Any
 
 from icdgen.describe import FieldDescription
-from icdgen.describe.bounds import bounds
+from icdgen.describe.bounds import bounds_of_limits
 from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.numbers import exact_text, point_text
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
@@ -30,7 +30,7 @@ _KINDS = {
 
 
 @dataclass(frozen=True)
-class Type:
+class GeneratedType:
     """Type of parameters or arguments.
 
     All attributes are text for the template, except numbers of bits and elements.
@@ -72,13 +72,13 @@ def unique(wanted: str, taken: set[str]) -> str:
 
 
 @dataclass
-class Types:
+class TypeBuilder:
     """Types of one set of a file."""
 
-    names: dict[Type, str] = field(default_factory=dict)
+    names: dict[GeneratedType, str] = field(default_factory=dict)
     taken: set[str] = field(default_factory=set)
 
-    def name(self, of: Type, wanted: str) -> str:
+    def name(self, of: GeneratedType, wanted: str) -> str:
         """Return the name of a type: the existing one, otherwise ``wanted`` if it is
         free.
         """
@@ -92,7 +92,9 @@ class Types:
         return (
             name
             if not field.count
-            else self.name(Type("Array", of=name, count=field.count), f"{wanted}_Array")
+            else self.name(
+                GeneratedType("Array", of=name, count=field.count), f"{wanted}_Array"
+            )
         )
 
     def of_open(
@@ -103,7 +105,7 @@ class Types:
             variable_type = replace(type_of(tail.field.model), bits=0)
         else:
             variable_type, wanted = (
-                Type("Array", of=self._element(tail.field, wanted, is_little)),
+                GeneratedType("Array", of=self._element(tail.field, wanted, is_little)),
                 f"{wanted}_Array",
             )
         return self.name(
@@ -121,7 +123,7 @@ class Types:
         return self.name(element, _usual_name(field, element) or wanted)
 
 
-def type_of(field: NodePlace, is_little: bool = False) -> Type:
+def type_of(field: NodePlace, is_little: bool = False) -> GeneratedType:
     """Return the type of a field; for an array, of an element."""
     order = (
         ""
@@ -137,7 +139,7 @@ def type_of(field: NodePlace, is_little: bool = False) -> Type:
         if field.is_signed
         else "unsigned"
     )
-    field_type = Type(
+    field_type = GeneratedType(
         _KINDS[field.type], field.bits, encoding, order, field.unit_symbol
     )
     if field.enum is not None:
@@ -160,7 +162,7 @@ def most_first(bits: int) -> str:
     return "mostSignificantByteFirst" if bits > 8 else ""
 
 
-def _usual_name(field: FieldDescription, of: Type) -> str:
+def _usual_name(field: FieldDescription, of: GeneratedType) -> str:
     """Return the name of an enumeration or of a type with only an encoding; empty for
     other types.
     """
@@ -213,7 +215,7 @@ def _limits(field: NodePlace) -> tuple[tuple[str, str], ...]:
 
     XTCE permits only inclusive limits for integers.
     """
-    limits = {bound.key: bound.value for bound in bounds(field.limits)}
+    limits = {bound.key: bound.value for bound in bounds_of_limits(field.limits)}
     if field.type == "float" or field.has_formula:
         return tuple((_KEYS[key], exact_text(value)) for key, value in limits.items())
     least = [

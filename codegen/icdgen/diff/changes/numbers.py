@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
-from icdgen.describe.bounds import KEYS, bounds
+from icdgen.describe.bounds import KEYS, bounds_of_limits
 from icdgen.describe.numbers import point_text
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair, differing
@@ -155,7 +155,8 @@ def special_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 def _limits(field: Line) -> str:
     return " and ".join(
-        f"{bound.kind.sign} {number(bound.value)}" for bound in bounds(field.limits)
+        f"{bound.kind.sign} {number(bound.value)}"
+        for bound in bounds_of_limits(field.limits)
     )
 
 
