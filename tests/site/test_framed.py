@@ -63,7 +63,7 @@ def traffic(icd, count: int) -> list[str]:
 @pytest.mark.parametrize("name", NAMES)
 def test_what_is_pasted_is_what_the_command_line_says_it_is(name):
     icd = icd_of(name)
-    index = json.loads(json.dumps(recognition.index(Relations(icd))))
+    index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
     texts = traffic(icd, 200)
     shown = [
         one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
@@ -78,7 +78,7 @@ def test_what_is_pasted_is_what_the_command_line_says_it_is(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_no_piece_of_a_golden_frame_is_decoded_on_the_page_either(name):
     icd = icd_of(name)
-    index = json.loads(json.dumps(recognition.index(Relations(icd))))
+    index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
     sent_frames = [packet for _, packet in packets(icd)]
     cuts = [cut.hex() for packet in sent_frames for cut in prefixes(packet, 20)]
     assert [
@@ -127,7 +127,7 @@ def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(
     tmp_path,
 ):
     motor = motor_of(MOTOR, tmp_path)
-    index = json.loads(json.dumps(recognition.index(Relations(motor))))
+    index = json.loads(json.dumps(recognition.frame_index(Relations(motor))))
     texts = [
         "a55a03020186",
         POWER[:-2] + "0f",
@@ -155,7 +155,7 @@ def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(
 
 def test_the_page_reads_packets_of_both_directions_and_reports_the_others(tmp_path):
     motor = motor_of(MOTOR, tmp_path)
-    index = json.loads(json.dumps(recognition.index(Relations(motor))))
+    index = json.loads(json.dumps(recognition.frame_index(Relations(motor))))
     text = SPEED + "a55a090009" + POWER + "a55a03"
     (shown,) = on_the_page(index, [text])
     assert shown == on_the_command_line(motor, text) and len(shown) == 2

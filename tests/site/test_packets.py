@@ -174,7 +174,7 @@ def site(tmp_path_factory) -> Path:
 
 
 def index_of(icd) -> dict:
-    return json.loads(json.dumps(recognition.index(Relations(icd))))
+    return json.loads(json.dumps(recognition.frame_index(Relations(icd))))
 
 
 JBD = {

@@ -98,7 +98,7 @@ def streams(icd) -> list[str]:
 
 @pytest.fixture(scope="module")
 def index(shipped) -> dict:
-    return json.loads(json.dumps(recognition.index(Relations(shipped))))
+    return json.loads(json.dumps(recognition.frame_index(Relations(shipped))))
 
 
 def test_every_way_to_paste_a_frame_leads_to_the_same_message(shipped, index):
@@ -135,7 +135,7 @@ def test_identifiers_that_are_ids_are_read_as_the_command_line_reads_them(tmp_pa
     texts += [f"t1008{DRIVE}", "100#R", f"100#{DRIVE}\n7FF#00\n101#{BRAKE}"]
     expected = [on_the_command_line(icd, text) for text in texts]
     shown = on_the_page(
-        json.loads(json.dumps(recognition.index(Relations(icd)))), texts
+        json.loads(json.dumps(recognition.frame_index(Relations(icd)))), texts
     )
     assert [one if not isinstance(one, dict) else None for one in shown] == expected
     assert (
@@ -167,7 +167,7 @@ def test_the_page_keeps_the_times_of_candump_and_reports_packets_that_no_message
     tmp_path,
 ):
     icd = train(tmp_path)
-    index = json.loads(json.dumps(recognition.index(Relations(icd))))
+    index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
     code = f"""
         const {{ recognize }} = require({json.dumps(str(SCRIPT))});
         const [index, text] = JSON.parse(require("node:fs").readFileSync(0, "utf8"));

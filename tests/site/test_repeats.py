@@ -85,9 +85,9 @@ def test_each_field_stands_in_the_tables_once_and_can_be_decoded(icds):
             for message in node.messages:
                 shown = relations.links.repeats(message).fields
                 rows = fields.rows(message, relations.links)
-                parts = sections.bands(relations, message) or sections.shares(
-                    message, relations.links.repeats(message)
-                )
+                parts = sections.part_sections(
+                    relations, message
+                ) or sections.field_sections(message, relations.links.repeats(message))
                 keys = [
                     one.key
                     for cells in fields.split(rows, parts)
@@ -119,12 +119,14 @@ def test_what_repeats_has_one_section_with_how_often_it_is_there(icds):
     ublox = next(icd for icd in icds if icd.nodes[0].name == "ublox")
     titles = [
         one.title
-        for one in sections.bands(Relations(ublox), message_of(ublox, "NAV-SAT"))
+        for one in sections.part_sections(
+            Relations(ublox), message_of(ublox, "NAV-SAT")
+        )
     ]
     assert titles == ["Bytes 0 to 7", "satellites × 0 to 64"]
     nested = next(icd for icd in icds if icd.nodes[0].name == "nested")
     relations, message = Relations(nested), message_of(nested, "State")
-    parts = sections.bands(relations, message)
+    parts = sections.part_sections(relations, message)
     assert [(one.title, one.first, one.end) for one in parts] == [
         ("Byte 0", 0, 1),
         ("Channels × 3", 1, 2),

@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 
 from icdgen.backends import Identifier
 from icdgen.backends.html.plan import enum_plan, message_plan
-from icdgen.backends.html.recognition import numbers_of
+from icdgen.backends.html.recognition import message_numbers
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.variants import ids_of
 from icdgen.render import Renderer
@@ -57,8 +57,8 @@ def _plans(icd: Icd) -> dict[str, object]:
                 },
                 "enums": [enum_plan(enum) for enum in node.enums],
                 "ways": [
-                    numbers_of(known.telecommand, places),
-                    numbers_of(known.telemetry, places),
+                    message_numbers(known.telecommand, places),
+                    message_numbers(known.telemetry, places),
                 ],
             }
         )

@@ -15,7 +15,7 @@ from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import CRATE, names
-from icdgen.backends.rust.links import longest
+from icdgen.backends.rust.links import longest_buffer
 from icdgen.backends.rust.names import field_name
 from icdgen.describe import (
     FieldDescription,
@@ -217,7 +217,7 @@ class RustTesteeBackend:
                 with_procedures=[
                     name for name, link in known.items() if link.facts.procedures
                 ],
-                longest=max(map(longest, known.values()), default=0),
+                longest=max(map(longest_buffer, known.values()), default=0),
                 **common,
             ),
         )

@@ -79,7 +79,7 @@ def of_line(
     """
     scalar = scalar_of(node)
     if isinstance(node, Derived):
-        yield from _derived(node)
+        yield from _derived_changes(node)
         return
     behind = layout.inner_parts and node.at >= 8 * layout.inner_parts[0].begin
     if behind or any(node is part for part in layout.sequence):
@@ -87,9 +87,9 @@ def of_line(
         # attributes of a field.
         if scalar is not None and not scalar.is_bytes:
             yield from (
-                *_types(node, scalar),
-                *_formulas(node, scalar),
-                *_values(node, scalar),
+                *_type_changes(node, scalar),
+                *_formula_changes(node, scalar),
+                *_value_changes(node, scalar),
             )
         return
     counters = {part.counter for part in layout.counted_parts}
@@ -98,7 +98,7 @@ def of_line(
     }
     if node.name in counters | conditions:
         return  # other parts of the frame depend on its value
-    yield from _of_conditions(node, layout)
+    yield from _condition_changes(node, layout)
     size, bits, source = 8 * layout.length, stride(node), node.source
     count = node.size if isinstance(node, Array) and isinstance(node.size, int) else 1
     # One bit is an error within a byte, eight bits an error in counting bytes. Structs
@@ -107,29 +107,29 @@ def of_line(
         # A field outside of the frame would be reported by `icdgen check`.
         if 0 <= node.at + step <= size - bits * count:
             yield (
-                _step("offset", source, "at", node.at, step),
+                _change_by("offset", source, "at", node.at, step),
                 with_attributes(node, at=node.at + step),
             )
     for step in _WIDER.get(scalar.type, ()) if scalar else ():
         if 0 < (bits + step) * count <= size - node.at:
             yield (
-                _step("width", source, "bits", bits, step),
+                _change_by("width", source, "bits", bits, step),
                 with_attributes(node, bits=bits + step),
             )
     for step in (-1, 1) if isinstance(node, Array) else ():
         if 0 < count + step <= (size - node.at) // bits:
             yield (
-                _step("count", source, "count", count, step),
+                _change_by("count", source, "count", count, step),
                 with_attributes(node, size=count + step),
             )
     if scalar is not None:
-        yield from _types(node, scalar)
-    yield from _of_orders(node, layout.orders.within(orders))
+        yield from _type_changes(node, scalar)
+    yield from _order_changes(node, layout.orders.within(orders))
     if scalar is not None:
-        yield from (*_formulas(node, scalar), *_values(node, scalar))
+        yield from (*_formula_changes(node, scalar), *_value_changes(node, scalar))
 
 
-def _derived(node: Derived) -> Iterator[tuple[SingleChange, LayoutNode]]:
+def _derived_changes(node: Derived) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of the formula of a derived value."""
     old, formula = node.derivation, node.scalar.formula
     for text in formulas(formula):
@@ -141,7 +141,7 @@ def _derived(node: Derived) -> Iterator[tuple[SingleChange, LayoutNode]]:
                 yield change, with_attributes(node, formula=text, derivation=new)
 
 
-def _of_conditions(
+def _condition_changes(
     node: LayoutNode, layout: Layout
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of a required value of another field, if the ICD states it as a
@@ -162,13 +162,13 @@ def _of_conditions(
                 continue
             now = replace(condition, values=(value + step,))
             present_if = (*node.present_if[:place], now, *node.present_if[place + 1 :])
-            change = _step(
+            change = _change_by(
                 "condition", node.source["when"], condition.field, value, step
             )
             yield change, with_attributes(node, present_if=present_if)
 
 
-def _of_orders(
+def _order_changes(
     node: LayoutNode, around: Orders
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of the orders of a line.
@@ -201,14 +201,14 @@ def _of_orders(
             )
 
 
-def _types(
+def _type_changes(
     node: LayoutNode, scalar: Scalar
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
     source = node.source
     for kind in (
         OTHER_TYPES[scalar.type] if "type" in source and "enum" not in source else ()
     ):
-        if _can_be(node, scalar, kind):
+        if _can_have_type(node, scalar, kind):
             # Formulas of integers are exact scales, formulas of floats are not.
             scale, curve = calibration(scalar.formula, kind)
             if "points" in source and kind in ("uint", "int", "float"):
@@ -217,12 +217,12 @@ def _types(
             yield change, with_attributes(node, type=kind, scale=scale, curve=curve)
 
 
-def _formulas(
+def _formula_changes(
     node: LayoutNode, scalar: Scalar
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of the calibration."""
     if scalar.curve is not None and scalar.curve.points:
-        yield from _tables(node, scalar, scalar.curve)
+        yield from _table_changes(node, scalar, scalar.curve)
         return
     for text in formulas(scalar.formula) if scalar.has_formula else ():
         scale, curve = calibration(text, scalar.type)
@@ -233,7 +233,7 @@ def _formulas(
             yield change, with_attributes(node, scale=scale, curve=curve)
 
 
-def _tables(
+def _table_changes(
     node: LayoutNode, scalar: Scalar, old: Curve
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
     source, printed, outside = (
@@ -271,13 +271,13 @@ def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
         yield [*points[:index], point, *points[index + 1 :]]
 
 
-def _values(
+def _value_changes(
     node: LayoutNode, scalar: Scalar
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
     """Yield the changes of constants, special values and limits."""
     if scalar.const is not None:
         for step in (-1, 1):
-            change = _step("const", node.source, "const", scalar.const, step)
+            change = _change_by("const", node.source, "const", scalar.const, step)
             yield change, with_attributes(node, const=scalar.const + step)
     for index, old in enumerate(scalar.special):
         source = node.source["special"][index]
@@ -299,7 +299,7 @@ def _values(
         if value is None:
             continue
         for step in (-1, 1):
-            change = _step("limit", node.source, key, node.source[key], step)
+            change = _change_by("limit", node.source, key, node.source[key], step)
             yield (
                 change,
                 with_attributes(node, limits=replace(limits, **{key: value + step})),
@@ -318,20 +318,22 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[SingleChange, Mes
                 if key == "length":
                     layout = replace(message.layout, length=value + step)
                     yield (
-                        _step("length", source, key, value, step),
+                        _change_by("length", source, key, value, step),
                         replace(message, layout=layout),
                     )
                 else:
                     yield (
-                        _step("id", source, key, value, step),
-                        _with(message, key, value + step),
+                        _change_by("id", source, key, value, step),
+                        _with_value(message, key, value + step),
                     )
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
         if key in source:
             now = _OTHER_ORDER[source[key]]
             orders = replace(message.layout.orders, **{name: now})
             layout = replace(message.layout, orders=orders)
-            if _places(message.layout, node.orders) != _places(layout, node.orders):
+            if _bits_of_numbers(message.layout, node.orders) != _bits_of_numbers(
+                layout, node.orders
+            ):
                 yield (
                     SingleChange(key.replace("_", " "), source, key, source[key], now),
                     replace(message, layout=layout),
@@ -345,15 +347,16 @@ def of_node(node: Node) -> Iterator[tuple[SingleChange, Node]]:
         value = getattr(node, key)
         for step in (-1, 1) if value is not None else ():
             yield (
-                _step("node", source, key, value, step),
-                _with(node, key, value + step),
+                _change_by("node", source, key, value, step),
+                _with_value(node, key, value + step),
             )
     for key in ("byte_order", "bit_order"):
         now = _OTHER_ORDER[getattr(node, key)]
-        other = _with(node, key, now)
+        other = _with_value(node, key, now)
         layouts = [message.layout for message in node.messages]
         if any(
-            _places(layout, node.orders) != _places(layout, other.orders)
+            _bits_of_numbers(layout, node.orders)
+            != _bits_of_numbers(layout, other.orders)
             for layout in layouts
         ):
             yield (
@@ -372,11 +375,11 @@ def of_enum(enum: Enum) -> Iterator[tuple[SingleChange, Enum]]:
             if value is not None and not _is_taken(value + step, member, enum):
                 members = (
                     *enum.members[:index],
-                    _with(member, key, value + step),
+                    _with_value(member, key, value + step),
                     *enum.members[index + 1 :],
                 )
                 yield (
-                    _step("enum value", member.source, key, value, step),
+                    _change_by("enum value", member.source, key, value, step),
                     replace(enum, members=members),
                 )
 
@@ -413,11 +416,13 @@ def formulas(text: str) -> Iterator[str]:
     yield f"{text} + 1"
 
 
-def _with(thing: T, key: str, value: Any) -> T:
+def _with_value(thing: T, key: str, value: Any) -> T:
     return replace(thing, **{key: value})
 
 
-def _step(kind: str, source: Map, key: str, value: float, step: int) -> SingleChange:
+def _change_by(
+    kind: str, source: Map, key: str, value: float, step: int
+) -> SingleChange:
     """Return the change of a value by ``step``.
 
     ``value``: value of the model. If the line has another value, such as a position
@@ -428,7 +433,7 @@ def _step(kind: str, source: Map, key: str, value: float, step: int) -> SingleCh
     return SingleChange(kind, source, key, old, old + step)
 
 
-def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
+def _can_have_type(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
     """Return whether a scalar of this width, with the other keys of its line, can have
     a type.
     """
@@ -447,7 +452,7 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
     return not isinstance(node, Array) and scalar.bits % 8 == node.at % 8 == 0
 
 
-def _places(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
+def _bits_of_numbers(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
     """Return the bits of each number in the longest frame."""
     fields = frame_fields(layout, orders)
     numbers = (

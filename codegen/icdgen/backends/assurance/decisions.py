@@ -30,7 +30,7 @@ _OF_MISSING = (
 )
 
 
-def papers(
+def decision_pages(
     icd: Icd, elements: Sequence[Element], files: Files
 ) -> Iterator[tuple[ReportPage, list[list[Cell]], tuple[str, ...]]]:
     """Yield each report with content: its page, the rows of its table, and its columns."""
@@ -150,10 +150,10 @@ def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list
 def assumptions(icd: Icd, files: Files) -> Iterator[list[Cell]]:
     """Yield a row for each assumed key of a section or message."""
     for node in icd.nodes:
-        for path, owner in _owners(node.source):
+        for path, owner in _parts_with_assumptions(node.source):
             for key, why in owner["assumptions"].items():
                 value = owner.get(key)
-                shown = "" if isinstance(value, dict | list) else _shown(value)
+                shown = "" if isinstance(value, dict | list) else _value_text(value)
                 yield [
                     node.name,
                     path,
@@ -180,24 +180,24 @@ def _sections(node: Node, erratum: Erratum) -> Iterator[Map]:
             yield from section(node.source, str(place["section"]))
 
 
-def _owners(tree: object, path: str = "") -> Iterator[tuple[str, Map]]:
+def _parts_with_assumptions(tree: object, path: str = "") -> Iterator[tuple[str, Map]]:
     """Yield each section or message with assumptions, with its name or path."""
     if isinstance(tree, Map):
         if isinstance(tree.get("assumptions"), Map):
             yield str(tree.get("name", path)), tree
         for key, value in tree.items():
             if key != "assumptions":
-                yield from _owners(value, f"{path}.{key}".lstrip("."))
+                yield from _parts_with_assumptions(value, f"{path}.{key}".lstrip("."))
     elif isinstance(tree, Seq):
         for index, value in enumerate(tree):
-            yield from _owners(value, f"{path}.{index}")
+            yield from _parts_with_assumptions(value, f"{path}.{index}")
 
 
 def _pairs(pairs: tuple[tuple[str, object], ...]) -> list[str]:
-    return [f"{key}: {_shown(value)}" for key, value in pairs]
+    return [f"{key}: {_value_text(value)}" for key, value in pairs]
 
 
-def _shown(value: object) -> str:
+def _value_text(value: object) -> str:
     return (
         "(absent)"
         if value is None

@@ -62,7 +62,9 @@ def code_digest(files: Iterable[tuple[PurePosixPath, str | bytes]]) -> str:
     return sha256("".join(lines).encode()).hexdigest()
 
 
-def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurement]:
+def read_measurements(
+    folder: Path, icd: Icd, code_of: Callable[[str], str]
+) -> list[Measurement]:
     """Return the measurements of a folder, sorted by name.
 
     ``code_of``: function that returns the current digest of the code of a language.
@@ -80,7 +82,7 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
         raise UserError(text, "--measured names a folder of measurements") from None
     measurements = []
     for path in paths:
-        data = _data(path)
+        data = _checked_content(path)
         # A measurement of other code would be misleading evidence.
         ours = ("ICDs: the digest", data["icd"], icd_digest(icd))
         code = (
@@ -111,7 +113,7 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
     return sorted(measurements, key=lambda measurement: measurement.name)
 
 
-def _data(path: Path) -> dict[str, Any]:
+def _checked_content(path: Path) -> dict[str, Any]:
     """Return the content of a file.
 
     Raises `UserError` if it is no measurement.

@@ -67,12 +67,12 @@ class MessageWatch:
         changed = [
             (index, old, new)
             for index, (old, new) in pairs
-            if _content(old) != _content(new)
+            if _attributes_of(old) != _attributes_of(new)
         ]
         # With several moved fields, decode the whole message; otherwise one field at a
         # time, which is faster.
         if len(changed) > 1 and any(
-            _place(old) != _place(new) for _, old, new in changed
+            _bit_attributes(old) != _bit_attributes(new) for _, old, new in changed
         ):
             # A field can take bits that another one leaves.
             lines = [
@@ -113,7 +113,7 @@ class MessageWatch:
         return lines + [
             number
             for number, row, other_bits in rows
-            if _notices(row, old, now, self.node, reduced_message, other_bits)
+            if _row_detects(row, old, now, self.node, reduced_message, other_bits)
         ]
 
     def enum(self, old: Enum, new: Enum) -> list[int]:
@@ -133,7 +133,7 @@ class MessageWatch:
         return [
             number
             for number, row in pairs
-            if _answer(node, now, row.frame) != (row.raw, row.encoded)
+            if _codec_result(node, now, row.frame) != (row.raw, row.encoded)
         ]
 
     def _message_of(self, *fields: NodePlace) -> Message:
@@ -173,9 +173,9 @@ class MessageWatch:
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
     def _line_notices(self, old: NodePlace, now: NodePlace) -> bool:
-        if self._is_in_new_message(old) and _shown(old, old.initial_value) != _shown(
-            now, now.initial_value
-        ):
+        if self._is_in_new_message(old) and _typed_raw(
+            old, old.initial_value
+        ) != _typed_raw(now, now.initial_value):
             return True
         if [special.value for special in old.special] != [
             special.value for special in now.special
@@ -242,7 +242,7 @@ class MessageWatch:
                 row,
                 self._in_longest(row.frame, row.raw),
                 self._in_longest(row.encoded, row.raw),
-                _number(self._in_longest(b"\xff" * len(row.encoded), row.raw)),
+                _frame_number(self._in_longest(b"\xff" * len(row.encoded), row.raw)),
             )
             for row in self.vectors.rows
         ]
@@ -276,7 +276,7 @@ class MessageWatch:
                 )
                 for raw in raws
             )
-            columns.append([_number(frame) for frame in frames])
+            columns.append([_frame_number(frame) for frame in frames])
         by_row = []
         # Prefix and suffix OR: linear in the number of fields instead of quadratic.
         for row in zip(*columns, strict=True):
@@ -286,7 +286,7 @@ class MessageWatch:
         return [list(column) for column in zip(*by_row, strict=True)]
 
 
-def _notices(
+def _row_detects(
     long: LongRow,
     old: NodePlace,
     now: NodePlace,
@@ -299,7 +299,7 @@ def _notices(
     ``reduced_message``: message with this field only. ``other_bits``: bits that all
     other fields set.
     """
-    answer = _answer(node, reduced_message, long.frame)
+    answer = _codec_result(node, reduced_message, long.frame)
     if answer is None:
         return True
     raw, read, frame = long.row.raw.get(old.name), answer[0].get(now.name), answer[1]
@@ -312,7 +312,9 @@ def _notices(
         and codec.decode(node, reduced_message, long.encoded)[now.name] != raw
     ):
         return True
-    if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
+    if _typed_raw(now, read) != _typed_raw(old, raw) or _member_name(
+        now, read
+    ) != _member_name(old, raw):
         return True
     if (
         now.type == "text"
@@ -320,27 +322,31 @@ def _notices(
         or _formula(now) != _formula(old)
         or now.bits != old.bits
     ):
-        if _physical(now, read) != _physical(old, raw):
+        if _physical_bits(now, read) != _physical_bits(old, raw):
             return True
         if old.is_invertible and (
             not now.is_invertible or _set_back(now, read) != _set_back(old, raw)
         ):
             return True  # a non-invertible calibration has no setter
     # The other fields keep their bits, so that the frame is the union of both.
-    return (_number(frame) | other_bits) & long.sent != _number(long.encoded)
+    return (_frame_number(frame) | other_bits) & long.sent != _frame_number(
+        long.encoded
+    )
 
 
-def _place(field: NodePlace) -> tuple[object, ...]:
+def _bit_attributes(field: NodePlace) -> tuple[object, ...]:
     """Return the attributes that determine the bits of a field."""
     return field.at, field.bits, field.declared_orders
 
 
-def _content(field: NodePlace) -> tuple[object, ...]:
+def _attributes_of(field: NodePlace) -> tuple[object, ...]:
     """Return all attributes of a field in the ICD."""
-    return field.scalar, field.derived, *_place(field)
+    return field.scalar, field.derived, *_bit_attributes(field)
 
 
-def _answer(node: Node, message: Message, frame: bytes) -> tuple[Raw, bytes] | None:
+def _codec_result(
+    node: Node, message: Message, frame: bytes
+) -> tuple[Raw, bytes] | None:
     """Return the decoded values of a frame and their encoding; None if the codec
     refuses it.
     """
@@ -363,17 +369,17 @@ def _expected(raw: object) -> object:
     return _REFUSED if raw is None else raw
 
 
-def _number(frame: bytes) -> int:
+def _frame_number(frame: bytes) -> int:
     # Bit w of byte b is bit 8 * b + w, for any length of the frame.
     return int.from_bytes(frame, "little")
 
 
-def _shown(field: NodePlace, raw: Any) -> object:
+def _typed_raw(field: NodePlace, raw: Any) -> object:
     """Return a raw value as languages represent it: a boolean differs from a number."""
     return (field.type == "bool", raw_json(field, raw))
 
 
-def _name(field: NodePlace, raw: Any) -> object:
+def _member_name(field: NodePlace, raw: Any) -> object:
     """Return the name of the member, empty for an unknown value, and None without an
     enumeration.
     """
@@ -383,7 +389,7 @@ def _name(field: NodePlace, raw: Any) -> object:
     return member.name if member else ""
 
 
-def _physical(field: NodePlace, raw: Any) -> object:
+def _physical_bits(field: NodePlace, raw: Any) -> object:
     if field.type == "text":
         return (ascii_text(raw),)
     double = codec.physical_double(field, raw)

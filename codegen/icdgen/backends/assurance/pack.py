@@ -18,7 +18,12 @@ from icdgen.backends.assurance.paper import (
     lines_of,
 )
 from icdgen.backends.assurance.trace import Element, Trace
-from icdgen.backends.assurance.tracing import CHANGES, Symbols, Tracing, title
+from icdgen.backends.assurance.tracing import (
+    CHANGES,
+    SymbolsByLine,
+    Tracing,
+    language_title,
+)
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 
@@ -42,7 +47,9 @@ def files(
     ICDs or code.
     """
     measurements = (
-        measured.read(folder, icd, lambda language: code_now(icd, language))
+        measured.read_measurements(
+            folder, icd, lambda language: code_now(icd, language)
+        )
         if folder is not None
         else []
     )
@@ -56,7 +63,7 @@ def files(
         file for file in (*(node.file for node in icd.nodes), *of_errata) if file
     )
     # The traceability computes thousands of mutations, so it runs once for all reports.
-    traced, tracing = Trace(icd), Tracing(read, Symbols(icd))
+    traced, tracing = Trace(icd), Tracing(read, SymbolsByLine(icd))
     elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
     # The tables cover all nodes; each page covers one.
     every = [
@@ -78,7 +85,7 @@ def files(
         "trace.csv": csv_text(tracing.columns, tracing.rows(every)),
         "changes.csv": csv_text(CHANGES, tracing.changes(every)),
     }
-    for page, rows, columns in decisions.papers(icd, every, tracing.files):
+    for page, rows, columns in decisions.decision_pages(icd, every, tracing.files):
         pages.append(page)
         tables[page.data[0]] = csv_text(columns, rows)
     for measurement in measurements:
@@ -150,7 +157,7 @@ def _page_of_measurement(measurement: Measurement) -> ReportPage:
         *measurement.facts,
         *(("Measured with", tool) for tool in measurement.made_by),
         *(
-            (f"Digest of the generated {title(language)}", digest)
+            (f"Digest of the generated {language_title(language)}", digest)
             for language, digest in measurement.code.items()
         ),
     )

@@ -66,14 +66,14 @@ class SharedIds:
                 expected = row.message if row.expected is None else row.expected
                 if (
                     concerns(messages)
-                    and _answer(icd, row, [now(message) for message in messages])
+                    and _codec_result(icd, row, [now(message) for message in messages])
                     != expected
                 ):
                     noticed.setdefault(name, []).append(number)
         return noticed
 
 
-def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
+def _codec_result(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
     """Return the name of the message that the frame belongs to, its expected length, or
     None.
 

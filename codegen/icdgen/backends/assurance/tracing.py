@@ -57,7 +57,7 @@ class Symbol(NamedTuple):
         return f"{self.name} ({self.scope})"
 
 
-class Symbols:
+class SymbolsByLine:
     """Names that backends declare for each line of an ICD: built-in languages and
     installed plug-ins.
 
@@ -88,12 +88,15 @@ class Tracing:
     """Tables of the traceability."""
 
     files: Files
-    symbols: Symbols
+    symbols: SymbolsByLine
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of the table of all elements, one for each language included."""
-        return (*TRACE, *(title(language) for language in self.symbols.languages))
+        return (
+            *TRACE,
+            *(language_title(language) for language in self.symbols.languages),
+        )
 
     def rows(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
         """Yield the rows of the table of all elements."""
@@ -104,16 +107,16 @@ class Tracing:
                 element.node.name,
                 element.part_of,
                 element.name,
-                _text(element.row),
-                _text(element.table),
-                _text(element.page),
+                _optional_text(element.row),
+                _optional_text(element.table),
+                _optional_text(element.page),
                 self.files.name(place.file),
                 str(place.line),
                 printed_numbers(element),
                 [erratum.id for erratum in element.errata],
                 str(len(element.changes)),
                 str(_unnoticed(element)),
-                vectors(element.noticed),
+                vector_lines(element.noticed),
                 *(
                     [
                         str(name)
@@ -142,7 +145,7 @@ class Tracing:
                     str(place.column),
                     str(change.old),
                     str(change.now),
-                    vectors(traced.noticed),
+                    vector_lines(traced.noticed),
                 ]
 
     def page(
@@ -164,7 +167,7 @@ class Tracing:
                 # Messages, enumerations and structs start a group; their parts follow.
                 groups.append(RowGroup(rows, heading, _notes(element)))
             groups[-1].rows.append(self._shown(element))
-        languages = (title(language) for language in self.symbols.languages)
+        languages = (language_title(language) for language in self.symbols.languages)
         columns = (
             "Row",
             "Name",
@@ -189,14 +192,14 @@ class Tracing:
     def _shown(self, element: Element) -> list[Cell]:
         errata = [f"{erratum.label} {erratum.id}" for erratum in element.errata]
         return [
-            _text(element.row),
+            _optional_text(element.row),
             [element.name, *errata],
             printed_numbers(element),
             self.files.line(element.source.place),
             *(self._names(language, element) for language in self.symbols.languages),
             str(len(element.changes)) if element.changes else "",
             str(_unnoticed(element)) if element.changes else "",
-            vectors(element.noticed),
+            vector_lines(element.noticed),
         ]
 
     def _names(self, language: str, element: Element) -> list[str]:
@@ -208,7 +211,7 @@ class Tracing:
         )
 
 
-def title(language: str) -> str:
+def language_title(language: str) -> str:
     """Return the name of a language; for a plug-in, its value of ``--lang``."""
     return backends.TITLES.get(language, language)
 
@@ -233,11 +236,11 @@ def _unnoticed(element: Element) -> int:
     return sum(not traced.noticed for traced in element.changes)
 
 
-def _text(value: int | None) -> str:
+def _optional_text(value: int | None) -> str:
     return "" if value is None else str(value)
 
 
-def vectors(noticed: Noticed) -> list[str]:
+def vector_lines(noticed: Noticed) -> list[str]:
     """Return vector files with line numbers: ``demo.json 31-38 40``."""
     return [f"{node}.json {_ranges(numbers)}" for node, numbers in noticed.items()]
 

@@ -21,9 +21,9 @@ from icdgen.backends.c import (
     parts,
     types,
 )
-from icdgen.backends.c.runtime import assembled
+from icdgen.backends.c.runtime import assemble_file
 from icdgen.backends.c.short_names import with_short_names
-from icdgen.backends.c.statement import call, head, like
+from icdgen.backends.c.statement import call, frame_test, head
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
@@ -68,7 +68,7 @@ class CBackend:
         from icdgen.describe.links import links_of
 
         first = f"/* {origin()} */\n"
-        yield PurePosixPath("icdgen.h"), first + assembled("icdgen.h", render)
+        yield PurePosixPath("icdgen.h"), first + assemble_file("icdgen.h", render)
         description = describe(icd)
         if any(
             composite.has_wide_steps
@@ -77,7 +77,7 @@ class CBackend:
         ):
             yield (
                 PurePosixPath("icdgen_wide.h"),
-                first + assembled("icdgen_wide.h", render),
+                first + assemble_file("icdgen_wide.h", render),
             )
         links = links_of(description)
         if links:
@@ -95,11 +95,11 @@ class CBackend:
             }
             yield (
                 PurePosixPath("icdgen_wire.h"),
-                first + assembled("icdgen_wire.h", render, of_icd),
+                first + assemble_file("icdgen_wire.h", render, of_icd),
             )
             yield (
                 PurePosixPath("icdgen_wire.c"),
-                first + assembled("icdgen_wire.c", render),
+                first + assemble_file("icdgen_wire.c", render),
             )
         for node in description.nodes:
             folder = PurePosixPath(node.name)
@@ -110,8 +110,14 @@ class CBackend:
                 **_FUNCTIONS,
             }
             if node.enums:
-                enums = [(enum, *constants.of_enum(enum)) for enum in node.enums]
-                values = {"node": node, "enums": enums, "within": constants.within}
+                enums = [
+                    (enum, *constants.enumerator_literals(enum)) for enum in node.enums
+                ]
+                values = {
+                    "node": node,
+                    "enums": enums,
+                    "range_test": constants.range_test,
+                }
                 yield folder / "enums.h", render("enums.h.j2", **values, **shared)
             for struct in node.structs:
                 header = render("struct.h.j2", m=struct, **shared)
@@ -175,7 +181,7 @@ def _link(
     values = {
         "node": node,
         "link": link,
-        "sizes": links.sizes(link),
+        "sizes": links.buffer_sizes(link),
         "procedures": procedures,
         "checksums": [
             (each.name, checksum_function(node, each.name), algorithm_table(each.name))
@@ -211,11 +217,11 @@ _FUNCTIONS = {
         all_struct_arrays, bits.excess_type, byte_count, call, client_headers, comment, conditional.absent_value,
         conditional.presence_test, conditional.write_optional, constants.constant_value, constants.field_table,
         contained_messages, decoding.chunk_bytes, decoding.counter_tests, decoding.decode_statements,
-        decoding.element_bytes, decoding.elements, decoding.groups_of, decoding.invalid_count, decoding.test_of_count,
-        decoding.misfit_length, decoding.number, decoding.part_bytes, decoding.first_byte, decoding.read_statements,
+        decoding.element_bytes, decoding.element_count, decoding.groups_of, decoding.invalid_count, decoding.test_of_count,
+        decoding.misfit_length, decoding.read_number, decoding.part_bytes, decoding.first_byte, decoding.read_statements,
         decoding.elements_received, described,
-        encoding.counted_text, encoding.encode_statements, encoding.size, encoding.write_statements, file_comment,
-        head, includes, length_text, like, literal, members.excess, members.initial_statements, members.misfits,
+        encoding.counted_text, encoding.encode_statements, encoding.size_terms, encoding.write_statements, file_comment,
+        head, includes, length_text, frame_test, literal, members.excess, members.initial_statements, members.misfits,
         names.client_function, names.constant, names.enumerator, names.enumerator_of, names.getter, names.has,
         names.part_name, names.element_reader, procedure_headers, names.selector, names.setter, names.received_element_reader,
         names.element_writer, parts.part_about, parts.part_statements, presence_comment, prose, sentence, C_NAMES.symbol,

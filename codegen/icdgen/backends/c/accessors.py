@@ -36,12 +36,15 @@ class CAccessorCode(NamedTuple):
 
 def double_accessors(message: Composite[Any]) -> list[CAccessorCode]:
     """Return the accessors in double precision."""
-    return [*map(_double, of_kind(message, "double")), *map(_derived, message.derived)]
+    return [
+        *map(_double_code, of_kind(message, "double")),
+        *map(_derived_code, message.derived),
+    ]
 
 
 def integer_accessors(message: Composite[Any]) -> list[CAccessorCode]:
     """Return the accessors in whole thousandths or millionths of the unit."""
-    return list(map(_integer, of_kind(message, "integer")))
+    return list(map(_integer_code, of_kind(message, "integer")))
 
 
 def of_kind(message: Composite[Any], kind: Kind) -> list[Accessor]:
@@ -53,24 +56,26 @@ def of_kind(message: Composite[Any], kind: Kind) -> list[Accessor]:
     ]
 
 
-def _double(accessor: Accessor) -> CAccessorCode:
+def _double_code(accessor: Accessor) -> CAccessorCode:
     field, assignment = accessor.field, ""
     if accessor.is_settable:
         function, *arguments = physical.double_setter(field)
-        assignment = call(f"return {function}", (f"&{_member(field)}", *arguments))
+        assignment = call(
+            f"return {function}", (f"&{_member_expression(field)}", *arguments)
+        )
     return CAccessorCode(
         accessor.name,
         "double",
         accessor.comment,
         accessor.title,
-        physical.double_value(field, _raw(field)),
+        physical.double_value(field, _raw_value(field)),
         assignment,
-        declared=tuple(physical.declarations(field)),
+        declared=tuple(physical.accessor_declarations(field)),
         elements=field.count,
     )
 
 
-def _integer(accessor: Accessor) -> CAccessorCode:
+def _integer_code(accessor: Accessor) -> CAccessorCode:
     field, integers = accessor.field, accessor.integers
     refused = physical.integer_range(integers)
     return CAccessorCode(
@@ -78,9 +83,9 @@ def _integer(accessor: Accessor) -> CAccessorCode:
         f"int{integers.bits}_t",
         accessor.comment,
         accessor.title,
-        physical.integer_value(integers, _raw(field)),
+        physical.integer_value(integers, _raw_value(field)),
         (
-            f"{_member(field)} = {physical.integer_raw(integers, field.storage)};"
+            f"{_member_expression(field)} = {physical.integer_raw(integers, field.storage)};"
             if accessor.is_settable
             else ""
         ),
@@ -89,17 +94,17 @@ def _integer(accessor: Accessor) -> CAccessorCode:
     )
 
 
-def _derived(field: FieldDescription) -> CAccessorCode:
+def _derived_code(field: FieldDescription) -> CAccessorCode:
     computation = computation_of(field, taken=RESERVED | {"message"})
     lines = [
-        _constant(f"const double {name}", _as_double(operand))
+        _constant_declaration(f"const double {name}", _as_double(operand))
         for name, operand in computation.fields
     ]
     for name, value in computation.expressions(repr, "icdgen_power({}, {})"):
         # Compilers may keep intermediate results in a wider format (`FLT_EVAL_METHOD`,
         # C99 5.2.4.2.2) and fuse a product with a sum (6.5). A volatile object makes
         # each step a double, so that all targets compute the same bits.
-        lines.append(_constant(f"const volatile double {name}", value))
+        lines.append(_constant_declaration(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
     return CAccessorCode(
         field.name,
@@ -111,7 +116,7 @@ def _derived(field: FieldDescription) -> CAccessorCode:
     )
 
 
-def _constant(head: str, value: str) -> str:
+def _constant_declaration(head: str, value: str) -> str:
     line = f"{head} = {value};"
     return line if len(STEP) + len(line) <= WIDTH else f"{head} =\n{STEP * 2}{value};"
 
@@ -122,7 +127,7 @@ def _as_double(field: FieldDescription) -> str:
     """
     if field.is_scaled:
         return f"{getter(field.message, field.physical_name)}(message)"
-    raw = _raw(field)
+    raw = _raw_value(field)
     return (
         raw
         if field.model.type == "float" and field.model.bits == 64
@@ -143,14 +148,14 @@ def overlay_comment(field: FieldDescription) -> str:
     return described(about)
 
 
-def _raw(field: FieldDescription) -> str:
+def _raw_value(field: FieldDescription) -> str:
     """Return the raw value of a field of ``message``."""
     return (
         f"{getter(field.message, field.name)}(message)"
         if field.model.is_read_only
-        else _member(field)
+        else _member_expression(field)
     )
 
 
-def _member(field: FieldDescription) -> str:
+def _member_expression(field: FieldDescription) -> str:
     return f"message->{field.name}{'[element]' if field.count else ''}"

@@ -28,7 +28,7 @@ class ReadExpression(NamedTuple):
         return self.value.format(bits=joined(self.terms))
 
 
-def read(field: FieldDescription, frame: str = "buffer") -> ReadExpression:
+def read_field(field: FieldDescription, frame: str = "buffer") -> ReadExpression:
     """Return the expression of the raw value, for a float its bits, over the bytes at
     ``frame``.
     """
@@ -36,14 +36,14 @@ def read(field: FieldDescription, frame: str = "buffer") -> ReadExpression:
     if field.is_word:
         return ReadExpression(
             32,
-            (_load(field, frame),),
+            (_load_word(field, frame),),
             f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS,
         )
     pieces = field.pieces
     if field.model.type == "bool":
         return ReadExpression(
             32,
-            (f"{_byte(pieces[0], frame)} & {mask(pieces[0].mask, 8)}",),
+            (f"{_byte_of_piece(pieces[0], frame)} & {mask(pieces[0].mask, 8)}",),
             f"({BITS}) != 0u",
         )
     wide = 64 if bits > 32 else 32
@@ -70,7 +70,7 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 
 
-def _load(field: FieldDescription, frame: str) -> str:
+def _load_word(field: FieldDescription, frame: str) -> str:
     byte, bits = field.model.at // 8, field.model.bits
     return (
         f"{frame}[{byte}]"
@@ -79,7 +79,7 @@ def _load(field: FieldDescription, frame: str) -> str:
     )
 
 
-def _byte(piece: Piece, frame: str) -> str:
+def _byte_of_piece(piece: Piece, frame: str) -> str:
     return f"{frame}[{piece.byte}]"
 
 
@@ -87,11 +87,13 @@ def _low_bits(piece: Piece, frame: str) -> str:
     """Return a run of bits, shifted down to bit 0."""
     if piece.shift == 0:
         return (
-            _byte(piece, frame)
+            _byte_of_piece(piece, frame)
             if piece.is_byte
-            else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
+            else f"{_byte_of_piece(piece, frame)} & {mask(piece.mask, 8)}"
         )
-    return f"({_byte(piece, frame)} >> {piece.shift}) & {mask(piece.low_mask, 8)}"
+    return (
+        f"({_byte_of_piece(piece, frame)} >> {piece.shift}) & {mask(piece.low_mask, 8)}"
+    )
 
 
 def _shifted(piece: Piece, wide: int, frame: str) -> str:
@@ -102,12 +104,12 @@ def _shifted(piece: Piece, wide: int, frame: str) -> str:
     return f"{low} << {piece.at}" if piece.at else low
 
 
-def put(field: FieldDescription, piece: Piece) -> str:
+def field_term(field: FieldDescription, piece: Piece) -> str:
     """Return the term of a field for the byte of ``piece``, an `int`.
 
     The caller removes bits beyond the byte.
     """
-    storage, value = field.storage, _raw(field)
+    storage, value = field.storage, _raw_value(field)
     if piece.at:
         # `>>` of a negative value is implementation-defined (C99, 6.5.7).
         value = (
@@ -124,9 +126,9 @@ def put(field: FieldDescription, piece: Piece) -> str:
     return f"{grouped(value)} << {piece.shift}" if piece.shift else value
 
 
-def store(field: FieldDescription, frame: str = "buffer") -> str:
+def store_word(field: FieldDescription, frame: str = "buffer") -> str:
     """Return the statement that stores a word in the bytes at ``frame``."""
-    byte, bits, value = field.model.at // 8, field.model.bits, _raw(field)
+    byte, bits, value = field.model.at // 8, field.model.bits, _raw_value(field)
     if field.storage.signed or field.storage.bits > bits:
         value = cast(value, bits)
     if bits == 8:
@@ -134,7 +136,7 @@ def store(field: FieldDescription, frame: str = "buffer") -> str:
     return f"icdgen_store_u{bits}{field.order}(&{frame}[{byte}], {value});"
 
 
-def _raw(field: FieldDescription) -> str:
+def _raw_value(field: FieldDescription) -> str:
     """Return the raw value; for a float its bits."""
     member = f"message->{field.member}"
     return (
@@ -144,7 +146,7 @@ def _raw(field: FieldDescription) -> str:
     )
 
 
-def excess(field: FieldDescription, member: str) -> str:
+def bits_beyond_field(field: FieldDescription, member: str) -> str:
     """Return an expression that is 0 if and only if the raw value in ``member`` fits
     its field.
     """

@@ -14,7 +14,7 @@ from icdgen.describe.description import PresenceCondition
 
 def presence_test(field: FieldDescription) -> str:
     """Return the condition under which an optional field is present."""
-    return either(list(map(_test, field.needs)), " && ")
+    return either(list(map(_value_test, field.needs)), " && ")
 
 
 def absent_value(field: FieldDescription) -> str:
@@ -22,23 +22,23 @@ def absent_value(field: FieldDescription) -> str:
     once the field is present; else 0.
     """
     if field.model.const is not None:
-        return constants.only(field)
+        return constants.only_value_macro(field)
     return {"bool": "false", "float": "0"}.get(
         field.model.type, "0" if field.storage.signed else "0u"
     )
 
 
-def _test(need: PresenceCondition) -> str:
+def _value_test(need: PresenceCondition) -> str:
     """Return the test whether a field has one of the values."""
     field, member = need.field, f"message->{need.field.name}"
     if field.model.type == "bool":
         tests = [member if value else f"!{member}" for value in need.values]
     else:
-        tests = [f"{member} == {_literal(field, value)}" for value in need.values]
+        tests = [f"{member} == {_value_literal(field, value)}" for value in need.values]
     return either(tests)
 
 
-def _literal(field: FieldDescription, value: int) -> str:
+def _value_literal(field: FieldDescription, value: int) -> str:
     member = field.enum.member(value) if field.enum is not None else None
     if field.enum is not None and member is not None:
         return enumerator(field.enum, member)
@@ -51,10 +51,11 @@ def _literal(field: FieldDescription, value: int) -> str:
 def write_optional(field: FieldDescription) -> list[str]:
     """Return the statements that write a field into a frame in which its bits are 0."""
     if field.is_word:
-        return [bits.store(field)]
+        return [bits.store_word(field)]
     return [
         assigned_byte(
-            f"buffer[{piece.byte}]", [f"buffer[{piece.byte}]", bits.put(field, piece)]
+            f"buffer[{piece.byte}]",
+            [f"buffer[{piece.byte}]", bits.field_term(field, piece)],
         )
         for piece in field.pieces
     ]

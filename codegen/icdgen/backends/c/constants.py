@@ -25,7 +25,7 @@ _MAX_ENUMERATOR = 32767
 def constant_value(field: FieldDescription, constant: Constant) -> str:
     """Return the value of the macro of a constant of a field."""
     if constant.number:
-        return _float(constant, field.model.bits)
+        return _float_literal(constant, field.model.bits)
     if (
         isinstance(constant.value, int)
         and constant.key in ("const", "special")
@@ -52,7 +52,7 @@ def constant_value(field: FieldDescription, constant: Constant) -> str:
     )
 
 
-def _float(constant: Constant, bits: int) -> str:
+def _float_literal(constant: Constant, bits: int) -> str:
     """Return a special value of a float; NaN and infinity by their bits, as some
     targets have no names for them.
     """
@@ -63,13 +63,13 @@ def _float(constant: Constant, bits: int) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def only(field: FieldDescription) -> str:
+def only_value_macro(field: FieldDescription) -> str:
     """Return the macro of the only valid value of a field that has one."""
     (name,) = (constant.name for constant in field.constants if constant.key == "const")
     return names.constant(field.declaration.message, name)
 
 
-def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
+def enumerator_literals(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
     """Return whether values of an enumeration must be macros because an `int` may be
     too small, and the function for literals.
     """
@@ -79,23 +79,25 @@ def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
         abs(member.model.value) > _MAX_ENUMERATOR for member in enum.members
     )
     if enum.storage.signed:
-        return are_macros, partial(_signed, bits=enum.storage.bits if are_macros else 0)
+        return are_macros, partial(
+            _signed_literal, bits=enum.storage.bits if are_macros else 0
+        )
     form = "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
     return are_macros, form.__mod__
 
 
-def within(enum: EnumDescription, member: Member) -> str:
+def range_test(enum: EnumDescription, member: Member) -> str:
     """Return the test whether ``value`` is between the ends of a range."""
     bits, signed = enum.storage
     form = (
-        partial(_signed, bits=bits)
+        partial(_signed_literal, bits=bits)
         if signed
         else ("UINT64_C(%d)" if bits == 64 else "%du").__mod__
     )
     return f"value > {form(member.value)} && value < {form(member.last)}"
 
 
-def _signed(value: int, bits: int) -> str:
+def _signed_literal(value: int, bits: int) -> str:
     """Return the literal of a signed integer of ``bits`` bits; of an `int` if ``bits``
     is 0.
     """
@@ -105,16 +107,16 @@ def _signed(value: int, bits: int) -> str:
     return f"({text})" if value < 0 and bits else text
 
 
-class Fields(NamedTuple):
+class FieldTable(NamedTuple):
     """Rows for fields, and rows for their limits, to which the former point."""
 
     limits: list[str]
     rows: list[str]
 
 
-def field_table(composite: Composite[Any]) -> Fields:
+def field_table(composite: Composite[Any]) -> FieldTable:
     """Return the rows of a message or struct: one per member, in the order of the ICD."""
-    table = Fields([], [])
+    table = FieldTable([], [])
     for field in composite.members:
         model, bounds = field.model, field.bounds
         # Fields have different numbers of limits. All limits are one array, and each

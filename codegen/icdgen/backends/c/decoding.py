@@ -65,10 +65,10 @@ def decode_statements(message: MessageDescription, groups: list[Group]) -> list[
     """
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    lines = _statements(message, message, groups)
+    lines = _group_statements(message, message, groups)
     last = message.last_part
     if last is not None and last.is_rest:
-        count = cast(_count(last), last.counter.storage.bits)
+        count = cast(_count_from_length(last), last.counter.storage.bits)
         lines.append(f"message->{last.counter.name} = {count};")
     if last is not None and last.element_struct is not None:
         name, function = last.field.member, element_reader(message, last.field.name)
@@ -83,28 +83,28 @@ def read_statements(
     message: MessageDescription, array: StructArray, groups: list[Group]
 ) -> list[str]:
     """Return the statements that read an element of an array of structs."""
-    return _statements(array.element_struct, message, groups)
+    return _group_statements(array.element_struct, message, groups)
 
 
-def _statements(
+def _group_statements(
     composite: Composite[Any], message: MessageDescription, groups: list[Group]
 ) -> list[str]:
     """Return a statement per field or group of a message, or of a struct in it."""
     return [
         (
-            _field(group)
+            _read_field(group)
             if isinstance(group, FieldDescription)
             else (
-                of_array(group, element_reader(message, group.name))
+                for_each_struct(group, element_reader(message, group.name))
                 if isinstance(group, StructArray)
-                else _group(group, composite)
+                else _read_group(group, composite)
             )
         )
         for group in groups
     ]
 
 
-def _count(part: VariablePartDescription) -> str:
+def _count_from_length(part: VariablePartDescription) -> str:
     """Return the number of elements in ``length`` bytes beyond the fewest."""
     before, step = part.bytes_beyond_fewest
     # The difference does not underflow: the function tests the length before.
@@ -133,12 +133,12 @@ def test_of_count(part: VariablePartDescription) -> tuple[str, str, str] | None:
         return None
     bits = max(part.counter.storage.bits, 32)
     value = "value" if part.counter.storage.bits == bits else cast("value", bits)
-    expected = cast(_count(part), bits) + (
+    expected = cast(_count_from_length(part), bits) + (
         f" + {part.model.low}u" if part.model.low else ""
     )
     return (
         type_of(part.counter),
-        number(part.counter, "value"),
+        read_number(part.counter, "value"),
         f"{value} != {expected}",
     )
 
@@ -184,7 +184,7 @@ def for_each(name: str, count: str, function: str, bytes: ElementBytes) -> str:
     return f"{loop('element', count)}\n{STEP * 2}{statement}\n{STEP}}}"
 
 
-def of_array(array: StructArray, function: str) -> str:
+def for_each_struct(array: StructArray, function: str) -> str:
     """Return the loop that calls a function with each element of a complete array of
     structs.
     """
@@ -198,7 +198,7 @@ def of_array(array: StructArray, function: str) -> str:
 
 def elements_received(part: VariablePartDescription) -> str:
     """Return the number of elements in a frame of ``length`` bytes."""
-    count = _count(part)
+    count = _count_from_length(part)
     count = f"({count})" if " " in count else count
     return count + (f" + {part.model.fewest}u" if part.model.fewest else "")
 
@@ -211,7 +211,7 @@ def first_byte(bytes: ElementBytes, per_iteration: int = 1) -> str:
     return f"{begin}u + {f'({offset})' if step > 1 else offset}" if begin else offset
 
 
-def elements(part: VariablePartDescription, counter: str = "") -> str:
+def element_count(part: VariablePartDescription, counter: str = "") -> str:
     """Return the number of elements of a variable part in a message."""
     # Bytes are counted in `size_t`, which can hold the size of any object (C99 7.17).
     # An `unsigned int` need not.
@@ -223,7 +223,7 @@ def elements(part: VariablePartDescription, counter: str = "") -> str:
 
 def part_bytes(part: VariablePartDescription, counter: str = "") -> str:
     """Return the number of bytes of a variable part in a message."""
-    return in_bytes(elements(part, counter), part.model.step)
+    return in_bytes(element_count(part, counter), part.model.step)
 
 
 def invalid_count(part: VariablePartDescription, counter: str = "") -> str:
@@ -255,10 +255,10 @@ def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> 
     return f"{loop('element', f'{array_loop.elements}u', array_loop.per_iteration)}\n{body}{STEP}}}"
 
 
-def _group(group: Flags | WordRow | LoopElements, message: Composite[Any]) -> str:
+def _read_group(group: Flags | WordRow | LoopElements, message: Composite[Any]) -> str:
     if isinstance(group, LoopElements):
         lines = (
-            number(element, f"message->{element.member}", "part")
+            read_number(element, f"message->{element.member}", "part")
             for element in elements_of_iteration(group)
         )
         return loop_over_bytes(group.loop, "const ", lines)
@@ -274,17 +274,17 @@ def _group(group: Flags | WordRow | LoopElements, message: Composite[Any]) -> st
     )
 
 
-def _field(field: FieldDescription) -> str:
+def _read_field(field: FieldDescription) -> str:
     place = field.model
     if place.is_bytes:
         return f"(void)memcpy(message->{field.member}, &buffer[{place.at // 8}], {place.width // 8}u);"
-    return number(field, f"message->{field.member}")
+    return read_number(field, f"message->{field.member}")
 
 
-def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
+def read_number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
     """Return the statement that reads a number from the bytes at ``frame``."""
-    read = bits.read(field, frame)
-    line = _assigned(field, target, read.whole)
+    read = bits.read_field(field, frame)
+    line = _assign_raw(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
     # In a loop the variable must not hide one of the function.
@@ -296,11 +296,11 @@ def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
         *(f"{local} |= {term};" for term in further),
     ]
     return f"\n{STEP}".join(
-        [*joined, _assigned(field, target, read.value.format(bits=local))]
+        [*joined, _assign_raw(field, target, read.value.format(bits=local))]
     )
 
 
-def _assigned(field: FieldDescription, target: str, value: str) -> str:
+def _assign_raw(field: FieldDescription, target: str, value: str) -> str:
     # C forbids access to the bits of a float through a pointer to an integer (C99,
     # 6.5), so a function copies them.
     if field.model.type == "float":

@@ -7,13 +7,13 @@ from typing import Any
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.decoding import (
-    elements,
+    element_count,
     elements_of_iteration,
     for_each,
+    for_each_struct,
     in_bytes,
     loop_over_bytes,
     macro_of,
-    of_array,
 )
 from icdgen.backends.c.names import element_writer
 from icdgen.backends.c.statement import assigned_byte, call
@@ -30,7 +30,7 @@ from icdgen.describe.groups import (
 )
 
 
-def size(message: MessageDescription) -> list[str]:
+def size_terms(message: MessageDescription) -> list[str]:
     """Return the length of the frame of a message as the terms of a sum."""
     parts = [
         (
@@ -56,10 +56,8 @@ def _encoded_elements(last: VariablePartDescription) -> str:
     refuses.
     """
     if not last.model.low:
-        return elements(last)
-    return (
-        f"((message->{last.counter.name} > {last.model.low}u) ? {elements(last)} : 0u)"
-    )
+        return element_count(last)
+    return f"((message->{last.counter.name} > {last.model.low}u) ? {element_count(last)} : 0u)"
 
 
 def _size_of_element(part: VariablePartDescription) -> str:
@@ -84,10 +82,10 @@ def counted_text(last: VariablePartDescription) -> str:
 def encode_statements(message: MessageDescription, groups: list[Group]) -> list[str]:
     """Return the statements that write every byte of the frame once."""
     last = message.last_part
-    frame = _Frame(message, message, groups, message.model.length)
+    frame = _FrameStatements(message, message, groups, message.model.length)
     if last is not None and last.element_struct is not None:
         function, (begin, step) = element_writer(message, last.field.name), last.place
-        each = for_each(last.field.member, elements(last), function, last.place)
+        each = for_each(last.field.member, element_count(last), function, last.place)
         frame.bytes.add_whole(begin, last.model.most * step, each)
     # Without these lines, compilers warn about parameters that are not used.
     unused = [] if message.members else ["(void)message;"]
@@ -101,10 +99,10 @@ def write_statements(
 ) -> list[str]:
     """Return the statements that write an element of an array of structs."""
     struct = array.element_struct
-    return _Frame(struct, message, groups, struct.model.length).in_order()
+    return _FrameStatements(struct, message, groups, struct.model.length).in_order()
 
 
-class _Frame:
+class _FrameStatements:
     """Statements for the bytes of a message, or of a struct in it, and variables that
     these statements need.
     """
@@ -136,23 +134,27 @@ class _Frame:
                 f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);",
             )
         elif field.is_word:
-            self.bytes.add_whole(first, size, bits.store(field, self.frame))
+            self.bytes.add_whole(first, size, bits.store_word(field, self.frame))
         else:
             for piece in field.pieces:
                 # Other fields can share the byte, so its terms are collected and
                 # written by one statement.
-                self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
+                self.bytes.add_part(
+                    piece.byte, piece.shift, bits.field_term(field, piece)
+                )
 
     def _add_group(self, group: Flags | WordRow | LoopElements | StructArray) -> None:
         if isinstance(group, LoopElements):
             loop = group.loop
             fields = elements_of_iteration(group)
-            part = _Frame(self.composite, self.message, fields, loop.step, "part")
+            part = _FrameStatements(
+                self.composite, self.message, fields, loop.step, "part"
+            )
             lines = loop_over_bytes(loop, "", part.in_order())
             self.bytes.add_whole(loop.begin, loop.length, lines)
             return
         if isinstance(group, StructArray):
-            loop_over = of_array(group, element_writer(self.message, group.name))
+            loop_over = for_each_struct(group, element_writer(self.message, group.name))
             self.bytes.add_whole(group.begin, group.length, loop_over)
             return
         names = [field.member for field in group.fields]

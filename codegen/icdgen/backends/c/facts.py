@@ -52,18 +52,18 @@ def or_none(value: int | None) -> str:
     return "-1" if value is None else str(value)
 
 
-def spelled(fact: Fact, value: Any) -> str:
+def fact_value(fact: Fact, value: Any) -> str:
     """Return the value of a fact, after its presence flag if it `has_presence_flag`."""
     if has_presence_flag(fact):
-        return f"{boolean(value is not None)}, {_literal(fact, value or 0)}"
+        return f"{boolean(value is not None)}, {_fact_literal(fact, value or 0)}"
     if fact.is_optional and fact.least == 0:
         return or_none(value)
     # If the smallest value of an optional fact is above 0, a 0 means that it is not
     # given.
-    return _literal(fact, value or 0)
+    return _fact_literal(fact, value or 0)
 
 
-def _literal(fact: Fact, value: Any) -> str:
+def _fact_literal(fact: Fact, value: Any) -> str:
     if fact.kind is Kind.FLAG:
         return boolean(value)
     if fact.kind is Kind.BUSES:

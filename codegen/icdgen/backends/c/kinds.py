@@ -43,25 +43,25 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
     }
     verdicts.add(REPLY)  # a caller can specify a reply
     return [
-        _kinds(
+        _kinds_with_prefix(
             "DELIMITERS",
             "ICD_DELIMITED_BY",
             (stream.delimited_by for stream in streams),
             "icd_delimiter_t",
         ),
-        _kinds(
+        _kinds_with_prefix(
             "CHECKS",
             "ICD_CHECK",
             (checksum.kind for each in facts for checksum in each.checksums.values()),
             "icd_check_kind_t",
         ),
-        _kinds(
+        _kinds_with_prefix(
             "CONTENTS",
             "ICD_PACKET",
             map(content_name, packets),
             "icd_packet_content_t",
         ),
-        _kinds(
+        _kinds_with_prefix(
             "ROLES",
             "ICD_FIELD",
             (field.role for packet in packets for field in packet.fields),
@@ -74,9 +74,9 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
             ),
             "Flags of messages in packets.",
         ),
-        _kinds("VERDICTS", "ICD_VERDICT", verdicts, "icd_verdict_t"),
+        _kinds_with_prefix("VERDICTS", "ICD_VERDICT", verdicts, "icd_verdict_t"),
         Kinds("RESPONSES", _response_parts(exchanges), "Parts of responses."),
-        _kinds(
+        _kinds_with_prefix(
             "BUSES",
             "ICD_BUS",
             (bus for each in facts for bus in each.bus_exchanges),
@@ -117,6 +117,8 @@ def length_type(links: Iterable[LinkDescription]) -> str:
     return "int_fast32_t" if narrow else "int64_t"
 
 
-def _kinds(name: str, prefix: str, kinds: Iterable[str], type: str) -> Kinds:
+def _kinds_with_prefix(
+    name: str, prefix: str, kinds: Iterable[str], type: str
+) -> Kinds:
     bits = sorted(f"ICDGEN_BIT({prefix}_{kind.upper()})" for kind in {*kinds})
     return Kinds(name, bits, f"Of {type}.")

@@ -43,7 +43,7 @@ _MOST_PACKETS = 256
 _CRC = f"/* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */\n{STEP * 2}"
 
 
-def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
+def buffer_sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     """Return the sizes of buffers: name, bytes and comment."""
     facts = link.facts
     if facts.stream:
@@ -115,7 +115,7 @@ def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
     return LinkCode(tables.tables, links)
 
 
-class _Part(NamedTuple):
+class _LinkMember(NamedTuple):
     """Member of a link, which is absent in that of a bus where no client needs it."""
 
     row: InitialiserValue
@@ -169,12 +169,15 @@ class _LinkTables(TableSet):
             links.append(LinkTable(f"{bus}_link" if bus else "link", bus, table))
         return links
 
-    def before_exchanges(self) -> list[_Part]:
+    def before_exchanges(self) -> list[_LinkMember]:
         """Return the members of a link up to the exchanges. Members that small clients
         use come first: a processor reaches these with shorter instructions.
         """
         link, facts = self.link, self.facts_of_link
-        telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
+        telecommands, telemetry = (
+            _storable_messages(link.telecommands),
+            _storable_messages(link.telemetry),
+        )
         telecommand = (
             facts.stream.longest_request if facts.stream else facts.longest_telecommand
         )
@@ -185,54 +188,56 @@ class _LinkTables(TableSet):
             "telemetry", (self.message(sent, "0u") for sent in telemetry)
         )
         return [
-            _Part(
+            _LinkMember(
                 InitialiserValue(
                     self.array("nodes", "char *const", nodes), "whose messages"
                 )
             ),
-            _Part(InitialiserValue(f"{len(facts.owners)}u", "how many")),
-            _Part(InitialiserValue(boolean(facts.little), "byte order: little")),
-            _Part(
+            _LinkMember(InitialiserValue(f"{len(facts.owners)}u", "how many")),
+            _LinkMember(InitialiserValue(boolean(facts.little), "byte order: little")),
+            _LinkMember(
                 InitialiserValue(
                     boolean(facts.node.bit_order == "msb0"),
                     "bit 0 is the most significant one",
                 )
             ),
-            _Part(
+            _LinkMember(
                 InitialiserValue(
                     f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
                     "ids of telemetry",
                 )
             ),
-            _Part(
+            _LinkMember(
                 InitialiserValue(f"{len(link.reasons)}u", "how many codes of refusals"),
                 self.refusing(),
                 "0u",
             ),
-            _Part(
+            _LinkMember(
                 InitialiserValue(f"{len(facts.unsolicited)}u", "how many unsolicited"),
                 {UART},
                 "0u",
             ),
-            _Part(InitialiserValue(_count(sent), "how many can be sent")),
-            _Part(InitialiserValue(_count(requested), "how many can be requested")),
-            _Part(InitialiserValue(sent, "what can be sent")),
-            _Part(InitialiserValue(requested, "what can be requested")),
-            _Part(InitialiserValue(longest, "longest telecommand, reply, any")),
-            _Part(
+            _LinkMember(InitialiserValue(_row_count(sent), "how many can be sent")),
+            _LinkMember(
+                InitialiserValue(_row_count(requested), "how many can be requested")
+            ),
+            _LinkMember(InitialiserValue(sent, "what can be sent")),
+            _LinkMember(InitialiserValue(requested, "what can be requested")),
+            _LinkMember(InitialiserValue(longest, "longest telecommand, reply, any")),
+            _LinkMember(
                 InitialiserValue(
                     f"{facts.longest_data}u", "longest without id and checksum"
                 )
             ),
-            _Part(
+            _LinkMember(
                 InitialiserValue(
                     f"{received_bytes(link)}u", "buffer for what is received"
                 )
             ),
-            _Part(InitialiserValue(self.stream(), "framing"), ()),
+            _LinkMember(InitialiserValue(self.stream(), "framing"), ()),
         ]
 
-    def after_exchanges(self) -> list[_Part]:
+    def after_exchanges(self) -> list[_LinkMember]:
         """Return the members of a link after the exchanges."""
         link, facts = self.link, self.facts_of_link
         settings = f"{{{self.values('client', facts.client)}}}"
@@ -244,50 +249,52 @@ class _LinkTables(TableSet):
         packet = facts.acknowledge
         log_mask, log_file, log_message = self.optional("LOGS", self.logs())
         return [
-            _Part(InitialiserValue(self.checksum(), "checksums of messages"), checked),
-            _Part(
+            _LinkMember(
+                InitialiserValue(self.checksum(), "checksums of messages"), checked
+            ),
+            _LinkMember(
                 InitialiserValue(
                     self.numbers("reasons", "uint32_t", codes, 8), "codes of refusals"
                 ),
                 self.refusing(),
             ),
-            _Part(
+            _LinkMember(
                 InitialiserValue(
                     self.part("framing", facts.framing), "framing of the UART"
                 ),
                 {UART},
             ),
-            _Part(
+            _LinkMember(
                 InitialiserValue(
                     f"{packet.overhead if packet else 0}u", "bytes of an acknowledge"
                 ),
                 {UART},
                 "0u",
             ),
-            _Part(InitialiserValue(self.unsolicited(), "unsolicited"), {UART}),
+            _LinkMember(InitialiserValue(self.unsolicited(), "unsolicited"), {UART}),
             log_message,
-            _Part(InitialiserValue(self.can(), "CAN"), {CAN}),
-            _Part(
+            _LinkMember(InitialiserValue(self.can(), "CAN"), {CAN}),
+            _LinkMember(
                 InitialiserValue(settings, "times and limits: icd_client_settings_t")
             ),
-            _Part(InitialiserValue(or_none(facts.node.node_type), "node type")),
-            _Part(
+            _LinkMember(InitialiserValue(or_none(facts.node.node_type), "node type")),
+            _LinkMember(
                 InitialiserValue(
                     or_none(facts.node.interface_version), "interface version"
                 )
             ),
-            _Part(InitialiserValue(or_none(facts.i2c_address), "I2C address")),
-            _Part(
+            _LinkMember(InitialiserValue(or_none(facts.i2c_address), "I2C address")),
+            _LinkMember(
                 InitialiserValue(
                     boolean(facts.i2c_repeated_start),
                     "I2C: a read may follow its write without a stop",
                 )
             ),
-            _Part(InitialiserValue(or_none(facts.boot_ms), "boot time in ms")),
+            _LinkMember(InitialiserValue(or_none(facts.boot_ms), "boot time in ms")),
             log_mask,
             log_file,
             *self.optional("FILES", self.of_files()),
-            _Part(
+            _LinkMember(
                 InitialiserValue(
                     self.report("identification", link.identification), "identification"
                 ),
@@ -318,19 +325,23 @@ class _LinkTables(TableSet):
             ),
         )
 
-    def logs(self) -> Iterator[_Part]:
+    def logs(self) -> Iterator[_LinkMember]:
         facts = self.facts_of_link
-        yield _Part(InitialiserValue(self.log_mask(), "mask of logs"), ())
-        yield _Part(
+        yield _LinkMember(InitialiserValue(self.log_mask(), "mask of logs"), ())
+        yield _LinkMember(
             InitialiserValue(self.part("log_file", facts.log_file), "log files"), ()
         )
-        yield _Part(InitialiserValue(self.log_message(), "unsolicited logs"), {UART})
+        yield _LinkMember(
+            InitialiserValue(self.log_message(), "unsolicited logs"), {UART}
+        )
 
-    def of_files(self) -> Iterator[_Part]:
-        yield _Part(InitialiserValue(self.time(), "packed times"), ())
-        yield _Part(InitialiserValue(self.index(), "index of files"), ())
+    def of_files(self) -> Iterator[_LinkMember]:
+        yield _LinkMember(InitialiserValue(self.time(), "packed times"), ())
+        yield _LinkMember(InitialiserValue(self.index(), "index of files"), ())
 
-    def optional(self, what: str, parts: Iterable[_Part]) -> Iterator[_Part]:
+    def optional(
+        self, what: str, parts: Iterable[_LinkMember]
+    ) -> Iterator[_LinkMember]:
         """List members that a program can omit, together with their tables."""
         first = len(self.tables)
         for part in parts:
@@ -695,7 +706,7 @@ def _in_lines(values: Iterable[str]) -> str:
     return f",\n{STEP * 3}".join(values)
 
 
-def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
+def _storable_messages(messages: Iterable[SentMessage]) -> list[SentMessage]:
     """Return the messages that the tables of the wire layer can store."""
     return [
         sent
@@ -705,7 +716,7 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
     ]
 
 
-def _count(table: str) -> str:
+def _row_count(table: str) -> str:
     if table == "NULL":
         return "0u"
     return f"ICDGEN_ROWS({table})"

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from icdgen.backends.c import bits, constants
-from icdgen.backends.c.decoding import elements
+from icdgen.backends.c.decoding import element_count
 from icdgen.backends.c.statement import loop
 from icdgen.backends.c.text import literal
 from icdgen.backends.lines import STEP
@@ -23,7 +23,7 @@ empty if the field needs none.
 """
 
 
-def _statements(
+def _statements_of_field(
     field: FieldDescription,
     lines_of: _Lines,
     count: str,
@@ -51,7 +51,7 @@ def _statements(
         lines = [
             line
             for inner, many in members
-            for line in _statements(
+            for line in _statements_of_field(
                 inner, lines_of, many, f"{member}.", f"{name}[].", depth + 1
             )
         ]
@@ -67,15 +67,17 @@ def initial_statements(message: Composite[Any]) -> list[str]:
     lines = [f"message->{field.member} = {field.initial_raw}u;" for field in counters]
     for field in message.walk(Into.STRUCTS):
         if field.initial_count or not field.count:
-            lines += _statements(field, _valid, f"{field.initial_count}u")
+            lines += _statements_of_field(
+                field, _initial_lines, f"{field.initial_count}u"
+            )
     return lines
 
 
-def _valid(field: FieldDescription, member: str, name: str) -> list[str]:
+def _initial_lines(field: FieldDescription, member: str, name: str) -> list[str]:
     return (
         []
         if field.model.const is None
-        else [f"message->{member} = {constants.only(field)};"]
+        else [f"message->{member} = {constants.only_value_macro(field)};"]
     )
 
 
@@ -86,42 +88,46 @@ def misfits(message: MessageDescription, is_last_part: bool) -> list[str]:
     They test the fields of the last variable part, or all others: the count must be
     valid before its elements are tested.
     """
-    return _tests(message, is_last_part, _named)
+    return _range_tests(message, is_last_part, _name_of_misfit)
 
 
 def excess(message: MessageDescription) -> list[str]:
-    """Return the statements that collect bits that do not fit in ``excess``."""
+    """Return the statements that collect bits that do not fit in ``bits_beyond_field``."""
     return [
         line
         for is_last_part in (False, True)
-        for line in _tests(message, is_last_part, _gathered)
+        for line in _range_tests(message, is_last_part, _gathered)
     ]
 
 
-def _tests(
+def _range_tests(
     message: MessageDescription, is_last_part: bool, lines_of: _Lines
 ) -> list[str]:
     lines = []
     for field in message.walk(Into.STRUCTS):
         if field.needs_range_check and field.is_in_last_part == is_last_part:
             count = (
-                elements(message.last_part)
+                element_count(message.last_part)
                 if is_last_part and message.last_part
                 else f"{field.count}u"
             )
-            lines += _statements(field, lines_of, count)
+            lines += _statements_of_field(field, lines_of, count)
     return lines
 
 
-def _named(field: FieldDescription, member: str, name: str) -> list[str]:
+def _name_of_misfit(field: FieldDescription, member: str, name: str) -> list[str]:
     if not field.is_narrow:
         return []
     return [
-        f"if (({bits.excess(field, member)}) != 0u) {{",
+        f"if (({bits.bits_beyond_field(field, member)}) != 0u) {{",
         f"{STEP}return {literal(name)};",
         "}",
     ]
 
 
 def _gathered(field: FieldDescription, member: str, name: str) -> list[str]:
-    return [f"excess |= {bits.excess(field, member)};"] if field.is_narrow else []
+    return (
+        [f"excess |= {bits.bits_beyond_field(field, member)};"]
+        if field.is_narrow
+        else []
+    )

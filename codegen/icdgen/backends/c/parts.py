@@ -26,10 +26,10 @@ def part_statements(
 ) -> list[str]:
     """Return the statements that copy a contained message at bit ``begin``."""
     copies = part.copies(message, begin)
-    return [line for copied in copies for line in _statements(copied)]
+    return [line for copied in copies for line in _copy_statements(copied)]
 
 
-def _statements(copied: CopiedMember) -> Iterator[str]:
+def _copy_statements(copied: CopiedMember) -> Iterator[str]:
     member = copied.member
     # Arrays cannot be assigned in C (C99 6.5.16).
     if copied.is_whole and (member.count or member.model.is_bytes):

@@ -17,17 +17,17 @@ from icdgen.icd.curve import Curve
 INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 
 
-def declarations(field: FieldDescription) -> Iterator[str]:
+def accessor_declarations(field: FieldDescription) -> Iterator[str]:
     """List the lines at the start of the accessors in double precision: a calibration,
     or a scale of many digits.
     """
     if field.curve is not None:
-        yield from _curve(field.curve)
+        yield from _curve_declarations(field.curve)
     elif field.steps is not None and field.steps.is_wide:
         yield from _wide_scale(field.steps)
 
 
-def _curve(curve: Curve) -> Iterator[str]:
+def _curve_declarations(curve: Curve) -> Iterator[str]:
     """List the declarations of a calibration: the terms of all pieces, then the pieces."""
     terms = [", ".join(map(repr, piece.terms)) for piece in curve.pieces]
     begin = accumulate((len(piece.terms) for piece in curve.pieces), initial=0)
@@ -38,11 +38,13 @@ def _curve(curve: Curve) -> Iterator[str]:
         # `accumulate` with an initial value yields one sum more than there are pieces.
         for (start, own_terms), at in zip(curve.pieces, begin, strict=False)
     )
-    yield from _array("static const double terms[]", list(filter(None, terms)))
-    yield from _array("static const icdgen_piece_t curve[]", list(pieces))
+    yield from _array_declaration(
+        "static const double terms[]", list(filter(None, terms))
+    )
+    yield from _array_declaration("static const icdgen_piece_t curve[]", list(pieces))
 
 
-def _array(head: str, rows: list[str]) -> Iterator[str]:
+def _array_declaration(head: str, rows: list[str]) -> Iterator[str]:
     if len(rows) == 1:
         yield f"{head} = {{{rows[0]}}};"
         return
@@ -89,7 +91,7 @@ def _limit(value: int, storage: Storage) -> str:
     return f"UINT64_C({value})" if value >= 1 << 32 else f"{value}u"
 
 
-def _kind(storage: Storage, bits: int = 0) -> str:
+def _function_suffix(storage: Storage, bits: int = 0) -> str:
     """Return the end of the name of a function: ``u16``; with ``bits`` for integers of
     this width.
     """
@@ -102,12 +104,12 @@ def double_value(field: FieldDescription, raw: str) -> str:
         return f"icdgen_curve(ICDGEN_CAST(double, {raw}), curve, {len(field.curve.pieces)}u)"
     assert field.arithmetic is not None
     steps, storage = field.arithmetic.steps, field.storage
-    kind = _kind(storage, 64)
+    kind = _function_suffix(storage, 64)
     if steps.is_wide:
         return f"icdgen_wide_physical_{kind}({raw}, &scale)"
     if field.arithmetic.is_exact_in_int64:
         p, c, q = steps.terms
-        return f"icdgen_quotient({_scaled(raw, p, c, 64)}, {int64(q)})"
+        return f"icdgen_quotient({_linear_expression(raw, p, c, 64)}, {int64(q)})"
     *terms, is_negated = field.arithmetic.int64_terms
     value = f"icdgen_physical_{kind}({', '.join((raw, *map(int64, terms)))})"
     # `-value` would turn 0 into -0.0; 0.0 - 0.0 is +0.0 (IEEE 754, 6.3).
@@ -126,7 +128,7 @@ def double_setter(field: FieldDescription) -> tuple[str, ...]:
             # line that has an inverse.
             return f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
         return (
-            f"icdgen_set_curve_{_kind(storage)}",
+            f"icdgen_set_curve_{_function_suffix(storage)}",
             "value",
             "curve",
             f"{len(field.curve.pieces)}u",
@@ -136,10 +138,15 @@ def double_setter(field: FieldDescription) -> tuple[str, ...]:
     # The functions for unsigned integers have no lower limit, because it is 0.
     limits = limits if storage.signed else limits[1:]
     if field.arithmetic.steps.is_wide:
-        return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits
+        return (
+            f"icdgen_wide_set_{_function_suffix(storage)}",
+            "value",
+            "&scale",
+            *limits,
+        )
     *terms, is_negated = field.arithmetic.int64_terms
     return (
-        f"icdgen_set_{_kind(storage)}",
+        f"icdgen_set_{_function_suffix(storage)}",
         "-value" if is_negated else "value",
         *map(int64, terms),
         *limits,
@@ -148,17 +155,21 @@ def double_setter(field: FieldDescription) -> tuple[str, ...]:
 
 def integer_value(access: IntegerAccess, raw: str) -> str:
     """Return the physical value of a raw value in whole parts of the unit."""
-    return _scaled(raw, access.scale.factor, access.scale.offset, access.bits)
+    return _linear_expression(
+        raw, access.scale.factor, access.scale.offset, access.bits
+    )
 
 
-def _scaled(raw: str, factor: int, offset: int, bits: int) -> str:
+def _linear_expression(raw: str, factor: int, offset: int, bits: int) -> str:
     # The type of `raw` is never `uint64_t`, which would make the product unsigned: the
     # product must not overflow for any of its values
     # (`icdgen.describe.integer_scale.computable`).
-    return _plus(raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits)
+    return _with_offset(
+        raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits
+    )
 
 
-def _plus(value: str, offset: int, bits: int) -> str:
+def _with_offset(value: str, offset: int, bits: int) -> str:
     return (
         # `icdgen.describe.integer_scale` ensures that the negative of the offset fits,
         # too.
@@ -180,7 +191,7 @@ def integer_raw(access: IntegerAccess, storage: Storage) -> str:
     # The support header rounds for positive divisors only, so a negative factor swaps
     # the operands of the difference.
     if factor > 0:
-        value = _plus("value", -offset, bits)
+        value = _with_offset("value", -offset, bits)
     else:
         value = f"{'-' if offset < 0 else ''}INT{bits}_C({abs(offset)}) - value"
     if abs(factor) != 1:

@@ -78,7 +78,7 @@ def procedure_sizes(links: Iterable[LinkDescription]) -> ProcedureSizes:
     return ProcedureSizes(max(lengths, default=1), max(registers))
 
 
-class Function(NamedTuple):
+class OutputFunction(NamedTuple):
     """Function that returns an output of a procedure."""
 
     name: str
@@ -144,8 +144,8 @@ class ProcedureCode:
     @property
     def parameters(self) -> list[str]:
         """Parameters of the function, with their types."""
-        parameters = [_fixed("procedure")]
-        parameters += [_fixed("bus")] if self.needs_bus else []
+        parameters = [_fixed_parameter("procedure")]
+        parameters += [_fixed_parameter("bus")] if self.needs_bus else []
         for each in self.procedure.inputs:
             names = input_parameters(each.name, each.is_bytes)
             types = (
@@ -154,7 +154,7 @@ class ProcedureCode:
                 else (f"{self.type_of(each)} ",)
             )
             parameters += map("".join, zip(types, names, strict=True))
-        return parameters + list(map(_fixed, self.memory_names))
+        return parameters + list(map(_fixed_parameter, self.memory_names))
 
     @property
     def memory_names(self) -> list[str]:
@@ -232,7 +232,7 @@ class ProcedureCode:
         return [buffer, bitmap] if self.receives else [bitmap]
 
     @property
-    def outputs(self) -> list[Function]:
+    def outputs(self) -> list[OutputFunction]:
         """Functions that return the outputs."""
         functions = []
         for output in self.procedure.outputs:
@@ -245,7 +245,7 @@ class ProcedureCode:
                 value = f"ICDGEN_CAST({type}, {value})"
             name = procedure(self.node, self.procedure.name, output.name)
             about = f"Return `{output.name}`. It is valid if the procedure ended with ICD_DONE."
-            functions.append(Function(name, type, value, about))
+            functions.append(OutputFunction(name, type, value, about))
         return functions
 
     def _enum(self, enum: Enum) -> str:
@@ -329,9 +329,9 @@ class _ProcedureTables(TableSet):
         elif isinstance(step, VerifyChecksum):
             index = self._row("checksums", self.checksum(step))
         elif isinstance(step, (Verify, SkipUnless)):
-            index = self._row("tests", test(step.test))
+            index = self._row("tests", test_initialiser(step.test))
         elif isinstance(step, SetLength):
-            index = self._row("tests", f"{{0u, {value(step.value)}}}")
+            index = self._row("tests", f"{{0u, {value_initialiser(step.value)}}}")
         again = boolean(getattr(step, "again", False))
         to = getattr(step, "to", 0)
         kind = f"ICD_STEP_{_KINDS[type(step)]}"
@@ -356,7 +356,7 @@ class _ProcedureTables(TableSet):
             "puts",
             "icd_put_t",
             (
-                f"{{{number_place(each.place, ID_BYTES)}, {value(each.value)}}}"
+                f"{{{number_place(each.place, ID_BYTES)}, {value_initialiser(each.value)}}}"
                 for each in step.puts
             ),
         )
@@ -380,7 +380,9 @@ class _ProcedureTables(TableSet):
                 for each in step.takes
             ),
         )
-        tests = self.shared("conditions", "icd_test_t", map(test, (*until, *fails)))
+        tests = self.shared(
+            "conditions", "icd_test_t", map(test_initialiser, (*until, *fails))
+        )
         counts = f"{len(step.takes)}u, {len(until)}u, {len(fails)}u"
         return (
             f"{{{step.message.telemetry_id:#x}u, {takes}, {tests}, {counts}, {times}}}"
@@ -396,7 +398,7 @@ class _ProcedureTables(TableSet):
 
     def checksum(self, step: VerifyChecksum) -> str:
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
-        return f"{{{self.algorithm(step.algorithm)}, {flags}, {value(step.value)}}}"
+        return f"{{{self.algorithm(step.algorithm)}, {flags}, {value_initialiser(step.value)}}}"
 
     def input(self, each: Input) -> InitialiserValue:
         values = self.shared("values", "uint32_t", (f"{n}u" for n in each.values))
@@ -416,7 +418,7 @@ class _ProcedureTables(TableSet):
                 "icd_map_message_t",
                 [
                     InitialiserValue(
-                        f"{{{_id(message.telecommand_id)}, {_id(message.telemetry_id)}}}",
+                        f"{{{_id_literal(message.telecommand_id)}, {_id_literal(message.telemetry_id)}}}",
                         plain(message.name),
                     )
                     for message in map.messages
@@ -459,20 +461,20 @@ class _ProcedureTables(TableSet):
         )
 
 
-def _fixed(name: str) -> str:
+def _fixed_parameter(name: str) -> str:
     """Return a parameter of all procedures that need it."""
     return PROCEDURE_PARAMETERS[name] + name
 
 
-def _id(id: int | None) -> str:
+def _id_literal(id: int | None) -> str:
     return f"{id or 0:#x}u"
 
 
-def value(value: Value) -> str:
+def value_initialiser(value: Value) -> str:
     """Return the initialiser of a value."""
     return f"{{{value.number}u, {boolean(value.in_register)}}}"
 
 
-def test(test: Test) -> str:
+def test_initialiser(test: Test) -> str:
     """Return the initialiser of a test."""
-    return f"{{{test.register}u, {value(test.value)}}}"
+    return f"{{{test.register}u, {value_initialiser(test.value)}}}"

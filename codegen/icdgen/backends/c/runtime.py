@@ -16,7 +16,7 @@ _GUARDED = re.compile(
 )
 
 
-def assembled(
+def assemble_file(
     file: str, render: Renderer, replaced: Mapping[str, str] = MappingProxyType({})
 ) -> str:
     """Return the text of a file with its parts.

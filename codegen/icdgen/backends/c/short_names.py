@@ -31,14 +31,14 @@ def short_names(identifiers: Iterable[Identifier]) -> dict[str, str]:
         if len(identifier.text) >= SIGNIFICANT and _LONG.fullmatch(identifier.text):
             alike[identifier.text[:SIGNIFICANT]].add(identifier.text)
     return {
-        text: _short(text)
+        text: _short_name(text)
         for texts in alike.values()
         if len(texts) > 1
         for text in texts
     }
 
 
-def _short(text: str) -> str:
+def _short_name(text: str) -> str:
     digest = sha256(text.encode()).hexdigest()[:_DIGITS]
     begin = text[: SIGNIFICANT - _DIGITS - 1].rstrip("_")
     return f"{begin}_{digest.upper() if text.isupper() else digest}"

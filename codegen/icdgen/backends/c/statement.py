@@ -64,7 +64,7 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
     return f"{target} = ICDGEN_U8(\n{STEP * 2}{rows});"
 
 
-def like(candidate: MessageOfId, depth: int = 3) -> str:
+def frame_test(candidate: MessageOfId, depth: int = 3) -> str:
     """Return the test whether a frame is that of a message, by its length and the bytes
     of its constants.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from icdgen.backends.c import names
-from icdgen.backends.c.facts import TYPES, InitialiserValue, spelled
+from icdgen.backends.c.facts import TYPES, InitialiserValue, fact_value
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import Assumptions, LinkDescription, byte_table
@@ -121,7 +121,7 @@ class TableSet:
         for fact in facts_of(part):
             value, text = getattr(part, fact.name), fact.name
             about = f"{text} in ms" if fact.kind is Kind.TIME else text
-            rows.append(InitialiserValue(spelled(fact, value), about))
+            rows.append(InitialiserValue(fact_value(fact, value), about))
         return rows
 
     def values(self, name: str, part: object) -> str:

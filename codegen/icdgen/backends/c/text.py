@@ -64,7 +64,7 @@ def _escaped(match: re.Match[str]) -> str:
     return f"\\{match[0]}"
 
 
-def _spelled(paragraph: str) -> str:
+def _escaped_paragraph(paragraph: str) -> str:
     command, space, text = (
         paragraph.partition(" ")
         if isinstance(paragraph, _Command)
@@ -75,7 +75,7 @@ def _spelled(paragraph: str) -> str:
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
     """Return a documentation comment: on one line if it fits, else a block."""
-    paragraphs = [_spelled(p) for p in paragraphs if p]
+    paragraphs = [_escaped_paragraph(p) for p in paragraphs if p]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
         return f"{indent}/** {tamed(paragraphs[0])} */"
     return "\n".join(

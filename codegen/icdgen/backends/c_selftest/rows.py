@@ -35,7 +35,7 @@ BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
 TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES"}
 
 
-class Accessors(NamedTuple):
+class AccessorRows(NamedTuple):
     """Getter and setter of a physical value, with rows of test values."""
 
     get: str
@@ -57,9 +57,9 @@ class SelftestField(NamedTuple):
     fresh: str
     view: str  # type of the getter of an overlay
     unfit: list[str]
-    integer: Accessors | None
-    scaled: Accessors | None
-    text: Accessors | None
+    integer: AccessorRows | None
+    scaled: AccessorRows | None
+    text: AccessorRows | None
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
@@ -116,9 +116,13 @@ class _SelftestFile:
         for enum, (_, unknown) in zip(self.node.enums, self.vectors.enums, strict=True):
             stem = names.stem(enum)
             for member in enum.members:
-                yield stem, _unsigned(member.model.value), literal(member.model.name)
+                yield (
+                    stem,
+                    _unsigned_literal(member.model.value),
+                    literal(member.model.name),
+                )
             if unknown is not None:
-                yield stem, _unsigned(unknown), "NULL"
+                yield stem, _unsigned_literal(unknown), "NULL"
 
     def dispatcher(
         self, direction: DirectionMessages, id_bits: int
@@ -134,9 +138,9 @@ class _SelftestFile:
         unshared_ids = (
             id for id in test_ids((*lengths, *shared), id_bits) if id not in shared
         )
-        rows = [_id(id, lengths.get(id)) for id in unshared_ids]
+        rows = [_id_row(id, lengths.get(id)) for id in unshared_ids]
         frames = [
-            _frame(row)
+            _frame_row(row)
             for row in self.vectors.shared
             if row.direction == direction.kind
         ]
@@ -150,7 +154,7 @@ class _SelftestFile:
         Each has a reason and bytes: the frame, then the packed raw values.
         """
         used_bits = bytes(message.model.length)
-        vectors = _plain(message, vectors)
+        vectors = _vectors_in_c(message, vectors)
         for row in vectors.rows:  # a bit that no encoded frame sets is reserved
             used_bits = bytes(
                 a | b
@@ -173,10 +177,12 @@ class _SelftestFile:
                 (plain(row.why), self.vector(row, fields)) for row in vectors.rows
             ],
             "vector_size": message.model.length + sum(field.packed for field in fields),
-            "kept": _bytes(used_bits),
+            "kept": _byte_rows(used_bits),
             "doubles": in_rows(doubles, NUMBERS_IN_ROW),
             "texts": [
-                f"{_text(text)}," for row in vectors.rows for text in row.texts.values()
+                f"{_text_literal(text)},"
+                for row in vectors.rows
+                for text in row.texts.values()
             ],
             "fields": fields,
             "lengths": (
@@ -186,7 +192,7 @@ class _SelftestFile:
             ),
             "refused_lengths": vectors.lengths,
             "tail": (
-                _tail(message, message.last_part, vectors)
+                _variable_part_values(message, message.last_part, vectors)
                 if message.last_part is not None
                 else None
             ),
@@ -207,7 +213,7 @@ class _SelftestFile:
                 if isinstance(value, bytes)
                 else (value & bits).to_bytes(field.packed, "little")
             )
-        return _bytes(bytes(data))
+        return _byte_rows(bytes(data))
 
     def field(
         self,
@@ -232,7 +238,7 @@ class _SelftestFile:
         ]
         settings = vectors.settings.get(field.name)
         accessors = {
-            accessor.kind: _accessors(accessor, settings)
+            accessor.kind: _accessor_rows(accessor, settings)
             for accessor in accessors_of(description, "text", "double", "integer")
             if accessor.kind != "integer" or accessor.is_settable
         }
@@ -243,23 +249,25 @@ class _SelftestFile:
             element="" if index is None else f"{index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
-            type=_type(field),
-            fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
+            type=_type_enumerator(field),
+            fresh="0u"
+            if is_bytes
+            else _unsigned_literal(_integer_of(vectors.default[field.name])),
             view=type_of(description) if field.is_read_only else "",
-            unfit=list(map(_unsigned, unfit)),
+            unfit=list(map(_unsigned_literal, unfit)),
             integer=accessors.get("integer"),
             scaled=accessors.get("double"),
             text=accessors.get("text"),
         )
 
 
-def _type(field: NodePlace) -> str:
+def _type_enumerator(field: NodePlace) -> str:
     if field.derived is not None:
         return "ICDGEN_SELFTEST_DERIVED"
     return f"ICDGEN_SELFTEST_{'SIGNED' if field.is_signed else TYPES.get(field.type, 'UNSIGNED')}"
 
 
-def _id(id: int, message: Message | None) -> str:
+def _id_row(id: int, message: Message | None) -> str:
     """Return the row of an id: longest and shortest frame of its message, and the
     status of the shortest frame with zeros.
     """
@@ -270,7 +278,7 @@ def _id(id: int, message: Message | None) -> str:
     return f"{{{id}u, {message.length}, {message.layout.shortest}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
 
 
-def _frame(row: SharedRow) -> str:
+def _frame_row(row: SharedRow) -> str:
     """Return the row of a frame with a shared id, and its expected status."""
     octets = (
         f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}"
@@ -287,7 +295,9 @@ def _frame(row: SharedRow) -> str:
     return f"{{{row.id}u, {len(row.frame)}u, {octets}, {status}, {name}}}"
 
 
-def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
+def _vectors_in_c(
+    message: MessageDescription, vectors: MessageVectors
+) -> MessageVectors:
     """Return the vectors as C represents optional fields: absent members have initial
     values, and other bits are 0.
     """
@@ -310,7 +320,7 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
         }
         doubles = {
             field.name: bits_of(
-                codec.physical_double(field, _number(raw[field.name])) or 0.0
+                codec.physical_double(field, _integer_of(raw[field.name])) or 0.0
             )
             for field in scaled
         }
@@ -331,7 +341,7 @@ def _scalars(message: MessageDescription) -> Iterator[FieldDescription]:
     return (scalar for member in message.declared_members for scalar in member.scalars)
 
 
-def _tail(
+def _variable_part_values(
     message: MessageDescription, tail: VariablePartDescription, vectors: MessageVectors
 ) -> dict[str, object]:
     """Return the template values of a message of variable length."""
@@ -344,7 +354,7 @@ def _tail(
         ),
         "high": tail.model.high,
         # `icdgen_selftest.c` expects frame i at byte i * `length` of a flat array.
-        "frames": _bytes(
+        "frames": _byte_rows(
             b"".join(
                 frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted
             )
@@ -353,7 +363,7 @@ def _tail(
     }
 
 
-def _accessors(accessor: Accessor, settings: Settings | None) -> Accessors:
+def _accessor_rows(accessor: Accessor, settings: Settings | None) -> AccessorRows:
     """Return accessors with test values.
 
     ``settings`` is None for an overlay field, because it has no setter.
@@ -368,7 +378,7 @@ def _accessors(accessor: Accessor, settings: Settings | None) -> Accessors:
             ([] if settings is None else _double_rows(accessor.field, settings)),
         )
     stem = names.stem(accessor.field.declaration.message)
-    return Accessors(
+    return AccessorRows(
         f"{stem}_{accessor.name}", f"{stem}_set_{accessor.name}", type, rows
     )
 
@@ -386,15 +396,15 @@ def _text_rows(settings: Settings) -> list[str]:
             if raw is None
             else f"(const uint8_t[]){{{', '.join(map(hex, raw))}}}"
         )
-        lines.append(f"{{{_text(text)}, {octets}}},")
+        lines.append(f"{{{_text_literal(text)}, {octets}}},")
     return lines
 
 
-def _text(text: str | None) -> str:
+def _text_literal(text: str | None) -> str:
     return "NULL" if text is None else literal(text)
 
 
-def _number(value: int | bytes) -> int:
+def _integer_of(value: int | bytes) -> int:
     assert isinstance(value, int)
     return value
 
@@ -407,7 +417,7 @@ def _double_rows(field: FieldDescription, settings: Settings) -> list[str]:
     for bits, raw in [*settings, *((bits, None) for bits in never)]:
         assert not isinstance(raw, bytes)
         lines.append(
-            f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},"
+            f"{{UINT64_C(0x{bits}), {_unsigned_literal(raw or 0)}, {'true' if raw is None else 'false'}}},"
         )
     return lines
 
@@ -420,11 +430,11 @@ def _integer_rows(accessor: Accessor) -> list[str]:
         assert isinstance(raw, int)
         exact = field.steps.physical(raw) * accessor.integers.scale.per
         assert exact.denominator == 1
-        lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
+        lines.append(f"{{{_unsigned_literal(raw)}, {physical.int64(int(exact))}}},")
     return lines
 
 
-def _unsigned(value: int) -> str:
+def _unsigned_literal(value: int) -> str:
     """Return the 64 bits of a raw value as a C literal."""
     return (
         f"{value}u"
@@ -433,5 +443,5 @@ def _unsigned(value: int) -> str:
     )
 
 
-def _bytes(data: bytes) -> list[str]:
+def _byte_rows(data: bytes) -> list[str]:
     return in_rows((f"0x{byte:02X}" for byte in data), BYTES_IN_ROW)

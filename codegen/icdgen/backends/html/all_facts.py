@@ -70,11 +70,11 @@ def facts_of_code(facts: Facts) -> list[FactTable]:
                 )
             )
         if rows:
-            parts.append(_part(path, rows))
+            parts.append(_fact_table(path, rows))
     return parts
 
 
-def with_others(
+def with_remaining_facts(
     relations: Relations,
     facts: Facts,
     parts: list[FactTable],
@@ -108,13 +108,13 @@ def with_others(
         if path == _PACKETS:
             rows = [FactRow(key, _packet_text(value))]
         elif isinstance(value, list) and value and isinstance(value[0], Mapping):
-            path, rows = (*path, key), [_entry(entry) for entry in value]
+            path, rows = (*path, key), [_row_of_entry(entry) for entry in value]
         else:
             url = urls.get(value, "") if isinstance(value, str) else ""
             rows = [FactRow(_about(form, key), _value_text(form, key, value), "", url)]
         # Buses, and the other parts of a link, are sections of their own.
         own = replaced_part(path)
-        part = _part(".".join(own), [])
+        part = _fact_table(".".join(own), [])
         before = "".join(f"{step.replace('_', ' ')}: " for step in path[len(own) :])
         parts_by_anchor.setdefault(part.anchor, part).rows.extend(
             r._replace(about=capitalized(before + r.about)) for r in rows
@@ -179,7 +179,7 @@ def _field_text(row: Mapping[str, Any]) -> str:
     return f"{row.get('name', row['role'])}{value} of {row['bits']} bits{enum}"
 
 
-def _entry(row: Mapping[str, Any]) -> FactRow:
+def _row_of_entry(row: Mapping[str, Any]) -> FactRow:
     """Return the row of a list entry, labeled by the name of the entry."""
     other_keys = {key: value for key, value in row.items() if key != "name"}
     return FactRow(str(row.get("name", "")), as_text(other_keys))
@@ -190,7 +190,7 @@ def title_of(path: str) -> str:
     return path.removeprefix("link.buses.").replace(".", ": ").replace("_", " ")
 
 
-def _part(path: str, rows: list[FactRow]) -> FactTable:
+def _fact_table(path: str, rows: list[FactRow]) -> FactTable:
     return FactTable(
         f"facts-{path.replace('.', '-')}",
         title_of(path),

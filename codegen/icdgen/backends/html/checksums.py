@@ -22,7 +22,7 @@ _KINDS = {
 _OF_ALL_KINDS = ("width", "init", "xor_out")
 
 
-class Sum(NamedTuple):
+class NodeChecksum(NamedTuple):
     """Checksum with its parameters, and its value of the characters 123456789."""
 
     name: str
@@ -30,13 +30,13 @@ class Sum(NamedTuple):
     check: str
 
 
-def of_node(node_facts: Facts, section: Mapping[str, Any]) -> list[Sum]:
+def of_node(node_facts: Facts, section: Mapping[str, Any]) -> list[NodeChecksum]:
     """Return the checksums of a node in the order of the ICD."""
     sums = []
     for algorithm in node_facts.checksums.values():
         check = section["link"]["checksums"][algorithm.name].get("check")
         shown = "" if check is None else f"0x{check:X}"
-        sums.append(Sum(algorithm.name, [*_rows(algorithm)], shown))
+        sums.append(NodeChecksum(algorithm.name, [*_rows(algorithm)], shown))
     return sums
 
 

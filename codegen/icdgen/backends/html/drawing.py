@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import groupby, islice, zip_longest
 
 from icdgen import frame_bits
-from icdgen.backends.html.labels import Box, BoxLabel, fit
+from icdgen.backends.html.labels import Box, BoxLabel, fit_name
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
@@ -57,7 +57,7 @@ class FrameDrawing:
     width: int = WIDTH
 
 
-def draw(
+def draw_frame(
     message: Message, node: Node, links: Links, first: int = 0, end: int | None = None
 ) -> FrameDrawing | None:
     """Return the drawing of the bytes from ``first`` to before ``end`` (default: all);
@@ -193,7 +193,7 @@ class _Canvas:
         rects = self._rects()
         for shape in self.shapes:
             shape.rects = rects[shape.key]
-            shape.labels = fit(shape.rects, self.labels[shape.key], shape.key)
+            shape.labels = fit_name(shape.rects, self.labels[shape.key], shape.key)
         msb0 = self.node.bit_order == "msb0"
         # Column numbers follow the bit numbering of the ICD.
         columns = [

@@ -32,7 +32,9 @@ class NodeErrata:
 
 def values(relations: Relations) -> dict[str, object]:
     """Return the values of the page: errata and notes of each node, in order."""
-    groups = [_group(relations, node) for node in relations.icd.nodes if node.errata]
+    groups = [
+        _node_errata(relations, node) for node in relations.icd.nodes if node.errata
+    ]
     entries = [
         entry
         for group in groups
@@ -50,11 +52,15 @@ def values(relations: Relations) -> dict[str, object]:
     }
 
 
-def _group(relations: Relations, node: Node) -> NodeErrata:
+def _node_errata(relations: Relations, node: Node) -> NodeErrata:
     errata = [
-        _entry(relations, erratum) for erratum in node.errata if not erratum.is_note
+        _erratum_entry(relations, erratum)
+        for erratum in node.errata
+        if not erratum.is_note
     ]
-    notes = [_entry(relations, erratum) for erratum in node.errata if erratum.is_note]
+    notes = [
+        _erratum_entry(relations, erratum) for erratum in node.errata if erratum.is_note
+    ]
     return NodeErrata(
         node,
         [
@@ -64,7 +70,7 @@ def _group(relations: Relations, node: Node) -> NodeErrata:
     )
 
 
-def _entry(relations: Relations, erratum: Erratum) -> ErratumEntry:
+def _erratum_entry(relations: Relations, erratum: Erratum) -> ErratumEntry:
     # Equal ids of different nodes are distinguished by their titles.
     places = relations.places[erratum.id, erratum.title]
     return ErratumEntry(

@@ -43,7 +43,7 @@ class PageVectors(NamedTuple):
     are_all: bool
 
 
-def frames(message: Message, node: Node) -> PageVectors:
+def page_vectors(message: Message, node: Node) -> PageVectors:
     """Return the frames of the golden vectors of a message; of a message with very long
     frames, the first ones.
     """
@@ -69,7 +69,7 @@ def _all_frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
             yield f"chosen values {index}", codec.encode(node, message, raw)
 
 
-def examples(message: Message, node: Node) -> list[ExampleFrame]:
+def example_frames(message: Message, node: Node) -> list[ExampleFrame]:
     """Return a pseudo-random frame and a frame of ones, both from the golden vectors;
     empty for a message without bytes.
     """
@@ -113,7 +113,7 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> ExampleCell:
     if field.enum is not None:
         member = field.enum.member_of(raw)
         name = member.name if member else "no member"
-        return ExampleCell(_raw(field, raw), name)
+        return ExampleCell(_raw_text(field, raw), name)
     if field.type == "bool":
         return ExampleCell(str(raw), "true" if raw else "false")
     physical = (
@@ -122,11 +122,11 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> ExampleCell:
         else codec.value_double(field, raw)
     )
     return ExampleCell(
-        _raw(field, raw),
+        _raw_text(field, raw),
         "" if physical is None else number_text(field, physical).replace("-", MINUS),
     )
 
 
-def _raw(field: NodePlace, raw: int) -> str:
+def _raw_text(field: NodePlace, raw: int) -> str:
     """Return the raw value of an integer field in its display format."""
     return integer_text(field, raw) if base_of(field) else number(raw)

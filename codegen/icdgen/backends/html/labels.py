@@ -25,7 +25,7 @@ class BoxLabel(NamedTuple):
 Box = tuple[int, int, int, int]  # x, y, width, height
 
 
-def fit(boxes: list[Box], name: str, number: int) -> list[BoxLabel]:
+def fit_name(boxes: list[Box], name: str, number: int) -> list[BoxLabel]:
     """Return the name in each box that is large enough, in several lines if needed;
     otherwise the number in the largest box.
     """

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from icdgen import codec
 from icdgen.backends.html import drawing, fields, plan, responses, sections, texts, wire
-from icdgen.backends.html.examples import examples, frames
+from icdgen.backends.html.examples import example_frames, page_vectors
 from icdgen.backends.html.relations import Relations
-from icdgen.backends.html.usage import names, snippets
+from icdgen.backends.html.usage import snippets, type_names
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
 from icdgen.describe.numbers import count_text, length_text
@@ -29,17 +29,17 @@ def values(
     """Return the values of the page of a message that ``node`` declares."""
     described, in_c = describe(relations.icd).message(message), relations.in_c(message)
     repeats = relations.links.repeats(message)
-    parts = sections.bands(relations, message)
-    shares = parts or sections.shares(message, repeats)
+    parts = sections.part_sections(relations, message)
+    shares = parts or sections.field_sections(message, repeats)
     # A message with sections has a drawing for each of them.
     pictures = [
-        drawing.draw(message, node, relations.links, part.first, part.end)
+        drawing.draw_frame(message, node, relations.links, part.first, part.end)
         for part in parts
-    ] or [drawing.draw(message, node, relations.links)]
+    ] or [drawing.draw_frame(message, node, relations.links)]
     drawings = [picture for picture in pictures if picture is not None]
     rows = fields.rows(message, relations.links)
     rows_by_share = fields.split(rows, shares)
-    shown = examples(message, node)
+    shown = example_frames(message, node)
     is_received = message.telemetry_id is not None
     # A telecommand shows its initial values.
     data = (
@@ -50,7 +50,7 @@ def values(
         "node": node,
         "url": relations.links.message(message),
         "ids": relations.ids(message),
-        "names": names(described, in_c),
+        "names": type_names(described, in_c),
         "facts": _facts(relations, node, message),
         "drawings": drawings,
         "keyed": any(picture.keyed for picture in drawings),
@@ -63,7 +63,7 @@ def values(
         "buses": wire.buses(message, relations.wire(message), data),
         "example_data": is_received and bool(data),
         "examples": shown,
-        "frames": frames(message, node),
+        "frames": page_vectors(message, node),
         "snippets": snippets(described, in_c, relations.packages, render),
         "contains": relations.contains[message.node, message.name],
         "contained_in": relations.contained_in[message.node, message.name],

@@ -70,7 +70,7 @@ def _paste_example(relations: Relations, example: Message | None) -> str:
     """Return a transmitted frame, as an example of input for the decoder."""
     if example is None:
         return ""
-    frame = examples.examples(example, relations.icd.node(example.node))[0].frame
+    frame = examples.example_frames(example, relations.icd.node(example.node))[0].frame
     buses = wire.buses(example, relations.wire(example), frame)
     lines = buses[0].lines if buses else []
     return " ".join(chunk.text for chunk in lines[-1].chunks) if lines else ""

@@ -110,7 +110,7 @@ def script_facts(
         "delimited_by": form.delimited_by,
         "longest": form.longest,
         "given": GIVEN,
-        "packets": [_packet(packet) for packet in form.packets],
+        "packets": [_packet_data(packet) for packet in form.packets],
     }
     if form.escaping:
         script_data["escaping"] = {
@@ -132,7 +132,7 @@ def script_facts(
             "packet": form.request.packet,
             "ids": [id for id in requested if ids is None or id in ids["telemetry"]],
         }
-    responses = list(_responses(form))
+    responses = list(_response_data(form))
     if responses and with_responses:
         script_data["responses"] = responses
     return script_data
@@ -144,7 +144,7 @@ def _ids_of(message: Message) -> dict[str, set[int]]:
     return {direction: set() if id is None else {id} for direction, id in ids.items()}
 
 
-def _packet(packet: PacketFormat) -> dict[str, object]:
+def _packet_data(packet: PacketFormat) -> dict[str, object]:
     """Return the data on a packet format for scripts."""
     packet_data: dict[str, object] = {
         "name": packet.name,
@@ -153,14 +153,14 @@ def _packet(packet: PacketFormat) -> dict[str, object]:
         "reserved": packet.reserved,
         "header": packet.header_bytes,
         "trailer": packet.trailer_bytes,
-        "fields": [_field(field) for field in packet.fields],
+        "fields": [_field_data(field) for field in packet.fields],
     }
     if packet.check:
-        packet_data["check"] = _check(packet.check)
+        packet_data["check"] = _check_data(packet.check)
     return packet_data
 
 
-def _field(field: PacketField) -> dict[str, object]:
+def _field_data(field: PacketField) -> dict[str, object]:
     # Left out if they have no effect: the index of frames is loaded by every page.
     defaults = {"id_shift": 0, "unit": 1, "plus": 0}
     own = {name: getattr(field, name) for name in defaults}
@@ -168,7 +168,7 @@ def _field(field: PacketField) -> dict[str, object]:
     return {**{name: getattr(field, name) for name in _FIELD_KEYS}, **more}
 
 
-def _check(check: Check) -> dict[str, object]:
+def _check_data(check: Check) -> dict[str, object]:
     places = {
         "from": check.covered_from,
         "trailer": check.covered_trailer,
@@ -177,7 +177,7 @@ def _check(check: Check) -> dict[str, object]:
     return {**checksum_facts(check.algorithm), **places}
 
 
-def _responses(form: Stream) -> Iterator[dict[str, object]]:
+def _response_data(form: Stream) -> Iterator[dict[str, object]]:
     """Yield what each packet without a message says about which messages: the verdict,
     and where status and reason are in the frame.
     """
@@ -201,15 +201,15 @@ def _responses(form: Stream) -> Iterator[dict[str, object]]:
             "about": about,
         }
         if response.status:
-            response_data["status"] = _place(response.status)
+            response_data["status"] = _place_data(response.status)
             response_data["meanings"] = response.meanings
         if response.reason:
-            response_data["reason"] = _place(response.reason)
+            response_data["reason"] = _place_data(response.reason)
             response_data["names"] = response.reasons
         yield response_data
 
 
-def _place(place: NumberPlace) -> list[object]:
+def _place_data(place: NumberPlace) -> list[object]:
     return [place.at, place.size, place.shift, place.bits, place.little]
 
 
@@ -221,7 +221,9 @@ def checksum_facts(algorithm: ChecksumAlgorithm) -> dict[str, object]:
     return numbers if algorithm.kind == CRC else {"kind": algorithm.kind, **numbers}
 
 
-def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str]]:
+def packet_boxes(
+    packet: Packet, form: PacketFormat
+) -> list[tuple[str, str, float, str]]:
     """Return text, subtitle, share of the width, and bit number of each field and of
     the data.
     """
@@ -230,10 +232,10 @@ def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str
     if form.content in (REQUEST, NOTHING):
         size = count(form.reserved, "byte")
         data = [("reserved", size, 3.0, "")] if form.reserved else []
-    return [*_boxes(packet.header), *data, *_boxes(packet.trailer)]
+    return [*_field_boxes(packet.header), *data, *_field_boxes(packet.trailer)]
 
 
-def _boxes(rows: Iterable[Section]) -> Iterator[tuple[str, str, float, str]]:
+def _field_boxes(rows: Iterable[Section]) -> Iterator[tuple[str, str, float, str]]:
     for row in sorted(rows, key=lambda row: int(row["at"])):
         # The minimum width leaves room for the name of the role.
         yield (
@@ -244,7 +246,7 @@ def _boxes(rows: Iterable[Section]) -> Iterator[tuple[str, str, float, str]]:
         )
 
 
-def places(packet: Packet, enum_urls: Mapping[str, str]) -> list[FormatField]:
+def format_fields(packet: Packet, enum_urls: Mapping[str, str]) -> list[FormatField]:
     """Return each field, in order.
 
     ``enum_urls``: links to the enumerations, by name.
@@ -254,8 +256,8 @@ def places(packet: Packet, enum_urls: Mapping[str, str]) -> list[FormatField]:
         FormatField(
             row["role"],
             f"{part}, {bit_range(row['at'], row['bits'])}",
-            _about(row) + id_parts.get(id(row), ""),
-            _holds(row),
+            _purpose_text(row) + id_parts.get(id(row), ""),
+            _value_text(row),
             enum_urls.get(row.get("enum", ""), ""),
             row.get("name", ""),
         )
@@ -273,7 +275,7 @@ def _id_parts(packet: Packet) -> Iterator[tuple[int, str]]:
         yield id(row), f": {bit_range(shift, row['bits'])} of its id"
 
 
-def _about(row: Section) -> str:
+def _purpose_text(row: Section) -> str:
     about = _ROLES.get(row["role"], "is the sender's choice")
     if row["role"] == "length":
         about += (
@@ -281,25 +283,25 @@ def _about(row: Section) -> str:
             if row.get("counts") == "message"
             else ": of the data"
         )
-        about += _unit(row)
+        about += _unit_text(row)
         about += (
             f", {'+' if row['plus'] > 0 else '−'} {abs(row['plus'])}"
             if row.get("plus")
             else ""
         )
     if row["role"] == "response_length":
-        about += _unit(row)
+        about += _unit_text(row)
     if row["role"] == "sequence" and row.get("per") == "id":
         about += " of each id"
     return about + (f", {row['byte_order']} endian" if "byte_order" in row else "")
 
 
-def _unit(row: Section) -> str:
+def _unit_text(row: Section) -> str:
     unit = row.get("unit", 1)
     return f", in units of {unit} bytes" if unit > 1 else ""
 
 
-def _holds(row: Section) -> str:
+def _value_text(row: Section) -> str:
     if row["role"] == "checksum":
         return f"{row['checksum']}, {_covered(row['covers'])}"
     if "enum" in row:
@@ -307,13 +309,13 @@ def _holds(row: Section) -> str:
     value = row.get("value")
     if isinstance(value, Mapping):
         return ", ".join(
-            f"{_number(number)} in {direction}{'s' * (direction == 'telecommand')}"
+            f"{_number_text(number)} in {direction}{'s' * (direction == 'telecommand')}"
             for direction, number in value.items()
         )
-    return "" if value is None else _number(value)
+    return "" if value is None else _number_text(value)
 
 
-def _number(value: int | list[int]) -> str:
+def _number_text(value: int | list[int]) -> str:
     return (
         " ".join(f"{byte:02X}" for byte in value)
         if isinstance(value, list)
@@ -334,17 +336,17 @@ class TransmittedPart(NamedTuple):
     title: str
 
 
-def packet(
+def packet_parts(
     form: Stream, link: Link, id: int, direction: Direction, data: bytes
 ) -> list[TransmittedPart]:
     """Return the parts of a message in its packet format, before byte stuffing."""
     sent = stream_encode(_unstuffed(link), id, data, direction)
     # An id has one row per direction.
     (row,) = (row for row in form.rows(direction) if row.id == id)
-    return _parts(form.packets[row.packet], sent)
+    return _split_parts(form.packets[row.packet], sent)
 
 
-def request(form: Stream, link: Link, telemetry_id: int) -> list[TransmittedPart]:
+def request_parts(form: Stream, link: Link, telemetry_id: int) -> list[TransmittedPart]:
     """Return the parts of the packet that requests telemetry, before byte stuffing;
     none if no packet does.
     """
@@ -352,7 +354,7 @@ def request(form: Stream, link: Link, telemetry_id: int) -> list[TransmittedPart
     if form.request is None or not any(row.is_requested for row in rows):
         return []
     sent = stream_encode_request(_unstuffed(link), telemetry_id)
-    return _parts(form.packets[form.request.packet], sent)
+    return _split_parts(form.packets[form.request.packet], sent)
 
 
 def _unstuffed(link: Link) -> Link:
@@ -363,7 +365,7 @@ def _unstuffed(link: Link) -> Link:
     return link._replace(stream=link.stream._replace(delimited_by="datagram"))
 
 
-def _parts(packet: PacketFormat, sent: bytes) -> list[TransmittedPart]:
+def _split_parts(packet: PacketFormat, sent: bytes) -> list[TransmittedPart]:
     # Kinds are classes of the style sheet.
     head, end = packet.header_bytes, len(sent) - packet.trailer_bytes
     before, behind = (

@@ -24,7 +24,7 @@ from icdgen.wording import count
 _SENDERS = {HOST: "host", DEVICE: "device", BOTH: "host and device"}
 
 
-class Content(NamedTuple):
+class PacketContent(NamedTuple):
     """Something that a packet carries, in words, with links to the messages."""
 
     label: str
@@ -41,14 +41,14 @@ class PacketView(NamedTuple):
     name: str
     anchor: str
     summary: str
-    contents: list[Content]
+    contents: list[PacketContent]
     boxes: list[tuple[str, str, float, str]]
     places: list[packet_formats.FormatField]
 
 
 def packet_views(relations: Relations, node: Node, stream: Stream) -> list[PacketView]:
     """Return the packet formats of a link, in the order of the ICD."""
-    packets, urls = _declared(relations, node), packet_urls(relations, node)
+    packets, urls = _declared_packets(relations, node), packet_urls(relations, node)
     enum_urls = {
         enum.name: relations.links.enum(enum)
         for owner in (*relations.icd.included(node), node)
@@ -64,8 +64,8 @@ def packet_views(relations: Relations, node: Node, stream: Stream) -> list[Packe
                 if packet.name
                 else []
             ),
-            packet_formats.boxes(packet, form),
-            packet_formats.places(packet, enum_urls),
+            packet_formats.packet_boxes(packet, form),
+            packet_formats.format_fields(packet, enum_urls),
         )
         for packet, form in zip(packets.all, stream.packets, strict=True)
     ]
@@ -80,7 +80,7 @@ def packet_urls(relations: Relations, node: Node) -> dict[str, str]:
     page, taken = relations.links.protocol(node.name), set[str]()
     return {
         packet.name: f"{page}#{_anchor(packet.name, node, taken)}"
-        for packet in _declared(relations, node).all
+        for packet in _declared_packets(relations, node).all
     }
 
 
@@ -96,7 +96,7 @@ def _section(relations: Relations, node: Node) -> Mapping[str, Any]:
     return section
 
 
-def _declared(relations: Relations, node: Node) -> Packets:
+def _declared_packets(relations: Relations, node: Node) -> Packets:
     messages = relations.icd.messages_of(node)
     return declared_packets(_section(relations, node), messages)
 
@@ -108,10 +108,10 @@ def _contents(
     packet: Packet,
     form: PacketFormat,
     stream: Stream,
-) -> list[Content]:
+) -> list[PacketContent]:
     """Return the sender of a packet, and what it carries."""
     messages = relations.icd.messages_of(node)
-    contents = [Content("Sent by", _SENDERS[packet.section["from"]], [])]
+    contents = [PacketContent("Sent by", _SENDERS[packet.section["from"]], [])]
     # A packet without message responds to telecommands or to requests.
     if form.content == NOTHING:
         section = _section(relations, node)
@@ -120,8 +120,8 @@ def _contents(
         text = "requests of telemetry" if is_of_request else ""
         return [
             *contents,
-            Content("Carries", "no message", []),
-            Content("Responds to", text, [*map(relations.place, refused)]),
+            PacketContent("Carries", "no message", []),
+            PacketContent("Responds to", text, [*map(relations.place, refused)]),
         ]
     carried = [
         relations.place(message)
@@ -132,7 +132,7 @@ def _contents(
         # The receiver knows from its request which telemetry this is.
         is_nameless = form.content == REQUESTED
         text = "the requested telemetry, without its id" if is_nameless else ""
-        contents.append(Content("Carries", text, carried))
+        contents.append(PacketContent("Carries", text, carried))
     if packet.name == packets.requesting:
         ids = {row.id for row in stream.telemetry if row.is_requested}
         requested = [
@@ -140,7 +140,7 @@ def _contents(
         ]
         reserved = form.reserved
         text = f"with {count(reserved, 'byte')} of zeros as data" if reserved else ""
-        contents.append(Content("Requests", text, requested))
+        contents.append(PacketContent("Requests", text, requested))
     return contents
 
 

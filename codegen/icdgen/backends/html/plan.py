@@ -32,7 +32,7 @@ def message_plan(
     # that they have in the expanded list.
     in_frame = places_in(message.layout)
     places = dict(_indices(in_frame, 0, _needed_names(message.layout)))
-    fields = _Fields(message, node, places, represented).items(in_frame, "")
+    fields = _FieldPlans(message, node, places, represented).items(in_frame, "")
     plan: dict[str, object] = {
         "name": message.name,
         "length": message.length,
@@ -45,7 +45,9 @@ def message_plan(
     parts = message.layout.parts
     if message.layout.has_gaps:
         plan["inner"] = [
-            _part(part, places) for part in parts if part is not parts[-1] or part.inner
+            _part_plan(part, places)
+            for part in parts
+            if part is not parts[-1] or part.inner
         ]
         plan["fewest"] = message.layout.shortest
     if parts:
@@ -89,7 +91,7 @@ def _indices(
         index += place.scalar_count
 
 
-def _part(part: VariablePart, places: Mapping[str, int]) -> dict[str, object]:
+def _part_plan(part: VariablePart, places: Mapping[str, int]) -> dict[str, object]:
     """Return the data of a part after which a frame differs from the longest frame."""
     plan: dict[str, object] = {
         "counter": places[part.counter],
@@ -99,7 +101,9 @@ def _part(part: VariablePart, places: Mapping[str, int]) -> dict[str, object]:
         "plus": part.plus,
     }
     return plan | (
-        {"nested": [_part(inner, places) for inner in part.inner]} if part.inner else {}
+        {"nested": [_part_plan(inner, places) for inner in part.inner]}
+        if part.inner
+        else {}
     )
 
 
@@ -116,7 +120,7 @@ def integer(value: int) -> int | str:
     return value if abs(value) < EXACT_DOUBLE else str(value)
 
 
-class _Fields:
+class _FieldPlans:
     """Data of the fields of a message.
 
     ``places``: indices by name of the fields that other fields depend on.

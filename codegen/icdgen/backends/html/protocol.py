@@ -53,8 +53,8 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     parts = all_facts.facts_of_code(node_facts)
     return {
         "node": node,
-        "framed": _framed(relations, node, node_facts),
-        "lines": lines(section),
+        "framed": _packet_values(relations, node, node_facts),
+        "lines": bus_settings(section),
         "framing": _framing(node_facts),
         "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
         "escaped_as": node_facts.framing
@@ -66,7 +66,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
                 for each in node_facts.checksums.values()
             ]
         ),
-        "identifier": _identifier(node_facts, section),
+        "identifier": _identifier_boxes(node_facts, section),
         "types": [
             FactRow(
                 f"{packet.section['type']} · {packet.name}",
@@ -75,7 +75,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
             for packet in bus_link(section.get("link", {}), CAN).packets.all
             if "type" in packet.section
         ],
-        "errors": errors(relations, node_facts),
+        "errors": error_codes(relations, node_facts),
         "responses": responses.of_node(relations, node),
         "acknowledges": sequences.acknowledges(relations, node, node_facts),
         "procedures": sequences.procedures(relations, node, node_facts),
@@ -85,7 +85,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
             for row in part.rows
             if row.value.endswith(" ms")
         ],
-        "parts": all_facts.with_others(relations, node_facts, parts, section),
+        "parts": all_facts.with_remaining_facts(relations, node_facts, parts, section),
         "assumptions": [
             FactRow(
                 f"{assumption.section}: {assumption.key.replace('_', ' ')}",
@@ -97,7 +97,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     }
 
 
-def lines(section: dict[str, Any]) -> list[tuple[str, list[FactRow]]]:
+def bus_settings(section: dict[str, Any]) -> list[tuple[str, list[FactRow]]]:
     """Return the settings of each bus."""
     settings_by_bus = []
     buses = {
@@ -105,13 +105,13 @@ def lines(section: dict[str, Any]) -> list[tuple[str, list[FactRow]]]:
     }
     line = {"Serial line": section.get("link", {}).get("line", {})}
     for title, settings in (line | buses).items():
-        rows = list(_settings(settings, ""))
+        rows = list(_setting_rows(settings, ""))
         if rows:
             settings_by_bus.append((title, rows))
     return settings_by_bus
 
 
-def _settings(section: dict[str, Any], prefix: str) -> Iterator[FactRow]:
+def _setting_rows(section: dict[str, Any], prefix: str) -> Iterator[FactRow]:
     for key, value in section.items():
         label = f"{prefix}{key.replace('_', ' ')}"
         # bool is a subclass of int.
@@ -122,9 +122,9 @@ def _settings(section: dict[str, Any], prefix: str) -> Iterator[FactRow]:
         elif isinstance(value, list) and all(isinstance(item, str) for item in value):
             yield FactRow(label, " or ".join(value))
         elif key in ("write", "read") and isinstance(value, dict):
-            yield from _settings(value, f"{key}, ")
+            yield from _setting_rows(value, f"{key}, ")
         elif key == "line":
-            yield from _settings(value, "")
+            yield from _setting_rows(value, "")
 
 
 def _framing(node_facts: Facts) -> list[BusBox]:
@@ -146,24 +146,26 @@ def _framing(node_facts: Facts) -> list[BusBox]:
             )
         )
     pieces += [(f"{form.escape:02X}", "escape", 1), (f"{form.end:02X}", "end", 1)]
-    return _row([(text, about, share, "") for text, about, share in pieces])
+    return _adjacent_boxes([(text, about, share, "") for text, about, share in pieces])
 
 
-def _framed(relations: Relations, node: Node, node_facts: Facts) -> dict[str, object]:
+def _packet_values(
+    relations: Relations, node: Node, node_facts: Facts
+) -> dict[str, object]:
     """Return the description of the packet formats; empty without one."""
     if node_facts.stream is None:
         return {}
     views = packets.packet_views(relations, node, node_facts.stream)
     return {
         "ends": packet_formats.end_of(node_facts.stream),
-        "packets": [(view, _row(view.boxes)) for view in views],
+        "packets": [(view, _adjacent_boxes(view.boxes)) for view in views],
         "is_named": any(view.name for view in views),
         "is_measured": node_facts.stream.delimited_by != LENGTH
         or all(packet.of("length") for packet in node_facts.stream.packets),
     }
 
 
-def _row(pieces: list[tuple[str, str, float, str]]) -> list[BusBox]:
+def _adjacent_boxes(pieces: list[tuple[str, str, float, str]]) -> list[BusBox]:
     """Return adjacent boxes with widths in proportion to their shares."""
     # 1 unit on either side is for the outline.
     total, x, boxes = sum(share for _, _, share, _ in pieces), 0.0, []
@@ -174,7 +176,7 @@ def _row(pieces: list[tuple[str, str, float, str]]) -> list[BusBox]:
     return boxes
 
 
-def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[BusBox]:
+def _identifier_boxes(node_facts: Facts, section: dict[str, Any]) -> list[BusBox]:
     if node_facts.can is None:
         return []
     names = {
@@ -187,13 +189,15 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[BusBox]:
         node_facts.can.parts.items(), key=lambda item: -item[1].shift
     )
     # The width of a box is proportional to its bits.
-    return _row([
+    return _adjacent_boxes([
         (names.get(role, role), f"{part.bits} bits", part.bits, f"{part.shift + part.bits - 1} … {part.shift}")
         for role, part in ordered
     ])  # fmt: skip
 
 
-def errors(relations: Relations, node_facts: Facts) -> list[tuple[int, str, str, str]]:
+def error_codes(
+    relations: Relations, node_facts: Facts
+) -> list[tuple[int, str, str, str]]:
     """Return code, name, role in the protocol, and link of each error."""
     roles = {code: key.replace("_", " ") for key, code in node_facts.reasons.items()}
     enums = [] if node_facts.stream else node_facts.reason_enums
@@ -211,12 +215,12 @@ def errors(relations: Relations, node_facts: Facts) -> list[tuple[int, str, str,
     ]
 
 
-def entries(
+def search_entries(
     relations: Relations, node: Node, url: str
 ) -> Iterator[tuple[str, str, PageLink]]:
     """Yield the search entries of the page: words, title and place of each section."""
     node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
-    for title, rows in lines(section):
+    for title, rows in bus_settings(section):
         words = " ".join(f"{row.about} {row.value}" for row in rows)
         yield (
             f"line bus serial interface {words}",
@@ -269,7 +273,7 @@ def entries(
             "responses",
         ),
         (
-            errors(relations, node_facts),
+            error_codes(relations, node_facts),
             "error codes reasons nack",
             "Error codes",
             "errors",

@@ -19,7 +19,7 @@ from icdgen.icd.variants import Variant, ids_of
 from icdgen.protocol import facts
 
 
-def index(relations: Relations) -> dict[str, Any]:
+def frame_index(relations: Relations) -> dict[str, Any]:
     """Return ``messages`` with name, page, length and owner, and ``speakers`` with the
     message number of each id.
     """
@@ -29,16 +29,22 @@ def index(relations: Relations) -> dict[str, Any]:
     }
     return {
         "messages": [
-            [m.name, relations.links.message(m), m.length, m.node, *_tail(relations, m)]
+            [
+                m.name,
+                relations.links.message(m),
+                m.length,
+                m.node,
+                *_variable_lengths(relations, m),
+            ]
             for m in messages
         ],
         "speakers": [
-            _speaker(relations, node, numbers) for node in relations.icd.nodes
+            _speaker_data(relations, node, numbers) for node in relations.icd.nodes
         ],
     }
 
 
-def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
+def _variable_lengths(relations: Relations, message: Message) -> list[dict[str, Any]]:
     """Return the lengths of frames of variable length, and the bits of the counter."""
     own, parts = message.layout, message.layout.parts
     # Any length down to the shortest is possible, and nothing counts the bytes.
@@ -72,10 +78,10 @@ def script(relations: Relations) -> str:
 
     A page opened from a folder cannot load other data.
     """
-    return f'"use strict";\nglobalThis.icdgenFrameIndex = {json.dumps(index(relations), separators=(",", ":"))};\n'
+    return f'"use strict";\nglobalThis.icdgenFrameIndex = {json.dumps(frame_index(relations), separators=(",", ":"))};\n'
 
 
-def numbers_of(
+def message_numbers(
     ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]
 ) -> dict[str, Any]:
     """Return the message number of each id.
@@ -99,15 +105,15 @@ def numbers_of(
     }
 
 
-def _speaker(
+def _speaker_data(
     relations: Relations, node: Node, numbers: dict[tuple[str, str], int]
 ) -> dict[str, Any]:
     node_facts, ids = facts.of(relations.icd, node), ids_of(relations.icd, node)
     speaker_data: dict[str, Any] = {
         "node": node.name,
         "title": node.title,
-        "telecommands": numbers_of(ids.telecommand, numbers),
-        "telemetry": numbers_of(ids.telemetry, numbers),
+        "telecommands": message_numbers(ids.telecommand, numbers),
+        "telemetry": message_numbers(ids.telemetry, numbers),
         "id_bytes": wire_ids.size(node.id_bits),
         "id_bits": node.id_bits,
     }

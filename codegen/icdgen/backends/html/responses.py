@@ -93,7 +93,7 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
     requests = request_row(relations, node)
     commands = _commands(relations, node)
     rows = [
-        _telecommand(relations, node, message)
+        _telecommand_row(relations, node, message)
         for message in _telecommands(relations, node)
         # Other telecommands have the general responses.
         if message.response is not None or message.repeat
@@ -102,7 +102,7 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
         return {}
     reasons: Mapping[str, str] = commands.get("reasons", {})
     return {
-        "general": general(relations, node),
+        "general": general_responses(relations, node),
         "telecommands": rows,
         "requests": requests,
         "reasons": [
@@ -113,9 +113,9 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
     }
 
 
-def general(relations: Relations, node: Node) -> list[ResponseRow]:
+def general_responses(relations: Relations, node: Node) -> list[ResponseRow]:
     """Return the responses to all telecommands without other responses."""
-    return _rows(relations, node, responses_in(_commands(relations, node)))
+    return _response_rows(relations, node, responses_in(_commands(relations, node)))
 
 
 def request_row(relations: Relations, node: Node) -> RequestRow | None:
@@ -138,7 +138,7 @@ def request_row(relations: Relations, node: Node) -> RequestRow | None:
             for message in relations.icd.messages_of(node)
             if message.telemetry_id in ids
         ],
-        _rows(relations, node, responses_in(section)),
+        _response_rows(relations, node, responses_in(section)),
         _milliseconds(section.get("timeout_ms")),
     )
 
@@ -150,7 +150,7 @@ def of_message(
     if not framed_link(relations.icd.protocol_of(node)):
         return
     if message.telecommand_id is not None:
-        row = _telecommand(relations, node, message)
+        row = _telecommand_row(relations, node, message)
         yield from ((_LABELS[each.kind], each.name, each.url) for each in row.rows)
         if not row.rows:
             yield "Response", NONE, ""
@@ -201,20 +201,22 @@ def _telecommands(relations: Relations, node: Node) -> list[Message]:
     return [message for message in messages if message.telecommand_id is not None]
 
 
-def _telecommand(relations: Relations, node: Node, message: Message) -> TelecommandRow:
+def _telecommand_row(
+    relations: Relations, node: Node, message: Message
+) -> TelecommandRow:
     own = message.response
     timeout = own.get("timeout_ms") if isinstance(own, Mapping) else None
     declared = declared_responses(_commands(relations, node), message)
     return TelecommandRow(
         message.name,
         relations.links.message(message),
-        _rows(relations, node, declared),
+        _response_rows(relations, node, declared),
         _milliseconds(timeout),
         "yes" if message.repeat else "",
     )
 
 
-def _rows(
+def _response_rows(
     relations: Relations, node: Node, declared: Mapping[str, Mapping[str, Any]]
 ) -> list[ResponseRow]:
     places = {

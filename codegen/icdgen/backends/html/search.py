@@ -61,7 +61,7 @@ def entries(relations: Relations) -> Iterator[SearchEntry]:
         )
     for node in relations.icd.nodes:
         if protocol.has_page(relations, node):
-            for words_, title, place in protocol.entries(
+            for words_, title, place in protocol.search_entries(
                 relations, node, links.protocol(node.name)
             ):
                 yield SearchEntry(
@@ -85,11 +85,11 @@ def entries(relations: Relations) -> Iterator[SearchEntry]:
                 url,
             )
         for message in node.messages:
-            yield from _of_message(relations, node, message)
+            yield from _message_entries(relations, node, message)
         # The members of these enumerations are also found by `error 5`.
         codes = _error_codes(relations, node)
         for enum in node.enums:
-            yield from _of_enum(relations, node, enum, enum.name in codes)
+            yield from _enum_entries(relations, node, enum, enum.name in codes)
         for erratum in node.errata:
             about = " ".join(
                 [*(f"table {table}" for table in erratum.tables), erratum.why]
@@ -134,7 +134,7 @@ def script(relations: Relations) -> str:
     return f'"use strict";\nglobalThis.icdgenSearchIndex = [\n{lines}\n];\n'
 
 
-def _of_message(
+def _message_entries(
     relations: Relations, node: Node, message: Message
 ) -> Iterator[SearchEntry]:
     links = relations.links
@@ -154,7 +154,7 @@ def _of_message(
         phrases += [] if id.hexadecimal else [id.text.lower()]
     if message.kind == CONFIGURATION:
         phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
-    phrases += _table(message.table)
+    phrases += _table_phrases(message.table)
     speakers = " ".join(speaker.name for speaker in relations.speakers[node.name])
     buses = " ".join(
         bus for bus in texts.BUSES if bus in buses_of(relations.icd.protocol_of(node))
@@ -196,7 +196,7 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
     }
 
 
-def _of_enum(
+def _enum_entries(
     relations: Relations, node: Node, enum: Enum, is_error: bool
 ) -> Iterator[SearchEntry]:
     links, own = (
@@ -204,7 +204,7 @@ def _of_enum(
         " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower(),
     )
     about = f"enum {node.name} {enum.summary}"
-    phrases = tuple(_table(enum.table))
+    phrases = tuple(_table_phrases(enum.table))
     yield SearchEntry(
         "enumeration",
         enum.name,
@@ -246,5 +246,5 @@ def _words(thing: Message | NodePlace | Enum | Member, node: Node) -> str:
     )
 
 
-def _table(table: int | None) -> list[str]:
+def _table_phrases(table: int | None) -> list[str]:
     return [f"table {table}"] if table else []

@@ -54,17 +54,19 @@ class MessageSection:
         )
 
 
-def bands(relations: Relations, message: Message) -> list[MessageSection]:
+def part_sections(relations: Relations, message: Message) -> list[MessageSection]:
     """Return a section for each contained message, or else for each array, and sections
     for the bytes between them.
 
     The list is empty if the message contains no messages and no arrays.
     """
     repeats = relations.links.repeats(message)
-    return _messages(relations, message, repeats) or _arrays(message, repeats)
+    return _message_sections(relations, message, repeats) or _array_sections(
+        message, repeats
+    )
 
 
-def _messages(
+def _message_sections(
     relations: Relations, message: Message, repeats: Repeats
 ) -> list[MessageSection]:
     """Return the contained messages and the bytes between them; empty if they overlap
@@ -80,32 +82,34 @@ def _messages(
         # A drawing has whole bytes, and a byte belongs to one section.
         if part.at % 8 or first < end or first + part.length > message.length:
             return []
-        found_sections += _between(message, repeats, end, first)
+        found_sections += _section_between(message, repeats, end, first)
         end = first + part.length
         found_sections.append(
             MessageSection(
                 part.place.text,
                 first,
                 end,
-                _keys(message, repeats, first, end),
+                _field_keys(message, repeats, first, end),
                 part.place.url,
             )
         )
     return (
-        _folded(
+        _fold_sections(
             repeats,
-            found_sections + _between(message, repeats, end, message.length),
+            found_sections + _section_between(message, repeats, end, message.length),
         )
         if parts
         else []
     )
 
 
-def _arrays(message: Message, repeats: Repeats) -> list[MessageSection]:
+def _array_sections(message: Message, repeats: Repeats) -> list[MessageSection]:
     """Return the first element of each represented array and the bytes between them."""
     if not repeats.arrays:
         return []
-    section_list = list(_around(message, repeats, list(repeats.arrays), 0, None))
+    section_list = list(
+        _sections_around_arrays(message, repeats, list(repeats.arrays), 0, None)
+    )
     shown = {key for section in section_list for key in section.keys}
     # Derived values are placed at the end of the message, which no array includes.
     remaining_keys = [
@@ -122,7 +126,7 @@ def _arrays(message: Message, repeats: Repeats) -> list[MessageSection]:
     return section_list
 
 
-def _around(
+def _sections_around_arrays(
     message: Message,
     repeats: Repeats,
     arrays: list[Repeat],
@@ -142,18 +146,18 @@ def _around(
     def between(start: int, stop: int) -> list[MessageSection]:
         return [
             replace(s, title=title or s.title, is_element=is_element)
-            for s in _between(message, repeats, start, stop)
+            for s in _section_between(message, repeats, start, stop)
         ]
 
     while arrays and arrays[0].first < end:
         array = arrays.pop(0)
         yield from between(first, array.first)
-        yield from _around(message, repeats, arrays, array.first, array)
+        yield from _sections_around_arrays(message, repeats, arrays, array.first, array)
         first = array.end
     yield from between(first, end)
 
 
-def shares(message: Message, repeats: Repeats) -> list[MessageSection]:
+def field_sections(message: Message, repeats: Repeats) -> list[MessageSection]:
     """Return the fields in order, in several sections if there are many."""
     fields = repeats.fields
     keys = [field.key for field in fields]
@@ -180,14 +184,14 @@ def shares(message: Message, repeats: Repeats) -> list[MessageSection]:
                 section_keys,
             )
         )
-    return _folded(repeats, section_list)
+    return _fold_sections(repeats, section_list)
 
 
 def _has_bits(place: NodePlace) -> bool:
     return not place.is_count and place.derived is None
 
 
-def _folded(
+def _fold_sections(
     repeats: Repeats, section_list: list[MessageSection]
 ) -> list[MessageSection]:
     """Return the sections. In a long message, fold all sections but the first."""
@@ -205,18 +209,18 @@ def _is_long(repeats: Repeats) -> bool:
     return sum(weights) > _LONG
 
 
-def _between(
+def _section_between(
     message: Message, repeats: Repeats, first: int, end: int
 ) -> list[MessageSection]:
     title = byte_range(first, end - first).capitalize()
     return (
-        [MessageSection(title, first, end, _keys(message, repeats, first, end))]
+        [MessageSection(title, first, end, _field_keys(message, repeats, first, end))]
         if end > first
         else []
     )
 
 
-def _keys(message: Message, repeats: Repeats, first: int, end: int) -> list[int]:
+def _field_keys(message: Message, repeats: Repeats, first: int, end: int) -> list[int]:
     """Return the numbers of the shown fields in a range of bytes; the last range
     includes derived values.
     """

@@ -47,7 +47,7 @@ class Arrow:
 
 
 @dataclass(frozen=True, slots=True)
-class Sequence:
+class SequenceDiagram:
     """Sequence diagram.
 
     ``node``: label of the right lifeline.
@@ -76,7 +76,9 @@ class Sequence:
         ]
 
 
-def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
+def acknowledges(
+    relations: Relations, node: Node, node_facts: Facts
+) -> list[SequenceDiagram]:
     """Return the acknowledge of a telecommand and the request of telemetry, for each
     bus of the ICD.
     """
@@ -86,7 +88,7 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
         answer = "acknowledge: id and error code" if node_facts.acknowledge else ""
         arrows = [Arrow(True, "telecommand: id, parameters", waits)]
         sequences.append(
-            Sequence(
+            SequenceDiagram(
                 "UART, telecommand",
                 node.title,
                 arrows + ([Arrow(False, answer)] if answer else []),
@@ -96,7 +98,7 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
             Arrow(True, "request: id of the telemetry", waits),
             Arrow(False, "reply: id, data"),
         ]
-        sequences.append(Sequence("UART, telemetry", node.title, arrows))
+        sequences.append(SequenceDiagram("UART, telemetry", node.title, arrows))
     if node_facts.i2c_address is not None:
         arrows = [Arrow(True, f"write to {node_facts.i2c_address:02X}: id, parameters")]
         if node_facts.polled:
@@ -108,23 +110,25 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
                 Arrow(True, polled.name, every, url),
                 Arrow(False, f"until {row['until']}", row["status"], url),
             ]
-        sequences.append(Sequence("I²C, telecommand", node.title, arrows))
+        sequences.append(SequenceDiagram("I²C, telecommand", node.title, arrows))
     if node_facts.can:
         types = node_facts.can.types
         telecommand_arrows = list(
-            _on_can(types, "telecommand", "acknowledge", "refusal")
+            _can_arrows(types, "telecommand", "acknowledge", "refusal")
         )
-        telemetry_arrows = list(_on_can(types, "request", "reply", "request_refusal"))
+        telemetry_arrows = list(
+            _can_arrows(types, "request", "reply", "request_refusal")
+        )
         sequences += [
-            Sequence("CAN, telecommand", node.title, telecommand_arrows),
-            Sequence("CAN, telemetry", node.title, telemetry_arrows),
+            SequenceDiagram("CAN, telecommand", node.title, telecommand_arrows),
+            SequenceDiagram("CAN, telemetry", node.title, telemetry_arrows),
         ]
     return sequences
 
 
 def _on_framed_link(
     relations: Relations, node: Node, node_facts: Facts
-) -> Iterator[Sequence]:
+) -> Iterator[SequenceDiagram]:
     """Yield the outcomes of a telecommand on a framed link, and of a request of
     telemetry.
     """
@@ -137,10 +141,12 @@ def _on_framed_link(
         BUSY: f"sent again after {client.busy_pause} ms, {client.retries} times at most",
         PROGRESS: "the time-out starts again",
     }
-    if rows := responses.general(relations, node):
+    if rows := responses.general_responses(relations, node):
         waits = f"waits {client.reply_timeout} ms; if it may be repeated, {client.retries} more times"
-        arrows = [Arrow(True, "telecommand", waits), *_responses(rows, notes)]
-        yield Sequence("Framed link, telecommand", node.title, arrows, _remarks(arrows))
+        arrows = [Arrow(True, "telecommand", waits), *_response_arrows(rows, notes)]
+        yield SequenceDiagram(
+            "Framed link, telecommand", node.title, arrows, _remarks(arrows)
+        )
     if request := responses.request_row(relations, node):
         timeout = request.timeout or f"{client.reply_timeout} ms"
         waits = f"waits {timeout}, tries again {client.retries} times"
@@ -150,9 +156,11 @@ def _on_framed_link(
         arrows = [
             Arrow(True, sent, waits, request.packet.url),
             _telemetry_arrow(request),
-            *_responses(request.rows, notes),
+            *_response_arrows(request.rows, notes),
         ]
-        yield Sequence("Framed link, telemetry", node.title, arrows, _remarks(arrows))
+        yield SequenceDiagram(
+            "Framed link, telemetry", node.title, arrows, _remarks(arrows)
+        )
 
 
 def _telemetry_arrow(request: responses.RequestRow) -> Arrow:
@@ -163,7 +171,7 @@ def _telemetry_arrow(request: responses.RequestRow) -> Arrow:
     return Arrow(False, text, "", request.response.url)
 
 
-def _responses(
+def _response_arrows(
     rows: Iterable[responses.ResponseRow], notes: Mapping[str, str]
 ) -> Iterator[Arrow]:
     """Yield the arrow of each response, with its meaning by kind."""
@@ -179,7 +187,7 @@ def _remarks(arrows: Sized) -> list[str]:
     return ["The device sends one of these responses."] if len(arrows) > 2 else []
 
 
-def _on_can(
+def _can_arrows(
     types: dict[str, int], sent: str, answer: str, refusal: str
 ) -> Iterator[Arrow]:
     for out, kind, note in (
@@ -191,20 +199,22 @@ def _on_can(
             yield Arrow(out, f"{kind.replace('_', ' ')}: type {types[kind]}", note)
 
 
-def procedures(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
+def procedures(
+    relations: Relations, node: Node, node_facts: Facts
+) -> list[SequenceDiagram]:
     """Return the steps of each procedure of the ICD, in order."""
     return [
-        Sequence(
+        SequenceDiagram(
             capitalized(procedure.name.replace("_", " ")),
             node.title,
-            list(_steps(relations, node_facts, procedure)),
-            list(_limits(procedure)),
+            list(_step_arrows(relations, node_facts, procedure)),
+            list(_limit_texts(procedure)),
         )
         for procedure in node_facts.procedures
     ]
 
 
-def _steps(
+def _step_arrows(
     relations: Relations, node_facts: Facts, procedure: Procedure
 ) -> Iterator[Arrow]:
     """Yield the arrows of the steps.
@@ -224,24 +234,24 @@ def _steps(
             case NextPacket():
                 when.append("for each missing packet")
             case SkipUnless():
-                when.append(f"if {_test(procedure, step.test)}")
+                when.append(f"if {_test_text(procedure, step.test)}")
             case Send():
-                arrows = [_arrow(relations, True, step.message)]
+                arrows = [_message_arrow(relations, True, step.message)]
             case Get() | Poll():
                 asked = f"request for {step.message.name}"
                 note = until = ""
                 if isinstance(step, Poll):
                     note = f"every {step.interval} ms, for {step.timeout} ms at most"
-                    tests = (_test(procedure, test) for test in step.until)
+                    tests = (_test_text(procedure, test) for test in step.until)
                     until = f"until {', '.join(tests)}"
                 arrows = [
-                    _arrow(relations, True, step.message, asked, note),
-                    _arrow(relations, False, step.message, note=until),
+                    _message_arrow(relations, True, step.message, asked, note),
+                    _message_arrow(relations, False, step.message, note=until),
                 ]
             case Receive():
                 note = f"until all are there, or none is new for {step.silence} ms"
                 arrows = [
-                    _arrow(
+                    _message_arrow(
                         relations, False, step.message, note=_ways(node_facts, step)
                     ),
                     Arrow(False, "… one packet after another", note),
@@ -249,13 +259,13 @@ def _steps(
             case SendMap() if blocks and blocks.map:
                 first = blocks.map.messages[0]
                 about = "the map of received packets"
-                arrows = [_arrow(relations, True, first, about)]
+                arrows = [_message_arrow(relations, True, first, about)]
             case GetMap() if blocks and blocks.map:
                 first = blocks.map.messages[0]
                 about = "request for the map of received packets"
                 arrows = [
-                    _arrow(relations, True, first, about),
-                    _arrow(relations, False, first, "the map"),
+                    _message_arrow(relations, True, first, about),
+                    _message_arrow(relations, False, first, "the map"),
                 ]
         if arrows and when:
             note = "; ".join([*when, arrows[0].note] if arrows[0].note else when)
@@ -276,14 +286,14 @@ def _ways(node_facts: Facts, step: Receive) -> str:
     return "; ".join(ways)
 
 
-def _arrow(
+def _message_arrow(
     relations: Relations, out: bool, message: Message, text: str = "", note: str = ""
 ) -> Arrow:
     """Return an arrow that links to a message, with its name or another text."""
     return Arrow(out, text or message.name, note, relations.links.message(message))
 
 
-def _test(procedure: Procedure, test: Test) -> str:
+def _test_text(procedure: Procedure, test: Test) -> str:
     """Return a test as text, such as ``Busy = 0``."""
     value = test.value
     names = procedure.register_names
@@ -291,7 +301,7 @@ def _test(procedure: Procedure, test: Test) -> str:
     return f"{names[test.register]} = {wanted}"
 
 
-def _limits(procedure: Procedure) -> Iterator[str]:
+def _limit_texts(procedure: Procedure) -> Iterator[str]:
     """Yield the limits of a procedure as text."""
     if procedure.blocks:
         blocks = procedure.blocks

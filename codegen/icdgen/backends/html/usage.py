@@ -45,8 +45,8 @@ def snippets(
     ``in_c``: message with the C prefix of its node.
     """
     # Only names in C have the prefix of the project.
-    of_c = _values(in_c, packages)
-    of_other_languages = _values(message, packages)
+    of_c = _template_values(in_c, packages)
+    of_other_languages = _template_values(message, packages)
     return [
         Snippet(
             name,
@@ -59,7 +59,9 @@ def snippets(
     ]
 
 
-def _values(message: MessageDescription, packages: Packages) -> dict[str, object]:
+def _template_values(
+    message: MessageDescription, packages: Packages
+) -> dict[str, object]:
     field = field_of_example(message)
     enum = field.enum if field else None
     # The first member is often 0, which looks like the initial value.
@@ -82,7 +84,7 @@ def _values(message: MessageDescription, packages: Packages) -> dict[str, object
     }
 
 
-def names(
+def type_names(
     message: MessageDescription, in_c: MessageDescription
 ) -> list[tuple[str, str]]:
     """Return the name of the message's type in each language."""

@@ -77,7 +77,10 @@ def buses(message: Message, wire: Wire, data: bytes) -> list[Bus]:
 
     ``data``: shown frame.
     """
-    results = [make(message, wire, data) for make in (_stream, _uart, _i2c, _can)]
+    results = [
+        make(message, wire, data)
+        for make in (_packet_bus, _uart_bus, _i2c_bus, _can_bus)
+    ]
     return [bus for bus in results if bus is not None]
 
 
@@ -156,21 +159,21 @@ def crc_facts(facts: Facts) -> dict[str, object]:
     return crc_data | {key: True for key, value in flags.items() if value}
 
 
-def _hex(data: bytes) -> str:
+def _hex_text(data: bytes) -> str:
     if len(data) <= _SHOWN:
         return data.hex(" ").upper()
     return f"{data[: _SHOWN - 4].hex(' ').upper()} … {data[-4:].hex(' ').upper()}"
 
 
-def _data(data: bytes) -> list[WireChunk]:
+def _data_chunks(data: bytes) -> list[WireChunk]:
     return (
-        [WireChunk("data", _hex(data), f"data, {count(len(data), 'byte')}")]
+        [WireChunk("data", _hex_text(data), f"data, {count(len(data), 'byte')}")]
         if data
         else []
     )
 
 
-def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
+def _checked_speaker(wire: Wire, direction: str, bus: str) -> Speaker | None:
     """Return the node whose checksum is shown for messages of the direction."""
     for speaker in wire.checked:
         form = speaker.facts.checksum
@@ -191,10 +194,10 @@ def _crc_chunk(sent: bytes, speaker: Speaker, direction: str, bus: str) -> WireC
     is_telecommand = direction == "telecommand"
     always = form.telecommand_always if is_telecommand else form.telemetry_always
     text = form.algorithm.name + ("" if bus in always else ", optional")
-    return WireChunk("crc", _hex(sent), text)
+    return WireChunk("crc", _hex_text(sent), text)
 
 
-def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
+def _packet_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
     form = wire.facts.stream
     if form is None:
         return None
@@ -207,11 +210,11 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
         if id is None:
             continue
         if direction == "telemetry" and (
-            parts := packet_formats.request(form, wire.link, id)
+            parts := packet_formats.request_parts(form, wire.link, id)
         ):
             requested = stream_encode_request(wire.link, id)
             lines += _packet_lines("Request", parts, requested)
-        parts = packet_formats.packet(form, wire.link, id, direction, data)
+        parts = packet_formats.packet_parts(form, wire.link, id, direction, data)
         sent = stream_encode(wire.link, id, data, direction)
         lines += _packet_lines(direction.capitalize(), parts, sent)
     return Bus("Packet", f"A packet ends {packet_formats.end_of(form)}.", lines)
@@ -225,34 +228,41 @@ def _packet_lines(
     If byte stuffing changed the packet, a second line has the transmitted bytes.
     """
     yield WireLine(
-        label, [WireChunk(part.kind, _hex(part.data), part.title) for part in parts]
+        label,
+        [WireChunk(part.kind, _hex_text(part.data), part.title) for part in parts],
     )
     if sent != b"".join(part.data for part in parts):
         yield WireLine(
             "in wire order",
-            [WireChunk("data", _hex(sent), "stuffed, between delimiters")],
+            [WireChunk("data", _hex_text(sent), "stuffed, between delimiters")],
         )
 
 
-def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
+def _uart_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
     if wire.facts.framing is None:
         return None
     lines = []
     if message.telecommand_id is not None:
         lines.append(
-            WireLine("Telecommand", _framed(wire.link, message.telecommand_id, data))
+            WireLine(
+                "Telecommand", _uart_chunks(wire.link, message.telecommand_id, data)
+            )
         )
-        checked = _check(wire, "telecommand", "uart")
+        checked = _checked_speaker(wire, "telecommand", "uart")
         if checked:
             lines.append(
                 WireLine(
                     "with CRC",
-                    _framed(wire.link, message.telecommand_id, data, checked),
+                    _uart_chunks(wire.link, message.telecommand_id, data, checked),
                 )
             )
     if message.telemetry_id is not None:
-        lines.append(WireLine("Request", _framed(wire.link, message.telemetry_id, b"")))
-        lines.append(WireLine("Answer", _framed(wire.link, message.telemetry_id, data)))
+        lines.append(
+            WireLine("Request", _uart_chunks(wire.link, message.telemetry_id, b""))
+        )
+        lines.append(
+            WireLine("Answer", _uart_chunks(wire.link, message.telemetry_id, data))
+        )
     return Bus(
         "UART",
         _uart_note(buses_of(wire.section)["uart"].get("line", {}), wire.facts.framing),
@@ -260,7 +270,7 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
     )
 
 
-def _framed(
+def _uart_chunks(
     link: Link, id: int, data: bytes, checked: Speaker | None = None
 ) -> list[WireChunk]:
     """Return the transmitted bytes, split at the borders of id, data and checksum."""
@@ -280,13 +290,13 @@ def _framed(
         line[at:to] for at, to in zip([0, *ends], ends, strict=False)
     )
     chunks = [
-        WireChunk("frame", _hex(start), "start of message"),
-        WireChunk("id", _hex(id_sent), f"id {id}"),
+        WireChunk("frame", _hex_text(start), "start of message"),
+        WireChunk("id", _hex_text(id_sent), f"id {id}"),
     ]
-    chunks += _data(data_sent)
+    chunks += _data_chunks(data_sent)
     if checked:
         chunks.append(_crc_chunk(check_sent, checked, "telecommand", "uart"))
-    return [*chunks, WireChunk("frame", _hex(line[ends[-1] :]), "end of message")]
+    return [*chunks, WireChunk("frame", _hex_text(line[ends[-1] :]), "end of message")]
 
 
 def _uart_note(section: dict[str, Any], framing: Framing) -> str:
@@ -301,7 +311,7 @@ def _uart_note(section: dict[str, Any], framing: Framing) -> str:
     return ", ".join(parts) + (". " if parts else "") + doubled + "."
 
 
-def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
+def _i2c_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
     address = wire.facts.i2c_address
     if address is None:
         return None
@@ -310,9 +320,11 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
     write = WireChunk("frame", f"{address << 1:02X}", "address, write")
     lines = []
     if message.telecommand_id is not None:
-        sent = [write, _id(message.telecommand_id), *_data(data)]
+        sent = [write, _id_chunk(message.telecommand_id), *_data_chunks(data)]
         lines.append(WireLine("Telecommand", sent))
-        lines += _with_crc(wire, "telecommand", message.telecommand_id, data, sent)
+        lines += _lines_with_crc(
+            wire, "telecommand", message.telecommand_id, data, sent
+        )
     if message.telemetry_id is not None:
         how = "repeated start" if wire.facts.i2c_repeated_start else "stop and start"
         restart = WireChunk(
@@ -321,20 +333,26 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
             " or ".join(buses_of(wire.section)["i2c"].get("telemetry_request", [])),
         )
         read = WireChunk("frame", f"{address << 1 | 1:02X}", "address, read")
-        answer = [write, _id(message.telemetry_id), restart, read, *_data(data)]
+        answer = [
+            write,
+            _id_chunk(message.telemetry_id),
+            restart,
+            read,
+            *_data_chunks(data),
+        ]
         lines.append(WireLine("Request and answer", answer))
-        lines += _with_crc(wire, "telemetry", message.telemetry_id, data, answer)
+        lines += _lines_with_crc(wire, "telemetry", message.telemetry_id, data, answer)
     return Bus("I²C", f"7-bit address {address:02X}.", lines)
 
 
-def _id(id: int) -> WireChunk:
+def _id_chunk(id: int) -> WireChunk:
     return WireChunk("id", f"{id:02X}", f"id {id}")
 
 
-def _with_crc(
+def _lines_with_crc(
     wire: Wire, direction: str, id: int, data: bytes, sent: list[WireChunk]
 ) -> Iterator[WireLine]:
-    checked = _check(wire, direction, "i2c")
+    checked = _checked_speaker(wire, direction, "i2c")
     if checked:
         checked_bytes = i2c_write(checked.link, id, data, True)
         yield WireLine(
@@ -346,7 +364,7 @@ def _with_crc(
         )
 
 
-def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
+def _can_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
     form = wire.facts.can
     if form is None:
         return None
@@ -354,12 +372,12 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     lines: list[WireLine] = []
     if message.telecommand_id is not None:
         sent = CanMessage("telecommand", message.telecommand_id, 0, node, data)
-        lines += _packets(wire, form, sent, "Telecommand")
+        lines += _can_lines(wire, form, sent, "Telecommand")
     if message.telemetry_id is not None:
-        lines += _packets(
+        lines += _can_lines(
             wire, form, CanMessage("request", message.telemetry_id, 0, node), "Request"
         )
-        lines += _packets(
+        lines += _can_lines(
             wire,
             form,
             CanMessage("reply", message.telemetry_id, node, 0, data),
@@ -370,7 +388,7 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     return Bus("CAN", note, lines) if lines else None
 
 
-def _packets(
+def _can_lines(
     wire: Wire, form: Can, message: CanMessage, label: str
 ) -> Iterator[WireLine]:
     """Yield one packet, or the extended packets of a long message; of many, the first
@@ -383,7 +401,11 @@ def _packets(
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
         yield WireLine(
-            label, [_identifier(wire, form, packets[0].id), *_data(packets[0].data)]
+            label,
+            [
+                _identifier_chunk(wire, form, packets[0].id),
+                *_data_chunks(packets[0].data),
+            ],
         )
         return
     assert form.extended is not None
@@ -400,16 +422,16 @@ def _packets(
                 )
             continue
         left_at = form.extended.left_at
-        left = WireChunk("crc", _hex(packet.data[left_at:]), "packets left")
+        left = WireChunk("crc", _hex_text(packet.data[left_at:]), "packets left")
         chunks = [
-            _identifier(wire, form, packet.id),
-            *_data(packet.data[:left_at]),
+            _identifier_chunk(wire, form, packet.id),
+            *_data_chunks(packet.data[:left_at]),
             left,
         ]
         yield WireLine(f"{label} {index + 1}/{len(packets)}", chunks)
 
 
-def _identifier(wire: Wire, form: Can, id: int) -> WireChunk:
+def _identifier_chunk(wire: Wire, form: Can, id: int) -> WireChunk:
     parts = {
         role: id >> part.shift & (1 << part.bits) - 1
         for role, part in form.parts.items()

@@ -30,9 +30,9 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 def annotation(field: FieldDescription) -> str:
     """Return the type of the attribute."""
     return (
-        f"tuple[{_annotation(field)}, ...]"
+        f"tuple[{_element_annotation(field)}, ...]"
         if field.count
-        else _optional(field, _annotation(field))
+        else _optional(field, _element_annotation(field))
     )
 
 
@@ -43,7 +43,7 @@ def _optional(field: FieldDescription, note: str) -> str:
     return f"_lazy.Optional[{note}]" if field.model.conditions else note
 
 
-def _annotation(field: FieldDescription) -> str:
+def _element_annotation(field: FieldDescription) -> str:
     if field.struct is not None:
         return PYTHON_NAMES.symbol(field.struct, "class")
     if field.is_text:
@@ -57,13 +57,13 @@ def _annotation(field: FieldDescription) -> str:
     )
 
 
-def default(field: FieldDescription) -> str:
+def default_value(field: FieldDescription) -> str:
     """Return the raw value in a new message."""
     if field.count:
-        return _repeated(field, _default(field))
+        return _repeated(field, _element_default(field))
     if field.is_in_last_part:
         return f"bytes({field.initial_count})" if field.initial_count else 'b""'
-    return _default(field)
+    return _element_default(field)
 
 
 def _repeated(field: FieldDescription, value: str) -> str:
@@ -71,7 +71,7 @@ def _repeated(field: FieldDescription, value: str) -> str:
     return f"({value},) * {field.initial_count}" if field.initial_count else "()"
 
 
-def _default(field: FieldDescription) -> str:
+def _element_default(field: FieldDescription) -> str:
     kind, value = field.model.type, field.initial_raw
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
@@ -123,7 +123,7 @@ def _keywords(field: FieldDescription) -> list[str]:
         if (value := getattr(place, key))
     )
     items += (
-        f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}"
+        f"{_KEYWORDS.get(bound.key, bound.key)}={number_literal(bound.value)}"
         for bound in field.bounds
     )
     return items
@@ -133,7 +133,7 @@ def constant_value(field: FieldDescription, constant: Constant) -> str:
     """Return the literal of a constant of a field."""
     if constant.number:
         return special_value(constant, field.model.bits)
-    return number(constant.value)
+    return number_literal(constant.value)
 
 
 def special_value(value: Special | Constant, bits: int) -> str:
@@ -162,16 +162,16 @@ def declaration(field: FieldDescription) -> str:
             f"factory={PYTHON_NAMES.symbol(field.struct, 'class')}",
             *_keywords(field),
         ]
-        return _statement(field.name, annotation(field), "part", items)
+        return _call_declaration(field.name, annotation(field), "part", items)
     items = [
         literal(place.name),
         str(place.at),
         str(place.bits),
         f'"{place.type}"',
-        f"default={default(field)}",
+        f"default={default_value(field)}",
         *_keywords(field),
     ]
-    return _statement(field.name, annotation(field), "field", items)
+    return _call_declaration(field.name, annotation(field), "field", items)
 
 
 def inner(message: MessageDescription) -> list[str]:
@@ -223,7 +223,7 @@ def view_info(field: FieldDescription) -> str:
     if field.steps is not None:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
     if field.curve is not None:
-        pieces = _pieces(field.curve)
+        pieces = _piece_literals(field.curve)
         listed = (
             exploded("(", pieces, ")", " " * 12)
             if len(pieces) > 1
@@ -272,46 +272,50 @@ def accessors(field: FieldDescription) -> Iterator[tuple[str, str]]:
     for accessor in accessors_in_python(field):
         if accessor.kind == "text":
             yield (
-                _text(field),
+                _text_declaration(field),
                 f"{accessor.comment} An invalid byte reads as U+FFFD.",
             )
         else:
             yield (
                 (
-                    _scaled(field)
+                    _physical_declaration(field)
                     if accessor.scale is None
-                    else _whole(accessor, accessor.scale)
+                    else _integer_declaration(accessor, accessor.scale)
                 ),
                 accessor.comment,
             )
 
 
-def _scaled(field: FieldDescription) -> str:
+def _physical_declaration(field: FieldDescription) -> str:
     """Return the declaration of a physical value: ``estimated_roll_angle_deg: float =
     _base.scaled(...)``.
     """
-    curve, steps, first = field.curve, field.steps, _double(field.initial_physical)
+    curve, steps, first = (
+        field.curve,
+        field.steps,
+        _double_literal(field.initial_physical),
+    )
     first, note = (
         (_repeated(field, first), "tuple[float, ...]")
         if field.count
         else (first, _optional(field, "float"))
     )
     if curve is not None:
-        items = [*_pieces(curve), f"default={first}"]
+        items = [*_piece_literals(curve), f"default={first}"]
         # By default, `_base.curve` searches the whole range of raw values.
         if field.is_settable and field.model.settable_raws != (
             field.model.raw_min,
             field.model.raw_max,
         ):
             items.append(f"ends={field.model.settable_raws}")
-        return _statement(
+        return _call_declaration(
             field.physical_name,
             note,
             "curve" if field.is_settable else "curve_only",
             items,
         )
     assert steps is not None
-    return _statement(
+    return _call_declaration(
         field.physical_name,
         note,
         "scaled",
@@ -319,21 +323,21 @@ def _scaled(field: FieldDescription) -> str:
     )
 
 
-def _pieces(curve: Curve) -> list[str]:
+def _piece_literals(curve: Curve) -> list[str]:
     """Return a literal for each piece of a calibration."""
     return [f"({start!r}, {terms!r})" for start, terms in curve.pieces]
 
 
-def _double(value: float) -> str:
+def _double_literal(value: float) -> str:
     """Return the literal of a double."""
     # `repr` of NaN and of the infinities is the name of an undefined variable.
     return repr(value) if math.isfinite(value) else f'float("{value}")'
 
 
-def _text(field: FieldDescription) -> str:
+def _text_declaration(field: FieldDescription) -> str:
     """Return the declaration of a text: ``version_text: str = _base.text(...)``."""
     first = _repeated(field, '""') if field.count else '""'
-    return _statement(
+    return _call_declaration(
         field.physical_name,
         "tuple[str, ...]" if field.count else "str",
         "text",
@@ -341,19 +345,19 @@ def _text(field: FieldDescription) -> str:
     )
 
 
-def _whole(accessor: Accessor, scale: IntegerScale) -> str:
+def _integer_declaration(accessor: Accessor, scale: IntegerScale) -> str:
     """Return the declaration of whole parts of the unit: ``estimated_roll_angle_mdeg:
     int = _base.whole(...)``.
     """
     note = (
         "tuple[int, ...]" if accessor.field.count else _optional(accessor.field, "int")
     )
-    return _statement(
+    return _call_declaration(
         accessor.name, note, "whole", [str(scale.factor), str(scale.offset)]
     )
 
 
-def _statement(name: str, note: str, call: str, items: list[str]) -> str:
+def _call_declaration(name: str, note: str, call: str, items: list[str]) -> str:
     """Return ``name: note = _base.call(items)`` on one line, or with the items on lines
     of their own if it is too long.
     """
@@ -368,7 +372,7 @@ def _statement(name: str, note: str, call: str, items: list[str]) -> str:
     )
 
 
-def number(exact: Fraction | int) -> str:
+def number_literal(exact: Fraction | int) -> str:
     """Return the literal of a whole number, or of the nearest float."""
     return (
         str(exact.numerator)

@@ -15,7 +15,7 @@ def expression(value: object) -> str:
     """Return the source of a value: calls and mappings with one item per line, tuples
     on one line.
     """
-    return written(_spelled(value), _note)
+    return written(_literal_of(value), _note)
 
 
 def _note(text: str, indent: str) -> str:
@@ -27,7 +27,7 @@ def _note(text: str, indent: str) -> str:
     )
 
 
-def _spelled(value: object) -> str | Brackets:
+def _literal_of(value: object) -> str | Brackets:
     if isinstance(value, Verbatim):
         return value.text
     if isinstance(value, str):
@@ -43,7 +43,7 @@ def _spelled(value: object) -> str | Brackets:
     if isinstance(value, Mapping):
         return Brackets(
             "{",
-            tuple(_item(item, f"{_spelled(key)}: ") for key, item in value.items()),
+            tuple(_item(item, f"{_literal_of(key)}: ") for key, item in value.items()),
             "}",
         )
     if isinstance(value, Sequence):
@@ -63,5 +63,5 @@ def _spelled(value: object) -> str | Brackets:
 
 def _item(value: object, head: str = "") -> Item:
     if isinstance(value, Commented):
-        return Item(_spelled(value.item), head, value.comments)
-    return Item(_spelled(value), head)
+        return Item(_literal_of(value.item), head, value.comments)
+    return Item(_literal_of(value), head)

@@ -80,7 +80,7 @@ def module_name(part: Composite[Any] | EnumDescription) -> str:
     return f"{name}_" if name in RESERVED else name
 
 
-def home(part: Composite[Any] | EnumDescription, node: str, up: str) -> str:
+def import_path(part: Composite[Any] | EnumDescription, node: str, up: str) -> str:
     """Return the module of a part as another module imports it.
 
     The other one is of ``node``, and stands ``up`` dots below the package.

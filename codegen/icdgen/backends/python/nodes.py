@@ -35,7 +35,7 @@ def declared(node: NodeDescription) -> list[tuple[str, str]]:
     order of the modules.
     """
     declared = [
-        (PYTHON_NAMES.symbol(part, "class"), names.home(part, node.name, ".."))
+        (PYTHON_NAMES.symbol(part, "class"), names.import_path(part, node.name, ".."))
         for part in node.usable
     ]
     declared += [("LINK", "._link")] if node.is_linked else []
@@ -46,7 +46,7 @@ def public_of_node(node: NodeDescription) -> list[str]:
     """Return the names that can be imported from a node."""
     own = [name for name, _ in declared(node)]
     own += [names.PROCEDURES] if node.procedures else []
-    return sorted({*_OF_NODE, *_facts(node.model), *own})
+    return sorted({*_OF_NODE, *_optional_constants(node.model), *own})
 
 
 def enum_classes(node: NodeDescription) -> list[tuple[str, str]]:
@@ -61,11 +61,11 @@ def by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
     a row for each message that shares it.
     """
     return sorted(
-        (under_id.id, _candidates(under_id)) for under_id in node.ids(direction)
+        (under_id.id, _messages_literal(under_id)) for under_id in node.ids(direction)
     )
 
 
-def _candidates(under: MessagesOfId) -> str:
+def _messages_literal(under: MessagesOfId) -> str:
     if not under.is_shared:
         return literal(PYTHON_NAMES.symbol(under.first.message, "class"))
     rows = []
@@ -76,17 +76,17 @@ def _candidates(under: MessagesOfId) -> str:
         )
         name = PYTHON_NAMES.symbol(candidate.message, "class")
         rows.append(
-            f"({literal(name)}, {_lengths(candidate.message.model)}, ({signs.rstrip(' ')})),"
+            f"({literal(name)}, {_lengths_literal(candidate.message.model)}, ({signs.rstrip(' ')})),"
         )
     return "(\n        " + "\n        ".join(rows) + "\n    )"
 
 
-def _lengths(message: Message) -> str:
+def _lengths_literal(message: Message) -> str:
     lengths = message.layout.lengths
     return f"range({lengths.start}, {lengths.stop}{f', {lengths.step}' if lengths.step > 1 else ''})"
 
 
-def _facts(node: Node) -> list[str]:
+def _optional_constants(node: Node) -> list[str]:
     """Return the names of the constants that only some nodes have."""
     optional = {
         "NODE_TYPE": node.node_type,

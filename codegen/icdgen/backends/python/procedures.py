@@ -44,7 +44,7 @@ class ProcedureClass:
         parts: list[EnumDescription | MessageDescription] = [*self.enums]
         parts += [self.entry] if self.entry else []
         return [
-            f"from {names.home(part, self._node.name, '..')} import "
+            f"from {names.import_path(part, self._node.name, '..')} import "
             f"{PYTHON_NAMES.symbol(part, 'class')}"
             for part in parts
         ]

@@ -62,17 +62,17 @@ def prose(text: str) -> str:
     """Return text for a docstring on one line, with escapes for quotes and for markup
     of reStructuredText and Markdown.
     """
-    return _spelled([" ".join(text.split())])
+    return _escaped_parts([" ".join(text.split())])
 
 
 def paragraph(text: str) -> str:
     """Return `prose` of a paragraph of a description, in which text in backticks is
     code.
     """
-    return _spelled(text.split("`"))
+    return _escaped_parts(text.split("`"))
 
 
-def _spelled(parts: list[str]) -> str:
+def _escaped_parts(parts: list[str]) -> str:
     # Every second part is code. Backticks come in pairs: `describe.comments` replaces
     # those of the ICD.
     parts[::2] = [

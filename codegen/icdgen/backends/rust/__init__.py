@@ -155,7 +155,7 @@ def _wire(
         render(
             "links.rs.j2",
             nodes=list(linked),
-            sizes=procedures.sizes(linked.values()),
+            sizes=procedures.buffer_sizes(linked.values()),
             **common,
         ),
     )

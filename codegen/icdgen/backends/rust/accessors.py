@@ -15,7 +15,7 @@ from icdgen.backends.rust.physical import (
     double_value,
     integer_raw,
     integer_value,
-    single,
+    single_value,
 )
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.backends.rust.types import struct_path
@@ -42,7 +42,7 @@ class RustAccessorCode(NamedTuple):
 def accessors(field: FieldDescription) -> list[RustAccessorCode]:
     """Return the accessors of a field with a scale or calibration."""
     return [
-        _code(accessor)
+        _accessor_code(accessor)
         for accessor in accessors_in_rust(field)
         if accessor.kind != "text"
     ]
@@ -59,11 +59,13 @@ def texts(composite: Composite[Any]) -> list[Accessor]:
     return sorted(accessors, key=lambda accessor: not accessor.field.count)
 
 
-def _code(accessor: Accessor) -> RustAccessorCode:
+def _accessor_code(accessor: Accessor) -> RustAccessorCode:
     field = accessor.field
     if accessor.kind == "single":
         # A single has a getter only. The accessor in double precision sets the field.
-        return RustAccessorCode(accessor.name, "f32", accessor.comment, single(field))
+        return RustAccessorCode(
+            accessor.name, "f32", accessor.comment, single_value(field)
+        )
     if accessor.kind == "integer":
         type, refused = f"i{accessor.integers.bits}", "if it does not fit"
         value, raw = (
@@ -109,14 +111,14 @@ def scale_of(field: FieldDescription) -> str:
         f"({', '.join(map(integer, row))})"
         for row in ((place.raw_min, place.raw_max), terms)
     ]
-    return _constant(
+    return _constant_declaration(
         scale_name(field),
         "Scale",
         [string(place.name), string(field.allowed_text), *numbers],
     )
 
 
-def _constant(name: str, type: str, items: list[str]) -> str:
+def _constant_declaration(name: str, type: str, items: list[str]) -> str:
     """Return ``const NAME: Scale = Scale::new(...);``, wrapped as rustfmt does."""
     call = f"{type}::new("
     if len(f"{STEP}{call}{', '.join(items)});") <= WIDTH:

@@ -27,7 +27,7 @@ module.
 """
 
 
-def reading(
+def read_expression(
     field: FieldDescription, tables: set[int], depth: int = 3, within: str = ""
 ) -> str:
     """Return the expression of the raw value, over ``bytes``, in a line with an
@@ -36,18 +36,20 @@ def reading(
     ``tables`` are the bytes with variables ``flags_N``. ``within`` is the prefix of
     functions for elements.
     """
-    helper = _helper(field)
+    helper = _loop_helper(field)
     if helper:
         return _called(field, helper, within, depth)
     if field.struct is not None:
-        return _struct(field, field.struct, tables, depth, within)
+        return _struct_expression(field, field.struct, tables, depth, within)
     if field.model.is_count:
         # A count has no bits in the frame. The template sets it from the length of the
         # frame after it has read the fields.
         return "0"
     if field.count:
         return (
-            _array(field, depth) if field.is_copied else _listed(field, tables, depth)
+            _word_array(field, depth)
+            if field.is_copied
+            else _element_list(field, tables, depth)
         )
     place, row = field.model, field.pieces
     if place.is_bytes:
@@ -63,17 +65,17 @@ def reading(
         )
     size = storage_bits(place.bits)
     if field.is_word:
-        return _whole(field, size)
+        return _whole_word(field, size)
     if len(row) == 1:
-        return _finished(field, _one_byte(row[0]), size)
+        return _from_unsigned(field, _one_byte(row[0]), size)
     lines = [f"let mut value = {_placed(row[0], size)};"]
     lines += [f"value |= {_placed(piece, size)};" for piece in row[1:]]
-    lines.append(_finished(field, "value", size))
+    lines.append(_from_unsigned(field, "value", size))
     body = "".join(f"\n{STEP * (depth + 1)}{line}" for line in lines)
     return f"{{{body}\n{STEP * depth}}}"
 
 
-def _helper(field: FieldDescription) -> str:
+def _loop_helper(field: FieldDescription) -> str:
     """Return the helper of the support module that calls a function for each element or
     iteration of an array; empty without such a function.
     """
@@ -95,7 +97,7 @@ def _called(field: FieldDescription, helper: str, within: str, depth: int) -> st
     ).removeprefix(target)
 
 
-def _struct(
+def _struct_expression(
     field: FieldDescription,
     struct: StructDescription,
     tables: set[int],
@@ -104,7 +106,7 @@ def _struct(
 ) -> str:
     pad, (row,) = STEP * depth, field.instances
     lines = (
-        f"{pad}{STEP}{own_name(member)}: {reading(member, tables, depth + 1, within)},\n"
+        f"{pad}{STEP}{own_name(member)}: {read_expression(member, tables, depth + 1, within)},\n"
         for member in row
     )
     return (
@@ -112,14 +114,14 @@ def _struct(
     )
 
 
-def _array(field: FieldDescription, depth: int) -> str:
+def _word_array(field: FieldDescription, depth: int) -> str:
     """Return the expression of an array of words."""
     place, first = field.model, field.model.at // 8
     if place.is_bytes:
         return f"arrays(bytes, {first})"
     if place.type == "uint" and place.bits == 8:
         return f"array(bytes, {first})"
-    word = f"{_word(field)}::from_{field.order}_bytes"
+    word = f"{_word_type(field)}::from_{field.order}_bytes"
     if place.type != "enum":
         return f"words(bytes, {first}, {word})"
     value = f"Coded::from_raw({word}(word))"
@@ -129,9 +131,9 @@ def _array(field: FieldDescription, depth: int) -> str:
     return f"words(bytes, {first}, |word| {{\n{STEP * (depth + 1)}{value}\n{STEP * depth}}})"
 
 
-def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
+def _element_list(field: FieldDescription, tables: set[int], depth: int) -> str:
     """Return the expression of an array whose elements are read one by one."""
-    values = [reading(element, tables, depth + 1) for element in field.elements]
+    values = [read_expression(element, tables, depth + 1) for element in field.elements]
     line = f"[{', '.join(values)}]"
     if len(line) <= _ARRAY_WIDTH and "\n" not in line:
         return line
@@ -139,27 +141,27 @@ def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
     return f"[{rows}\n{STEP * depth}]"
 
 
-def _whole(field: FieldDescription, size: int) -> str:
+def _whole_word(field: FieldDescription, size: int) -> str:
     first = field.model.at // 8
     if size > 8:
         # `take!` is a macro and no function, so that every index is a constant at any
         # level of optimisation.
-        value = f"{_word(field)}::from_{field.order}_bytes(take!(bytes[{first}; {size // 8}]))"
+        value = f"{_word_type(field)}::from_{field.order}_bytes(take!(bytes[{first}; {size // 8}]))"
     else:
         value = (
             f"i8::from_le_bytes([bytes[{first}]])"
             if field.model.is_signed
             else f"bytes[{first}]"
         )
-    return _typed(field, value, size)
+    return _as_field_type(field, value, size)
 
 
-def _word(field: FieldDescription) -> str:
+def _word_type(field: FieldDescription) -> str:
     """Return the type of a word: ``u16``, ``f32``."""
     return f"{'f' if field.model.type == 'float' else 'i' if field.model.is_signed else 'u'}{field.model.bits}"
 
 
-def _typed(field: FieldDescription, value: str, size: int) -> str:
+def _as_field_type(field: FieldDescription, value: str, size: int) -> str:
     """Return an integer of ``size`` bits as the type of the field."""
     if field.model.type != "enum":
         return value
@@ -169,16 +171,18 @@ def _typed(field: FieldDescription, value: str, size: int) -> str:
     return f"Coded::from_raw({wider})"
 
 
-def _finished(field: FieldDescription, value: str, size: int) -> str:
+def _from_unsigned(field: FieldDescription, value: str, size: int) -> str:
     """Return an unsigned integer of ``size`` bits as the type of the field."""
     if field.model.type == "float":
         return f"f{size}::from_bits({value})"
-    return _typed(
-        field, _signed(field, value, size) if field.model.is_signed else value, size
+    return _as_field_type(
+        field,
+        _sign_extended(field, value, size) if field.model.is_signed else value,
+        size,
     )
 
 
-def _signed(field: FieldDescription, value: str, size: int) -> str:
+def _sign_extended(field: FieldDescription, value: str, size: int) -> str:
     """Return an unsigned integer of ``size`` bits as a signed one, with the sign of the
     field extended.
     """
@@ -222,7 +226,7 @@ def _placed(piece: Piece, size: int) -> str:
     )
 
 
-def fitting(field: FieldDescription) -> list[str]:
+def check_range(field: FieldDescription) -> list[str]:
     """Return the statements that return an error if the raw value does not fit the
     field.
     """
@@ -237,7 +241,7 @@ def fitting(field: FieldDescription) -> list[str]:
         ]
     raw = ".raw()" if field.enum is not None else ""
     if not field.count:
-        return [f"{scale_name(field)}.fit({_source(field)}{raw})?;"]
+        return [f"{scale_name(field)}.fit({_source_expression(field)}{raw})?;"]
     values = f"{member}().iter().copied()" if field.is_in_last_part else member
     return [
         f"for value in {values} {{",
@@ -246,7 +250,7 @@ def fitting(field: FieldDescription) -> list[str]:
     ]
 
 
-def _source(field: FieldDescription, owner: str = "self") -> str:
+def _source_expression(field: FieldDescription, owner: str = "self") -> str:
     """Return the expression to write: the member, or the variable with the value of an
     optional field.
     """
@@ -254,7 +258,7 @@ def _source(field: FieldDescription, owner: str = "self") -> str:
     return RAW if field.model.conditions else f"{owner}.{name}" if owner else name
 
 
-def writing(
+def write_field(
     field: FieldDescription, owner: str = "self", within: str = ""
 ) -> list[str]:
     """Return the statements that write the raw value into ``bytes``, without bits that
@@ -262,7 +266,7 @@ def writing(
     """
     if field.model.is_count:
         return []
-    helper = _helper(field)
+    helper = _loop_helper(field)
     if helper:
         values, function = (
             f"&{owner}.{field_name(field)}",
@@ -273,8 +277,10 @@ def writing(
     if field.count:
         if field.is_copied:
             return _put_run(field, f"{owner}.{field_name(field)}")
-        return [line for element in field.elements for line in writing(element, owner)]
-    place, row, source = field.model, field.pieces, _source(field, owner)
+        return [
+            line for element in field.elements for line in write_field(element, owner)
+        ]
+    place, row, source = field.model, field.pieces, _source_expression(field, owner)
     if place.is_bytes:
         return [f"put_array(&mut bytes, {place.at // 8}, &{source});"]
     if place.type == "bool":
@@ -309,7 +315,7 @@ def _put_run(field: FieldDescription, source: str) -> list[str]:
     word = (
         f"|value| value.raw().{to_bytes}()"
         if place.type == "enum"
-        else f"{_word(field)}::{to_bytes}"
+        else f"{_word_type(field)}::{to_bytes}"
     )
     word = "|octets| octets" if place.is_bytes else word
     return [
@@ -343,7 +349,7 @@ def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
     if size > 8 and all(piece.at % 8 == 0 for piece in row):
         return [
             f"let value = {source}.to_le_bytes();",
-            *(_put(piece, f"value[{piece.at // 8}]") for piece in row),
+            *(_put_piece(piece, f"value[{piece.at // 8}]") for piece in row),
         ]
     lines = []
     for piece in row:
@@ -352,11 +358,11 @@ def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
             # This is the low byte without `as u8`, which clippy
             # (`cast_possible_truncation`, pedantic) refuses.
             part = f"{_parenthesised(part)}.to_le_bytes()[0]"
-        lines.append(_put(piece, part))
+        lines.append(_put_piece(piece, part))
     return lines
 
 
-def _put(piece: Piece, part: str) -> str:
+def _put_piece(piece: Piece, part: str) -> str:
     """Return the statement that writes the low bits of ``part`` into their byte."""
     if piece.is_byte:
         return f"bytes[{piece.byte}] = {part};"

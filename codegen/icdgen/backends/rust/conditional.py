@@ -16,7 +16,7 @@ from icdgen.describe.description import PresenceCondition
 
 def presence_test(field: FieldDescription) -> str:
     """Return the condition under which an optional field is present."""
-    return " && ".join(map(_test, field.needs))
+    return " && ".join(map(_value_test, field.needs))
 
 
 def write_optional(field: FieldDescription) -> list[str]:
@@ -26,14 +26,14 @@ def write_optional(field: FieldDescription) -> list[str]:
         # A field that must be present can still be `None`. `there` then returns an
         # error in place of a frame with zeros.
         f"let {bits.RAW} = there({string(field.model.name)}, {member})?;",
-        *(bits.fitting(field) if field.is_narrow else ()),
-        *bits.writing(field),
+        *(bits.check_range(field) if field.is_narrow else ()),
+        *bits.write_field(field),
     ]
 
 
 def read_optional(field: FieldDescription) -> str:
     """Return the statement that sets the member of an optional field."""
-    value = f"Some({bits.reading(field, set())})"
+    value = f"Some({bits.read_expression(field, set())})"
     line = f"{STEP * 3}message.{field_name(field)} = {value};"
     return (
         line
@@ -42,7 +42,7 @@ def read_optional(field: FieldDescription) -> str:
     )
 
 
-def _test(need: PresenceCondition) -> str:
+def _value_test(need: PresenceCondition) -> str:
     """Return the test whether a field has one of the values."""
     field, member = need.field, f"self.{field_name(need.field)}"
     if field.model.type == "bool":

@@ -32,25 +32,28 @@ def array_functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
         }
         loop = loop_of(field)
         if field.element_struct is not None:
-            yield {**shared, **_of_struct(field.element_struct, f"{name}_")}
+            yield {**shared, **_struct_functions(field.element_struct, f"{name}_")}
         elif loop is not None:
-            yield {**shared, **_of_numbers(field, loop)}
+            yield {**shared, **_number_functions(field, loop)}
 
 
-def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
+def _struct_functions(struct: StructDescription, within: str) -> dict[str, object]:
     tables, type = (
         bytes_of_flags(struct, bits.FLAGS_FROM),
         struct_path(struct, struct.using_node),
     )
-    value = literal(
+    value = struct_literal(
         struct.members,
-        [bits.reading(member, tables, within=within) for member in struct.members],
+        [
+            bits.read_expression(member, tables, within=within)
+            for member in struct.members
+        ],
         type,
     )
     writings = [
         line
         for member in struct.walk(Into.STRUCTS)
-        for line in bits.writing(member, "part", within)
+        for line in bits.write_field(member, "part", within)
     ]
     step = struct.model.length
     return {
@@ -62,7 +65,7 @@ def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
     }
 
 
-def _of_numbers(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
+def _number_functions(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
     type, pad, many = one_type(field), STEP * DEPTH, loop.per_iteration > 1
     members = loop.members(
         field, lambda element: f"part[{element}]" if many else "part"
@@ -70,15 +73,15 @@ def _of_numbers(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
     if many:
         type = f"[{type}; {loop.per_iteration}]"
         rows = "".join(
-            f"{pad}{STEP}{bits.reading(element, set(), DEPTH + 1)},\n"
+            f"{pad}{STEP}{bits.read_expression(element, set(), DEPTH + 1)},\n"
             for element in members
         )
         value = f"{pad}[\n{rows}{pad}]"
     else:
         # A block is the body of the function.
-        value = bits.reading(members[0], set(), DEPTH - 1)
+        value = bits.read_expression(members[0], set(), DEPTH - 1)
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
-    writings = [line for element in members for line in bits.writing(element, "")]
+    writings = [line for element in members for line in bits.write_field(element, "")]
     return {
         "step": loop.step,
         "type": type,
@@ -88,7 +91,7 @@ def _of_numbers(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
     }
 
 
-def literal(
+def struct_literal(
     fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self"
 ) -> str:
     """Return ``Self { ... }`` in the body of a function."""

@@ -57,7 +57,7 @@ def read_example(shown: ExampleValue) -> str:
     return (
         f"assert!({value});"
         if field.model.type == "bool"
-        else f"assert_eq!({value}, {_value(shown)});"
+        else f"assert_eq!({value}, {_value_literal(shown)});"
     )
 
 
@@ -69,10 +69,10 @@ def write_example(shown: ExampleValue) -> str:
         return f"command.{setter(field.physical_name)}({double(shown.physical)})?;"
     # The member has the type `Coded`, which also stores numbers without a name.
     into = ".into()" if field.enum else ""
-    return f"command.{field_name(field)} = {_value(shown)}{into};"
+    return f"command.{field_name(field)} = {_value_literal(shown)}{into};"
 
 
-def _value(shown: ExampleValue) -> str:
+def _value_literal(shown: ExampleValue) -> str:
     """Return the literal of the raw value."""
     field, raw = shown.field, shown.raw
     if field.enum is not None:

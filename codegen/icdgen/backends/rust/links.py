@@ -48,7 +48,7 @@ def values(link: LinkDescription) -> dict[str, object]:
 
     ``tables`` has the name and the CRC of each lookup table.
     """
-    facts, link_literal = link.facts, _Literal(link)
+    facts, link_literal = link.facts, _LinkLiteral(link)
     text = written(link_literal.link(), _note)
     about = [
         f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."
@@ -62,13 +62,13 @@ def values(link: LinkDescription) -> dict[str, object]:
         "node": facts.node.name,
         "doc": doc(about),
         "literal": text,
-        "longest": integer(longest(link)),
+        "longest": integer(longest_buffer(link)),
         "sequences": integer(facts.stream.sequences) if facts.stream else "",
         "tables": [(name, written(crc, _note)) for crc, name in tables.items()],
     }
 
 
-def longest(link: LinkDescription) -> int:
+def longest_buffer(link: LinkDescription) -> int:
     """Return the size of each buffer of the wire layer: the longest message, CAN
     packets of a message, or entry of a log.
     """
@@ -81,7 +81,7 @@ def _note(why: str, indent: str) -> str:
     return doc([f"Assumed. {prose(sentence(why))}"], indent, "//")
 
 
-class _Literal:
+class _LinkLiteral:
     """Expression of the link of a node."""
 
     def __init__(self, link: LinkDescription) -> None:
@@ -109,8 +109,8 @@ class _Literal:
             part("longest_data", integer(facts.longest_data)),
             part("little", spelled(facts.little)),
             part("telemetry_ids", flat("Ids", **members(facts.telemetry_ids))),
-            part("telecommands", rows(map(_form, link.telecommands))),
-            part("telemetry", rows(map(_form, link.telemetry))),
+            part("telecommands", rows(map(_message_form, link.telecommands))),
+            part("telemetry", rows(map(_message_form, link.telemetry))),
             part("client", self.struct(facts.client) or ""),
             part("reasons", flat_rows(map(integer, link.reasons))),
             part("framing", some(self.struct(facts.framing))),
@@ -218,7 +218,7 @@ class _Literal:
         return self.struct(form, *spans)
 
 
-def _form(sent: SentMessage) -> Brackets:
+def _message_form(sent: SentMessage) -> Brackets:
     message = sent.message
     return flat(
         "Form",
@@ -235,7 +235,7 @@ def _can_types(types: dict[str, int]) -> Brackets:
     )
 
 
-def _place(field: FieldDescription) -> Expression:
+def _number_pieces(field: FieldDescription) -> Expression:
     """Return the position of a number."""
     return flat_rows(flat("Piece", **piece._asdict()) for piece in field.pieces)
 
@@ -248,7 +248,7 @@ def _identification(report: ReportDescription | None) -> Brackets | None:
         "Identification",
         part("length", integer(report.message.length)),
         *(
-            part(role, _place(fields[role]) if role in fields else "&[]")
+            part(role, _number_pieces(fields[role]) if role in fields else "&[]")
             for role in ("node_type", "interface_version")
         ),
     )

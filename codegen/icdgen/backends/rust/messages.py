@@ -44,10 +44,10 @@ def literal(message: MessageDescription) -> str:
     """Return the struct expression of a message with the values in ``bytes``."""
     tables = bytes_of_flags(message, bits.FLAGS_FROM)
     values = [
-        "None" if field.model.conditions else bits.reading(field, tables)
+        "None" if field.model.conditions else bits.read_expression(field, tables)
         for field in message.members
     ]
-    return elements.literal(message.members, values)
+    return elements.struct_literal(message.members, values)
 
 
 def write_statements(message: MessageDescription) -> list[str]:
@@ -56,18 +56,18 @@ def write_statements(message: MessageDescription) -> list[str]:
         line
         for member in message.walk(Into.STRUCTS)
         if not member.model.conditions
-        for line in bits.writing(member)
+        for line in bits.write_field(member)
     ]
 
 
 def overlay_value(field: FieldDescription) -> str:
     """Return the expression of an overlay field."""
-    return bits.reading(field, set(), depth=2)
+    return bits.read_expression(field, set(), depth=2)
 
 
 def counter_value(part: VariablePartDescription) -> str:
     """Return the expression of the counter of a variable part in a frame."""
-    return bits.reading(part.counter, set())
+    return bits.read_expression(part.counter, set())
 
 
 def part_bytes(part: VariablePartDescription, is_limited: bool = False) -> str:
@@ -127,7 +127,7 @@ def default(composite: Composite[Any]) -> str:
     fields = composite.members
     if all(map(_is_default, fields)):
         return ""
-    return elements.literal(fields, [_initial(field) for field in fields])
+    return elements.struct_literal(fields, [_initial_value(field) for field in fields])
 
 
 def fits(composite: Composite[Any]) -> list[str]:
@@ -136,7 +136,7 @@ def fits(composite: Composite[Any]) -> list[str]:
         line
         for field in composite.members
         if field.needs_range_check and not field.model.conditions
-        for line in bits.fitting(field)
+        for line in bits.check_range(field)
     ]
 
 
@@ -184,8 +184,8 @@ def _is_default(field: FieldDescription) -> bool:
     return field.is_initially_zero
 
 
-def _initial(field: FieldDescription) -> str:
-    value = _valued(field, field.initial_raw)
+def _initial_value(field: FieldDescription) -> str:
+    value = _value_expression(field, field.initial_raw)
     if field.is_in_last_part and field.count:
         # Decoding gives missing elements the values of zero bytes. These can differ
         # from the initial values of the struct, so absent elements are read from zeros
@@ -194,7 +194,7 @@ def _initial(field: FieldDescription) -> str:
         absent = (
             f"Self::{reader(field.name)}(&[0; {length}])"
             if length
-            else _valued(field, 0)
+            else _value_expression(field, 0)
         )
         few = field.initial_count if field.has_initial_value else 0
         return (
@@ -205,7 +205,7 @@ def _initial(field: FieldDescription) -> str:
     return f"[{value}; {field.count}]" if field.count else value
 
 
-def _valued(field: FieldDescription, raw: int) -> str:
+def _value_expression(field: FieldDescription, raw: int) -> str:
     kind = field.model.type
     if field.struct is not None:
         return f"{struct_path(field.struct, field.message.node)}::default()"

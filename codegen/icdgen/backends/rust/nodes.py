@@ -53,7 +53,7 @@ def guarded(candidate: MessageOfId, path: str) -> str:
     """Return the pattern of a match arm: the id, with tests of the length and of the
     constant bytes of the message.
     """
-    terms = _lengths(candidate.length_tests, f"{path}::LENGTH")
+    terms = _frame_length_tests(candidate.length_tests, f"{path}::LENGTH")
     for constant in candidate.constant_bytes:
         byte = f"bytes[{constant.byte}]"
         # Indexing would panic here: a guard runs before the length of the frame is
@@ -68,7 +68,7 @@ def guarded(candidate: MessageOfId, path: str) -> str:
     return line if len(line) <= WIDTH - len(" => {") else f"{id}\n{STEP * 4}if {rows}"
 
 
-def _lengths(length_tests: Iterable[LengthTest], longest: str) -> list[str]:
+def _frame_length_tests(length_tests: Iterable[LengthTest], longest: str) -> list[str]:
     """Return the tests of the length of a frame.
 
     ``longest`` is the constant of the longest.

@@ -38,7 +38,8 @@ def parts_of(message: MessageDescription) -> list[ContainedConversion]:
         count = len(contained.positions)
         kind = f"[{path}; {count}]" if count > 1 else path
         values = tuple(
-            tuple(_values(contained, message, begin)) for begin in contained.positions
+            tuple(_field_expressions(contained, message, begin))
+            for begin in contained.positions
         )
         conversions.append(
             ContainedConversion(
@@ -52,7 +53,7 @@ def parts_of(message: MessageDescription) -> list[ContainedConversion]:
     return conversions
 
 
-def _values(
+def _field_expressions(
     part: ContainedDescription, composite: MessageDescription, begin: int
 ) -> Iterator[str]:
     copies = {
@@ -60,13 +61,13 @@ def _values(
     }
     for member in part.message.members:
         yield (
-            _struct(member, member.struct, copies)
+            _struct_expression(member, member.struct, copies)
             if member.struct
-            else _value(copies[member.model.name])
+            else _copy_expression(copies[member.model.name])
         )
 
 
-def _struct(
+def _struct_expression(
     field: FieldDescription, struct: StructDescription, copies: dict[str, CopiedMember]
 ) -> str:
     """Return the expression of a struct, or of an array of structs, over fields of the
@@ -76,9 +77,9 @@ def _struct(
     for row in field.instances:
         values = (
             (
-                _struct(member, member.struct, copies)
+                _struct_expression(member, member.struct, copies)
                 if member.struct
-                else _value(copies[member.model.name])
+                else _copy_expression(copies[member.model.name])
             )
             for member in row
         )
@@ -87,7 +88,7 @@ def _struct(
     return f"{own_name(field)}: {f'[{rows}]' if field.count else rows}"
 
 
-def _value(copied: CopiedMember) -> str:
+def _copy_expression(copied: CopiedMember) -> str:
     name = own_name(copied.member)
     sources = [f"message.{field_name(source)}" for source in copied.sources]
     # Members are `Copy`, so an expression over a reference copies an array as well.

@@ -120,7 +120,7 @@ def integer_raw(field: FieldDescription, access: IntegerAccess) -> str:
     return f"{scale_name(field)}.whole({value}, {integer(access.scale.factor)}, {integer(access.scale.offset)})"
 
 
-def single(field: FieldDescription) -> str:
+def single_value(field: FieldDescription) -> str:
     """Return the physical value of a field with a scale in single precision."""
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_singles:

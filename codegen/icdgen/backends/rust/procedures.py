@@ -84,7 +84,7 @@ class ProcedureText:
         )
 
 
-def sizes(links: Iterable[LinkDescription]) -> dict[str, int]:
+def buffer_sizes(links: Iterable[LinkDescription]) -> dict[str, int]:
     """Return the sizes of buffers for all procedures: of telecommands and of entries."""
     procedures = [each for link in links for each in link.facts.procedures]
     steps = [step for each in procedures for step in each.steps]
@@ -215,7 +215,10 @@ class _ProcedureWriter:
 
     def _example(self) -> Iterator[str]:
         """Yield the lines of an example, which is run."""
-        names, arguments = [self._type], list(map(_example, self._procedure.inputs))
+        names, arguments = (
+            [self._type],
+            list(map(_example_argument, self._procedure.inputs)),
+        )
         if self._procedure.blocks:
             names.append(self._memory)
             arguments.append("&mut memory")
@@ -330,7 +333,7 @@ class _ProcedureWriter:
         procedure = self._procedure
         content = procedure.content
         inputs = (
-            _of(
+            _flat_literal(
                 "Input",
                 name=string(each.name),
                 most=each.most,
@@ -351,16 +354,16 @@ class _ProcedureWriter:
             part("outputs", flat_rows(outputs)),
             part("entry", some(entry)),
             part("most_entries", integer(procedure.most_entries)),
-            part("blocks", some(_blocks(procedure.blocks))),
+            part("blocks", some(_blocks_literal(procedure.blocks))),
             part("time_ms", integer(procedure.time)),
             part("requests", integer(procedure.requests)),
             part("retries", integer(self._facts.client.retries)),
-            part("steps", rows(map(_step, procedure.steps))),
+            part("steps", rows(map(_step_literal, procedure.steps))),
         )
         return Brackets("procedure::Form { ", items, " }")
 
 
-def _example(each: model.Input) -> str:
+def _example_argument(each: model.Input) -> str:
     """Return an allowed value of an input."""
     if each.is_bytes:
         return "&[1, 2, 3]"
@@ -389,7 +392,7 @@ def _parameter(each: model.Input) -> str:
     return f"r#{each.name}" if each.name in RESERVED else each.name
 
 
-def _of(type: str, /, **parts: Expression | int) -> Brackets:
+def _flat_literal(type: str, /, **parts: Expression | int) -> Brackets:
     """Return a struct or a step of the module `procedure` on one line."""
     literal = flat(type, **parts)
     return Brackets(
@@ -397,13 +400,13 @@ def _of(type: str, /, **parts: Expression | int) -> Brackets:
     )
 
 
-def _blocks(blocks: model.Blocks | None) -> Brackets | None:
+def _blocks_literal(blocks: model.Blocks | None) -> Brackets | None:
     if blocks is None:
         return None
     values = {
         **members(blocks),
         "total": some(blocks.total),
-        "map": some(_map(blocks.map)),
+        "map": some(_map_literal(blocks.map)),
     }
     items = (
         part(key, value if isinstance(value, Brackets) else spelled(value))
@@ -412,7 +415,7 @@ def _blocks(blocks: model.Blocks | None) -> Brackets | None:
     return Brackets("procedure::Blocks { ", tuple(items), " }")
 
 
-def _map(map: model.PacketMap | None) -> Brackets | None:
+def _map_literal(map: model.PacketMap | None) -> Brackets | None:
     if map is None:
         return None
     messages = (
@@ -422,29 +425,32 @@ def _map(map: model.PacketMap | None) -> Brackets | None:
     values = {**members(map), "messages": flat_rows(messages)}
     # The messages of a map have the same layout, so the first one gives the length of
     # all.
-    return _of("PacketMap", length=map.messages[0].length, **values)
+    return _flat_literal("PacketMap", length=map.messages[0].length, **values)
 
 
-def _value(value: model.Value) -> str:
+def _value_literal(value: model.Value) -> str:
     kind = "Register" if value.in_register else "Constant"
     return f"procedure::Value::{kind}({spelled(value.number)})"
 
 
-def _place(place: NumberPlace) -> Brackets:
+def _place_literal(place: NumberPlace) -> Brackets:
     return flat("NumberPlace", **members(place))
 
 
-def _test(test: model.Test) -> Brackets:
-    return _of("Test", register=test.register, value=_value(test.value))
-
-
-def _takes(takes: Iterable[model.Take]) -> Brackets:
-    return flat_rows(
-        _of("Take", place=_place(take.place), register=take.register) for take in takes
+def _test_literal(test: model.Test) -> Brackets:
+    return _flat_literal(
+        "Test", register=test.register, value=_value_literal(test.value)
     )
 
 
-def _bytes(data: bytes) -> Expression:
+def _takes_literal(takes: Iterable[model.Take]) -> Brackets:
+    return flat_rows(
+        _flat_literal("Take", place=_place_literal(take.place), register=take.register)
+        for take in takes
+    )
+
+
+def _bytes_literal(data: bytes) -> Expression:
     """Return a reference to bytes."""
     if len(data) > 1 and not any(data):
         return f"&[0; {len(data)}]"
@@ -452,25 +458,27 @@ def _bytes(data: bytes) -> Expression:
 
 
 @singledispatch
-def _step(step: model.Step) -> Expression:
+def _step_literal(step: model.Step) -> Expression:
     """Return the expression of a step."""
     name = f"Step::{type(step).__name__}"
     parts = {}
     for key, value in members(step).items():
-        parts[key] = _test(value) if isinstance(value, model.Test) else value
-    return _of(name, **parts) if parts else f"procedure::{name}"
+        parts[key] = _test_literal(value) if isinstance(value, model.Test) else value
+    return _flat_literal(name, **parts) if parts else f"procedure::{name}"
 
 
-@_step.register
+@_step_literal.register
 def _(step: model.Send) -> Brackets:
     puts = (
-        _of("Put", place=_place(put.place), value=_value(put.value))
+        _flat_literal(
+            "Put", place=_place_literal(put.place), value=_value_literal(put.value)
+        )
         for put in step.puts
     )
-    return _of(
+    return _flat_literal(
         "Step::Send",
         id=step.message.telecommand_id or 0,
-        data=_bytes(step.data),
+        data=_bytes_literal(step.data),
         puts=flat_rows(puts),
         packet_at=some(step.packet_at),
         repeats=step.repeats,
@@ -478,49 +486,49 @@ def _(step: model.Send) -> Brackets:
     )
 
 
-@_step.register
+@_step_literal.register
 def _(step: model.Get) -> Brackets:
     id = step.message.telemetry_id or 0
-    return _of("Step::Get", id=id, takes=_takes(step.takes))
+    return _flat_literal("Step::Get", id=id, takes=_takes_literal(step.takes))
 
 
-@_step.register
+@_step_literal.register
 def _(step: model.Poll) -> Brackets:
-    return _of(
+    return _flat_literal(
         "Step::Poll",
         id=step.message.telemetry_id or 0,
-        takes=_takes(step.takes),
-        until=flat_rows(map(_test, step.until)),
-        fails=flat_rows(map(_test, step.fails)),
+        takes=_takes_literal(step.takes),
+        until=flat_rows(map(_test_literal, step.until)),
+        fails=flat_rows(map(_test_literal, step.fails)),
         interval_ms=step.interval,
         timeout_ms=step.timeout,
     )
 
 
-@_step.register
+@_step_literal.register
 def _(step: model.SetLength) -> str:
-    return f"procedure::Step::SetLength({_value(step.value)})"
+    return f"procedure::Step::SetLength({_value_literal(step.value)})"
 
 
-@_step.register
+@_step_literal.register
 def _(step: model.Receive) -> Brackets:
-    return _of(
+    return _flat_literal(
         "Step::Receive",
         id=step.message.telemetry_id or 0,
-        number=_place(step.number).within("&", ""),
+        number=_place_literal(step.number).within("&", ""),
         data_at=step.data_at,
         silence_ms=step.silence,
         requested_on=flat("PerBus", **{bus: bus in step.requested_on for bus in BUSES}),
     )
 
 
-@_step.register
+@_step_literal.register
 def _(step: model.VerifyChecksum) -> Brackets:
-    return _of(
+    return _flat_literal(
         "Step::VerifyChecksum",
         algorithm=algorithm_of(step.algorithm).within("&", ""),
         of_block=step.of_block,
         covers_fill=step.covers_fill,
-        value=_value(step.value),
+        value=_value_literal(step.value),
         again=step.again,
     )

@@ -53,12 +53,14 @@ def stream_of(form: Stream) -> Brackets:
         "Stream",
         part("delimited_by", _delimiter(form)),
         part("per_id", spelled(form.per_id)),
-        part("packets", rows(_packet(packet, tables) for packet in form.packets)),
-        part("telecommands", rows(_row(row, indices) for row in form.telecommands)),
-        part("telemetry", rows(_row(row, indices) for row in form.telemetry)),
-        part("exchanges", rows(map(_exchange, form.exchanges))),
+        part("packets", rows(_packet_form(packet, tables) for packet in form.packets)),
+        part(
+            "telecommands", rows(_stream_row(row, indices) for row in form.telecommands)
+        ),
+        part("telemetry", rows(_stream_row(row, indices) for row in form.telemetry)),
+        part("exchanges", rows(map(_exchange_form, form.exchanges))),
         part("confirming", flat_rows(map(spelled, form.confirming))),
-        part("request", some(_request(form, indices))),
+        part("request", some(_request_form(form, indices))),
     )
 
 
@@ -74,8 +76,8 @@ def _on_bus(exchanges: BusExchanges) -> Brackets:
     command = exchanges.command
     return struct(
         "BusExchanges",
-        part("command", some(_exchange(command) if command else None)),
-        part("request", _exchange(exchanges.request)),
+        part("command", some(_exchange_form(command) if command else None)),
+        part("request", _exchange_form(exchanges.request)),
     )
 
 
@@ -96,7 +98,7 @@ def _delimiter(form: Stream) -> Expression:
     return fields.within(f"{delimiter}(", ")")
 
 
-def _request(form: Stream, indices: Mapping[Exchange, int]) -> Brackets | None:
+def _request_form(form: Stream, indices: Mapping[Exchange, int]) -> Brackets | None:
     request = form.request
     if request is None:
         return None
@@ -107,7 +109,7 @@ def _request(form: Stream, indices: Mapping[Exchange, int]) -> Brackets | None:
     )
 
 
-def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
+def _packet_form(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
     host, device = DIRECTIONS
     content = _CONTENTS.get(packet.content) or variant(packet.content)
     return struct(
@@ -117,8 +119,10 @@ def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
         part("from_device", spelled(device in packet.directions)),
         part("header_bytes", spelled(packet.header_bytes)),
         part("trailer_bytes", spelled(packet.trailer_bytes)),
-        part("fields", rows(map(_field, packet.fields))),
-        part("check", some(_check(packet.check, tables) if packet.check else None)),
+        part("fields", rows(map(_packet_field, packet.fields))),
+        part(
+            "check", some(_check_form(packet.check, tables) if packet.check else None)
+        ),
         part("content", f"link::Content::{content}"),
         part("reserved", f"&[0; {packet.reserved}]"),
     )
@@ -128,7 +132,7 @@ def crc_tables(form: Stream | None) -> dict[Brackets, str]:
     """Return the name of the lookup table of each CRC of the packets."""
     checks = [packet.check for packet in (form.packets if form else ())]
     crcs = [
-        _crc(check.algorithm.crc)
+        _crc_form(check.algorithm.crc)
         for check in checks
         if check and check.algorithm.kind == CRC
     ]
@@ -140,8 +144,8 @@ def crc_tables(form: Stream | None) -> dict[Brackets, str]:
     }
 
 
-def _check(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
-    crc = _crc(check.algorithm.crc)
+def _check_form(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
+    crc = _crc_form(check.algorithm.crc)
     return struct(
         "CheckForm",
         part("algorithm", algorithm_of(check.algorithm)),
@@ -157,18 +161,18 @@ def algorithm_of(algorithm: ChecksumAlgorithm) -> Brackets:
     return flat(
         "ChecksumAlgorithm",
         kind=f"link::CheckKind::{variant(algorithm.kind)}",
-        crc=_crc(algorithm.crc),
+        crc=_crc_form(algorithm.crc),
     )
 
 
-def _crc(crc: Crc) -> Brackets:
+def _crc_form(crc: Crc) -> Brackets:
     return flat(
         "CrcForm",
         **{member_name(fact): value_of(fact, crc) for fact in facts_of(crc)},
     )
 
 
-def _field(field: PacketField) -> Brackets:
+def _packet_field(field: PacketField) -> Brackets:
     values = Brackets(
         "[", tuple(Item(mask(value, WORD)) for value in field.values), "]", True
     )
@@ -182,7 +186,7 @@ def _field(field: PacketField) -> Brackets:
     )
 
 
-def _row(row: StreamRow, indices: Mapping[Exchange, int]) -> Brackets:
+def _stream_row(row: StreamRow, indices: Mapping[Exchange, int]) -> Brackets:
     # The runtime identifies messages by their ids. Names would only need memory on the
     # target.
     items = {key: value for key, value in members(row).items() if key != "name"}
@@ -196,24 +200,24 @@ def _row(row: StreamRow, indices: Mapping[Exchange, int]) -> Brackets:
     )
 
 
-def _exchange(exchange: Exchange) -> Brackets:
+def _exchange_form(exchange: Exchange) -> Brackets:
     return struct(
         "Exchange",
-        part("sources", flat_rows(map(_place, exchange.sources))),
+        part("sources", flat_rows(map(_number_place, exchange.sources))),
         part("in_header", spelled(exchange.in_header)),
-        part("responses", rows(map(_response, exchange.responses))),
+        part("responses", rows(map(_response_form, exchange.responses))),
         part("timeout_ms", spelled(exchange.timeout)),
         part("poll", some(_poll(exchange.poll) if exchange.poll else None)),
     )
 
 
 def _poll(poll: Poll) -> Brackets:
-    return flat("Poll", telemetry=poll.telemetry, until=_place(poll.until))
+    return flat("Poll", telemetry=poll.telemetry, until=_number_place(poll.until))
 
 
-def _response(response: Response) -> Brackets:
+def _response_form(response: Response) -> Brackets:
     echoes = (
-        flat("Echo", place=_place(echo.place), source=echo.source)
+        flat("Echo", place=_number_place(echo.place), source=echo.source)
         for echo in response.echoes
     )
     meanings = (
@@ -222,7 +226,7 @@ def _response(response: Response) -> Brackets:
     )
     return struct(
         "Response",
-        part("kind", f"link::ResponseKind::{_kind(response)}"),
+        part("kind", f"link::ResponseKind::{_response_kind(response)}"),
         part("verdict", _verdict(response.verdict)),
         part("echoes", flat_rows(echoes)),
         part("status", _optional_place(response.status)),
@@ -232,7 +236,7 @@ def _response(response: Response) -> Brackets:
     )
 
 
-def _kind(response: Response) -> str:
+def _response_kind(response: Response) -> str:
     if response.packet is not None:
         return f"Packet({response.packet})"
     id = response.telemetry
@@ -240,10 +244,10 @@ def _kind(response: Response) -> str:
 
 
 def _optional_place(place: NumberPlace | None) -> Expression:
-    return some(_place(place) if place else None)
+    return some(_number_place(place) if place else None)
 
 
-def _place(place: NumberPlace) -> Brackets:
+def _number_place(place: NumberPlace) -> Brackets:
     return flat("NumberPlace", **members(place))
 
 

@@ -41,18 +41,20 @@ class RustNames(NamingPolicy):
     reserved = names.RESERVED
 
     def fixed(self, description: Description) -> Symbols:
-        yield from _used(_CRATE, names.USED_MODULES)
+        yield from _used_names(_CRATE, names.USED_MODULES)
         for name, use in names.ROOTS.items():
             yield Identifier(_CRATE, name, use, None)
         # Modules are files, and Windows opens a device for `nul.rs`.
-        yield from _used(_CRATE, DEVICES, "a device of Windows")
+        yield from _used_names(_CRATE, DEVICES, "a device of Windows")
 
     def node(self, node: NodeDescription) -> Symbols:
         yield node.identifier(_CRATE, node.name)
-        yield from _used(f"modules of {node.name}", names.USED_IN_NODES)
-        yield from _used(f"modules of {node.name}", DEVICES, "a device of Windows")
-        yield from _used(f"types of {node.name}", names.USED_TYPES)
-        yield from _used(f"enumerations of {node.name}", _USED_BY_ENUMS)
+        yield from _used_names(f"modules of {node.name}", names.USED_IN_NODES)
+        yield from _used_names(
+            f"modules of {node.name}", DEVICES, "a device of Windows"
+        )
+        yield from _used_names(f"types of {node.name}", names.USED_TYPES)
+        yield from _used_names(f"enumerations of {node.name}", _USED_BY_ENUMS)
 
     def message_of_direction(
         self, node: NodeDescription, direction: str, message: MessageDescription
@@ -64,7 +66,7 @@ class RustNames(NamingPolicy):
         """Names of the procedures and of their outputs."""
         scope, source = f"{names.PROCEDURES_MODULE} of {node.name}", node.model.source
         if node.procedures:
-            yield from _used(scope, ("ALL",))
+            yield from _used_names(scope, ("ALL",))
         for name, row in node.procedures.items():
             owner = f"procedure `{name}`"
             for text in (
@@ -74,7 +76,7 @@ class RustNames(NamingPolicy):
             ):
                 yield Identifier(scope, text, owner, source)
             methods = f"methods of {node.name}::{procedure_type(name)}"
-            yield from _used(methods, ("new",))
+            yield from _used_names(methods, ("new",))
             for output in row.get("outputs", {}):
                 yield Identifier(methods, output, f"`{output}` of {owner}", source)
 
@@ -82,10 +84,12 @@ class RustNames(NamingPolicy):
         yield enum.identifier(
             f"enumerations of {enum.node.name}", enum.camel_name, "type"
         )
-        yield Identifier(_variants(enum), _catch_all(enum), _OWN, None, "catch_all")
+        yield Identifier(
+            _variants_scope(enum), _catch_all(enum), _OWN, None, "catch_all"
+        )
 
     def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
-        yield member.identifier(_variants(enum), member.camel_name, "variant")
+        yield member.identifier(_variants_scope(enum), member.camel_name, "variant")
 
     def composite(self, composite: Composite[Any]) -> Symbols:
         node, scope = composite.node.name, _scope(composite)
@@ -93,15 +97,15 @@ class RustNames(NamingPolicy):
         yield composite.identifier(f"types of {node}", composite.camel_name, "type")
         methods, constants = f"methods of {scope}", f"constants of {scope}"
         if not isinstance(composite, MessageDescription):
-            yield from _used(methods, _METHODS_OF_STRUCTS)
-            yield from _used(constants, _CONSTANTS_OF_STRUCTS)
+            yield from _used_names(methods, _METHODS_OF_STRUCTS)
+            yield from _used_names(constants, _CONSTANTS_OF_STRUCTS)
             return
-        yield from _used(methods, _METHODS)
-        yield from _used(constants, _CONSTANTS)
+        yield from _used_names(methods, _METHODS)
+        yield from _used_names(constants, _CONSTANTS)
         if composite.last_part is not None:
-            yield from _used(methods, _METHODS_OF_VARIABLE_LENGTH)
+            yield from _used_names(methods, _METHODS_OF_VARIABLE_LENGTH)
         if composite.spread_parts:  # `inner` returns their sizes
-            yield from _used(methods, ("inner",))
+            yield from _used_names(methods, ("inner",))
         for _, name in looped_arrays(composite):
             yield composite.identifier(methods, names.reader(name))
             yield composite.identifier(methods, names.writer(name))
@@ -146,7 +150,7 @@ def _scope(composite: Composite[Any]) -> str:
     return f"{composite.node.name}::{composite.model.name}"
 
 
-def _variants(enum: EnumDescription) -> str:
+def _variants_scope(enum: EnumDescription) -> str:
     return f"variants of {enum.node.name}::{enum.model.name}"
 
 
@@ -160,6 +164,8 @@ def _catch_all(enum: EnumDescription) -> str:
     return next((name for name in _CATCH_ALL if name not in taken), _CATCH_ALL[0])
 
 
-def _used(scope: str, texts: Iterable[str], use: str = _OWN) -> Iterator[Identifier]:
+def _used_names(
+    scope: str, texts: Iterable[str], use: str = _OWN
+) -> Iterator[Identifier]:
     """Names that the generated code itself declares or refers to in a scope."""
     return (Identifier(scope, text, use, None) for text in texts)

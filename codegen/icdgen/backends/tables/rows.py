@@ -26,12 +26,12 @@ def of_node(node: Node) -> list[Row]:
         row
         for message in node.messages
         if message.node == node.name
-        for row in _of_message(message)
+        for row in _rows_of_message(message)
     ]
 
 
-def _of_message(message: Message) -> Iterator[Row]:
-    fields = list(_fields(message))
+def _rows_of_message(message: Message) -> Iterator[Row]:
+    fields = list(_cells_of_fields(message))
     own = {
         "Message": message.name, "ID": message.id, "Set ID": message.set_id, "Get ID": message.get_id, "Kind": message.kind,
         "Group": message.group, "Message description": message.summary,
@@ -47,16 +47,16 @@ def _cell(value: object) -> Cell:
     return int(value) if isinstance(value, int) else "" if value is None else str(value)
 
 
-def _fields(message: Message) -> Iterator[dict[str, object]]:
+def _cells_of_fields(message: Message) -> Iterator[dict[str, object]]:
     for line in lines(message.layout):
         if line.is_read_only or line.is_count:
             continue  # no bits of its own
         outer = line.levels[0]
         if not line.is_of_struct:
-            yield _field(line, line.at, line.name)
+            yield _field_cells(line, line.at, line.name)
             continue
         group = (
-            {"Repeated group": outer.node.name} | _repeats(outer.node.source)
+            {"Repeated group": outer.node.name} | _repeat_cells(outer.node.source)
             if outer.count or "count" in outer.node.source
             else {}
         )
@@ -68,7 +68,7 @@ def _fields(message: Message) -> Iterator[dict[str, object]]:
         starts = line.starts(first_only=True)
         for index, at in enumerate(starts, 1):
             yield (
-                _field(
+                _field_cells(
                     line,
                     at,
                     f"{name} {index}" if len(starts) > 1 else name,
@@ -78,7 +78,7 @@ def _fields(message: Message) -> Iterator[dict[str, object]]:
             )
 
 
-def _repeats(source: Map) -> dict[str, object]:
+def _repeat_cells(source: Map) -> dict[str, object]:
     """Return the cells for the repetition of an array or group."""
     count = source.get("count", source.get("size", ""))
     if isinstance(count, int):
@@ -86,11 +86,11 @@ def _repeats(source: Map) -> dict[str, object]:
     return {"Counter": count, "Up to": source.get("up_to")} if count else {}
 
 
-def _field(
+def _field_cells(
     line: Line, at: int, name: str, is_element: bool = False
 ) -> dict[str, object]:
     source = line.node.source
-    repeats = {} if is_element else _repeats(source)
+    repeats = {} if is_element else _repeat_cells(source)
     members = line.enum.members if line.enum else ()
     is_open = "Counter" in repeats and line.is_bytes
     return {

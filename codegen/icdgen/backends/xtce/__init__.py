@@ -26,15 +26,17 @@ class XtceBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Yield ``<node>.xml`` for each node, in order."""
-        from icdgen.backends.xtce.sides import side, text
+        from icdgen.backends.xtce.sides import direction_content, xml_text
 
         for node in describe(icd).nodes:
-            sides = {of: side(icd, node, of) for of in (TELEMETRY, TELECOMMAND)}
+            sides = {
+                of: direction_content(icd, node, of) for of in (TELEMETRY, TELECOMMAND)
+            }
             document = render(
                 "system.xml.j2",
                 node=node,
                 origin=origin(node.model, with_digest=True),
-                text=text,
+                text=xml_text,
                 **sides,
             )
             yield PurePosixPath(f"{node.name}.xml"), document

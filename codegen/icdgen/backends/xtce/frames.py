@@ -131,7 +131,7 @@ class ContainerBuilder:
             frame.base = self.bases.setdefault(
                 id, BaseContainer(unique(f"Id{id}", self.taken), id)
             )
-        parts = tuple(_parts(message))
+        parts = tuple(_placed_parts(message))
         for part in parts:
             self._give_name(frame, part)
         needed = {need.field.name for part in parts for need in part.needs}
@@ -205,7 +205,7 @@ class ContainerBuilder:
         type_ = self.types.of_open(
             last, frame.names[last.counter.name], _type_name(frame, name), run.is_little
         )
-        _add_row(frame, part, type_, last.model.most)
+        _add_parameter(frame, part, type_, last.model.most)
         return ContainerEntry(
             name,
             run._replace(at=self.head + run.at),
@@ -232,7 +232,7 @@ class ContainerBuilder:
         self, frame: MessageContainer, part: FieldDescription, run: BitRun
     ) -> ContainerEntry:
         name = frame.names[part.name]
-        _add_row(
+        _add_parameter(
             frame, part, self.types.of(part, _type_name(frame, name), run.is_little)
         )
         if (
@@ -304,7 +304,7 @@ class ContainerBuilder:
         needs = self._needs(frame, part)
         return (
             ContainerEntry(
-                part.model.name, run, needs=needs, value=_hex(here, run.bits)
+                part.model.name, run, needs=needs, value=_hex_text(here, run.bits)
             )
             for run, here in runs
         )
@@ -341,7 +341,7 @@ class ContainerBuilder:
 
     def _reserved(self, run: BitRun) -> ContainerEntry:
         if self.direction == TELECOMMAND:
-            return ContainerEntry("", run, value=_hex(0, run.bits))
+            return ContainerEntry("", run, value=_hex_text(0, run.bits))
         name = f"Reserved{run.bits}"
         is_wide = run.bits > 64
         type_ = (
@@ -363,7 +363,7 @@ def _type_name(frame: MessageContainer, name: str) -> str:
     return name if name.startswith(frame.name) else f"{frame.name}_{name}"
 
 
-def _add_row(
+def _add_parameter(
     frame: MessageContainer, part: FieldDescription, type_: str, most: int = 0
 ) -> None:
     """Declare the parameter or argument of a field, and note its omissions."""
@@ -387,7 +387,7 @@ def _add_row(
         )
 
 
-def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
+def _placed_parts(message: MessageDescription) -> Iterator[FieldDescription]:
     """Yield the parts with a fixed position: fields of structs, arrays (as one part if
     XTCE permits it), and finally overlays.
     """
@@ -403,5 +403,5 @@ def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     yield from message.overlays
 
 
-def _hex(value: int, bits: int) -> str:
+def _hex_text(value: int, bits: int) -> str:
     return f"{value:0{-(-bits // 8) * 2}X}"

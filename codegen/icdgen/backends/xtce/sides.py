@@ -52,7 +52,9 @@ class DirectionContent(NamedTuple):
     notes: list[str]
 
 
-def side(icd: Icd, node: NodeDescription, direction: str) -> DirectionContent | None:
+def direction_content(
+    icd: Icd, node: NodeDescription, direction: str
+) -> DirectionContent | None:
     """Return the content of a direction; None if the node has no messages in it."""
     messages = next(
         (
@@ -146,6 +148,6 @@ def _head(
     )
 
 
-def text(value: object) -> str:
+def xml_text(value: object) -> str:
     """Return a text as one line without characters that XML does not permit."""
     return " ".join(_UNPRINTABLE.sub(" ", str(value)).split())

@@ -152,7 +152,7 @@ def type_of(field: NodePlace, is_little: bool = False) -> GeneratedType:
         return replace(field_type, labels=labels, enum=field.enum.name)
     if field.has_formula:
         field_type = replace(field_type, kind="Float", **_calibration(field))
-    return replace(field_type, limits=_limits(field))
+    return replace(field_type, limits=_range_attributes(field))
 
 
 def most_first(bits: int) -> str:
@@ -182,11 +182,11 @@ def _usual_name(field: FieldDescription, of: GeneratedType) -> str:
 def _calibration(field: NodePlace) -> dict[str, Any]:
     """Return the polynomial or lookup table of a formula."""
     if field.scale is not None:
-        return {"terms": _terms([field.scale.offset, field.scale.factor])}
+        return {"terms": _polynomial_terms([field.scale.offset, field.scale.factor])}
     curve = field.curve
     assert curve is not None
     if not curve.points:
-        return {"terms": _terms(list(map(Fraction, curve.coefficients)))}
+        return {"terms": _polynomial_terms(list(map(Fraction, curve.coefficients)))}
     points = list(map(_point, curve.points))
     # XTCE cannot clamp; horizontal segments have the same effect
     if curve.outside == CLAMP and field.type != "float":
@@ -197,7 +197,7 @@ def _calibration(field: NodePlace) -> dict[str, Any]:
     return {"points": tuple(points), "extrapolates": curve.outside == EXTRAPOLATE}
 
 
-def _terms(coefficients: list[Fraction]) -> tuple[tuple[int, str], ...]:
+def _polynomial_terms(coefficients: list[Fraction]) -> tuple[tuple[int, str], ...]:
     return tuple(
         (power, exact_text(value))
         for power, value in enumerate(coefficients)
@@ -210,7 +210,7 @@ def _point(point: tuple[float, float]) -> tuple[str, str]:
     return raw, value
 
 
-def _limits(field: NodePlace) -> tuple[tuple[str, str], ...]:
+def _range_attributes(field: NodePlace) -> tuple[tuple[str, str], ...]:
     """Return the attributes of the valid range.
 
     XTCE permits only inclusive limits for integers.
