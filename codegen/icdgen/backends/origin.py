@@ -1,4 +1,7 @@
-"""First line of generated files."""
+"""First line of generated files.
+
+It names the version of icdgen, so that a reader of generated code knows what wrote it.
+"""
 
 from __future__ import annotations
 

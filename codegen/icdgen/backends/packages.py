@@ -1,4 +1,8 @@
-"""Names of generated packages: Python package, Rust crate, prefix of C names."""
+"""Names of generated packages: Python package, Rust crate, prefix of C names.
+
+`of_project` reads them from ``icdgen.toml``: explicit names, or names derived from the
+name of the project. It refuses names that a language reserves.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Backend of another package. Its errors are reported with its name and entry point."""
+"""Backend of another package. Its errors are reported with its name and entry point.
+
+`icdgen.backends.get` wraps each plug-in in a `PlugIn`, so that an exception in it is a
+message for its author and no traceback of icdgen.
+"""
 
 from __future__ import annotations
 

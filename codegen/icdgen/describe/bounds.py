@@ -1,4 +1,9 @@
-"""Limits of a field, one by one, with their keys, signs and words."""
+"""Limits of a field, one by one, with their keys, signs and words.
+
+`bounds_of_limits` lists the limits that an ICD states; `allowed_ends` and `range_text`
+combine them with the range that the type of the field allows. Values are exact
+fractions: physical values, or raw values of a field without a scale.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Constants of fields: the only valid value, raw values with a meaning, and limits."""
+"""Constants of fields: the only valid value, raw values with a meaning, and limits.
+
+`constants_of_field` gives each a name in snake case, a value and a comment. A backend
+spells them as macros, class attributes or associated constants.
+"""
 
 from __future__ import annotations
 

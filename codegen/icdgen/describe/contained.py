@@ -1,5 +1,8 @@
 """Messages that a composite message contains (key ``contains``), and where their values
 are in it.
+
+A backend generates a conversion from `contained_messages`: each member of the contained
+message is copied from the fields of the composite that have its bits.
 """
 
 from __future__ import annotations

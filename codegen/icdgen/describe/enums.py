@@ -1,4 +1,8 @@
-"""Enumerations: names in words, the width of their integer, comments."""
+"""Enumerations: names in words, the width of their integer, comments.
+
+An `EnumDescription` has its members, ranges and users. `enum_widths` needs the whole
+set of ICDs, because a field of any node can be wider than the largest member.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Errata of messages, enumerations and their parts."""
+"""Errata of messages, enumerations and their parts.
+
+An erratum can concern several fields. Its explanation stands in the comment of the
+first one (`first_owners`); the other comments refer to it (`owners_elsewhere`).
+"""
 
 from __future__ import annotations
 

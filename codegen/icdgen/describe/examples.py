@@ -1,5 +1,8 @@
 """Examples in the documentation of generated code: a field of a message, a value for
 it, and the frame with it.
+
+`example_of_message` prefers a field that can be set by a physical value. The reference
+codec encodes the frame, so that a documented example can be run as a test.
 """
 
 from __future__ import annotations

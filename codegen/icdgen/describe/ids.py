@@ -1,4 +1,8 @@
-"""Ids in the notation of their protocol."""
+"""Ids in the notation of their protocol.
+
+Protocols with class and number, such as UBX, write ids as bytes (``01 35``); all others
+as a decimal number.
+"""
 
 from __future__ import annotations
 

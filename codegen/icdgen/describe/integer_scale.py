@@ -1,5 +1,9 @@
 """Physical values as whole numbers of thousandths or millionths of a unit, for programs
 without floating point.
+
+`integer_scale` decides whether all values of a scale are such numbers; `integer_bits`
+which integer computes them without overflow; `part_of_unit` how the part is named
+(``mdeg``).
 """
 
 from __future__ import annotations

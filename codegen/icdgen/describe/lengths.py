@@ -1,5 +1,8 @@
 """Lengths of frames: bytes of elements, and the comparisons by which a decoder accepts
 the lengths of a message.
+
+A backend spells each `LengthTest` as one comparison. Comparisons that are always true
+are left out, because compilers and linters report them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Names of parts of an ICD in code and in findings."""
+"""Names of parts of an ICD in code and in findings.
+
+`NamedPart` is the base class of all descriptions of fields, messages, structs,
+enumerations and members. It splits an identifier into words once; languages join them
+as they need.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Numbers, positions and lengths in words."""
+"""Numbers, positions and lengths in words.
+
+Comments, pages and findings use the same phrases: ``bits 4 to 7``, ``2 bytes``, ``90
+(0x5A)``. `icdgen.describe.display` has the notation of values with a resolution.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Comments on procedures, for all languages."""
+"""Comments on procedures, for all languages.
+
+Input is a procedure of `icdgen.protocol.procedures`. Each function returns one line of
+text; the backend puts it into a comment.
+"""
 
 from __future__ import annotations
 

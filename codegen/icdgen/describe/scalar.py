@@ -1,5 +1,9 @@
 """Scalars: the integer that stores the raw value, the physical value, limits, and bits
 of the frame.
+
+`ScalarDescription` combines a place of the ICD (`icdgen.icd.places`) with the decisions
+of `storage`, `steps`, `arithmetic` and `bounds`. `FieldDescription` adds arrays and
+structs to it.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 """Comments on messages that share an id: with which messages, and how a frame is
 recognised.
+
+`icdgen.icd.variants` decides which message a frame belongs to; this module states the
+decision as a sentence.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Steps of a scale in whole numbers, for all languages: physical = (raw*p + c) / q."""
+"""Steps of a scale in whole numbers, for all languages: physical = (raw*p + c) / q.
+
+`steps_of_scale` returns the terms of a field. Generated code and the reference codec
+compute with them, so that both get the same bits. `icdgen.describe.arithmetic` says in
+which types a step is exact.
+"""
 
 from __future__ import annotations
 

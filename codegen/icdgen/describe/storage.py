@@ -1,4 +1,8 @@
-"""Integers of usual machines in which raw values are stored."""
+"""Integers of usual machines in which raw values are stored.
+
+A raw value of 12 bits is stored in 16. `storage_bits` chooses the width, and `Storage`
+knows the range of the type.
+"""
 
 from __future__ import annotations
 

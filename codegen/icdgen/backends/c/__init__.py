@@ -1,5 +1,9 @@
 """C backend: C99 headers of messages, nodes and enumerations, the support header, the
 wire layer, and links.
+
+`CBackend.files` renders the templates of ``templates/c``. They get the descriptions of
+`icdgen.describe`, and the functions in `_FUNCTIONS` that spell these in C. To follow a
+field into the code, read `decoding` and `encoding`, then `bits`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Accessors of physical values, overlay fields and derived values."""
+"""Accessors of physical values, overlay fields and derived values.
+
+`double_accessors` and `integer_accessors` return types, comments and expressions for
+the template ``accessors.h.j2``. The arithmetic is in `icdgen.backends.c.physical`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Expressions that read a field from the bytes of a frame, and that write it there."""
+"""Expressions that read a field from the bytes of a frame, and that write it there.
+
+A field is a word at a byte, or runs of bits in several bytes (`Piece`). `read_field`
+returns terms to combine by ``|``; `field_term` returns the term of a field in one byte.
+`decoding` and `encoding` make statements of them.
+"""
 
 from __future__ import annotations
 

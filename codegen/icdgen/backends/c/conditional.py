@@ -1,5 +1,8 @@
 """Optional fields: the test whether a field is present, and the code that depends on
 it.
+
+A member of an optional field always exists in the struct. `presence_test` is the
+condition under which it is part of the frame.
 """
 
 from __future__ import annotations

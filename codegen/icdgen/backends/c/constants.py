@@ -1,4 +1,9 @@
-"""Values of macros and enumerators, and fields as rows of tables."""
+"""Values of macros and enumerators, and fields as rows of tables.
+
+C has no literal for some values, such as the smallest integer of a type, and an
+enumerator may have 16 bits only. The functions return the text that compiles without a
+warning on all targets.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Statements of decode functions."""
+"""Statements of decode functions.
+
+`decode_statements` returns a statement for each field, or for each group of fields
+(`icdgen.describe.groups`) that a macro of the support header reads at once. The other
+functions spell lengths and counts of variable-length parts; `encoding` uses some of
+them.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Statements of encode functions."""
+"""Statements of encode functions.
+
+`encode_statements` collects the statements and terms of all fields by byte, so that
+each byte of the frame is written exactly once, in order. Bytes without a field become
+0.
+"""
 
 from __future__ import annotations
 

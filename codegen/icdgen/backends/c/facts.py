@@ -1,4 +1,9 @@
-"""Facts of the protocol as values of initialisers."""
+"""Facts of the protocol as values of initialisers.
+
+`fact_value` spells a declared fact (`icdgen.protocol.declared`) as the members of the
+runtime's structs need it, optional facts included. `InitialiserValue` is a line of such
+an initialiser.
+"""
 
 from __future__ import annotations
 

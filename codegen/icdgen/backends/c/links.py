@@ -1,4 +1,9 @@
-"""Links: the protocol facts of a node as tables of the wire layer."""
+"""Links: the protocol facts of a node as tables of the wire layer.
+
+Input is the `LinkDescription` of a node; output are the tables of ``link.c``, in the
+order of their declaration. Each row has the member order of a struct in the C runtime
+(``runtime/c/wire``), which is initialised by position.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Functions that return the messages contained in a composite message."""
+"""Functions that return the messages contained in a composite message.
+
+The statements copy members of the composite into the struct of the contained message;
+see `icdgen.describe.contained`.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Expressions of physical values in double precision, and in whole thousandths or
 millionths of the unit.
+
+`icdgen.describe.arithmetic` decides which types compute a scale without an error. Here
+the decision becomes an expression, or a call of the support header.
 """
 
 from __future__ import annotations

@@ -1,5 +1,9 @@
 """Procedures: their steps as tables of the wire layer, and the typed functions that
 initialize them.
+
+`ProcedureCode` has what the template ``procedures.h.j2`` needs; `_ProcedureTables`
+returns the tables that the engine of the wire layer runs. Rows have the member order of
+structs in ``runtime/c/wire``.
 """
 
 from __future__ import annotations

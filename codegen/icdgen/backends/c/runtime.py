@@ -1,4 +1,9 @@
-"""Files of the runtime. Each is assembled from several files of the repository."""
+"""Files of the runtime. Each is assembled from several files of the repository.
+
+``runtime/c`` is developed and tested as many small files. A generated package has one
+header per purpose: `assemble_file` puts the files that it includes in place of their
+``#include`` lines.
+"""
 
 from __future__ import annotations
 

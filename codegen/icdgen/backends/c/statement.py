@@ -1,4 +1,8 @@
-"""Operands, calls, loops, tests and heads of functions."""
+"""Operands, calls, loops, tests and heads of functions.
+
+These functions know the syntax, the line width and the warnings of C, and nothing of
+fields. The other modules of the backend put statements together with them.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Rows of the tables of framed links."""
+"""Rows of the tables of framed links.
+
+`icdgen.backends.c.links` declares the tables; here is one function per kind of row:
+packet fields, messages, responses. Rows have the member order of structs in
+``runtime/c/wire``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Names that the headers declare, for the symbol table."""
+"""Names that the headers declare, for the symbol table.
+
+The rules on names report two equal names before any code is generated. Templates take
+names from here by role, so that they cannot declare a name that the rules do not see;
+see `icdgen.describe.symbols`.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,9 @@
 """Tables of a link: constants of the generated C, and the expressions that refer to
 them.
+
+`TableSet` is the base class of the tables of links and of procedures. C needs a
+declaration before its use, so each method declares its table and returns the expression
+that refers to it.
 """
 
 from __future__ import annotations

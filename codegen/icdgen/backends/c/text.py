@@ -1,4 +1,8 @@
-"""Comments and string literals of C that no text can end early."""
+"""Comments and string literals of C that no text can end early.
+
+Text of an ICD can contain comment delimiters, trigraphs, quotes and commands of
+Doxygen. `plain`, `prose` and `literal` make it safe.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""C types of raw values, masks and casts."""
+"""C types of raw values, masks and casts.
+
+Casts are macros of the support header, because C++ compilers warn about casts of C.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Files of the C self-test: golden vectors as table rows."""
+"""Files of the C self-test: golden vectors as table rows.
+
+Input are the vectors of `icdgen.vectors`; output are C files with tables of frames,
+expected values and refused values. The engine in ``runtime/c-selftest`` runs through
+them on a target board.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Protocol facts of a node for its page: facts used by generated code, and further
 content of the protocol section.
+
+Output are tables (`FactTable`) by section of the ICD. The page of the protocol shows
+them below its drawings, so that it contains everything that the ICD states.
 """
 
 from __future__ import annotations

@@ -1,5 +1,7 @@
 """Page of changes since an older release: the report of `icdgen diff`, with links to
 the pages of the site.
+
+The report itself is made in `icdgen.diff.report`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Checksums of a node on the page of its protocol."""
+"""Checksums of a node on the page of its protocol.
+
+Each has its parameters and its value of the characters ``123456789``, by which a reader
+can compare it with a catalogue of CRCs.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Page of an enumeration."""
+"""Page of an enumeration.
+
+`values` returns what the template ``enum.html.j2`` needs: members with anchors, fields
+of this type, errata.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Page of all errata and notes."""
+"""Page of all errata and notes.
+
+`values` returns what the template ``errata.html.j2`` needs, by node. Places of an
+erratum come from `Relations`.
+"""
 
 from __future__ import annotations
 

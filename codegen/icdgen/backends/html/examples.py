@@ -1,4 +1,9 @@
-"""Selection of golden vectors that a page shows."""
+"""Selection of golden vectors that a page shows.
+
+`page_vectors` returns the frames of a message; `example_frames` returns two of them
+with decoded values. The frames are those of `icdgen.vectors`, with which the generated
+code of all languages is tested.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Rows of the field table of a message."""
+"""Rows of the field table of a message.
+
+`rows` returns fields and reserved bits in the order of the frame, and `split`
+distributes them to the sections of the page.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Documentation of icdgen as pages of the site: ``docs/**/*.md`` with links between
 pages and to shown files.
+
+`pages` reads and renders them once; the site shows them, and the search finds their
+sections.
 """
 
 from __future__ import annotations

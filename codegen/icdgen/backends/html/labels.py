@@ -1,4 +1,8 @@
-"""Placement of names in the boxes of a drawing."""
+"""Placement of names in the boxes of a drawing.
+
+Names are set in one or more lines and in two sizes. There is no font file to measure,
+so widths are estimated from the number of characters.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""File ``llms.txt``: the site as one page of Markdown, for language models."""
+"""File ``llms.txt``: the site as one page of Markdown, for language models.
+
+The format is described at https://llmstxt.org: a heading, a summary, and lists of
+links.
+"""
 
 from __future__ import annotations
 

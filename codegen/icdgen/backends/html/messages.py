@@ -1,4 +1,9 @@
-"""Page of a message."""
+"""Page of a message.
+
+`values` collects what the template ``message.html.j2`` shows, from the other modules of
+this package: drawing, field table, bytes on each bus, examples, snippets, and the data
+of the decoder.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Home page, and page of a node."""
+"""Home page, and page of a node.
+
+`home` and `values` return what the templates ``home.html.j2`` and ``node.html.j2``
+need; `brief` what every page shows of each node.
+"""
 
 from __future__ import annotations
 

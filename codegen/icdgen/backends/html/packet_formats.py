@@ -1,5 +1,8 @@
 """Packet format of a link on the pages: its fields, the bytes that it adds to a
 message, and data for scripts.
+
+Fields are shown as the ICD declares them; bytes are computed by the Python runtime. The
+scripts of the site decode packets by the data of `script_facts`.
 """
 
 from __future__ import annotations

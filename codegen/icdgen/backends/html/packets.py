@@ -1,4 +1,8 @@
-"""Packet formats of a link on the page of its protocol: fields, sender and content."""
+"""Packet formats of a link on the page of its protocol: fields, sender and content.
+
+`packet_views` returns one view per format, and `packet_urls` the links to them. Fields
+and boxes come from `icdgen.backends.html.packet_formats`.
+"""
 
 from __future__ import annotations
 

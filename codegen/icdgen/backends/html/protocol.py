@@ -1,5 +1,8 @@
 """Page of a node's protocol: buses, framing, checksums, identifiers, errors, sequences
 and assumptions.
+
+`values` returns what the template ``protocol.html.j2`` needs; `search_entries` returns
+the sections of the page for the search.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 """Data by which pages recognize any frame: all messages with their ids, and the
 protocol of each node.
+
+Output is the script ``frame-index.js``. The site has no server, so the scripts of each
+page decide with this index which message a pasted frame is.
 """
 
 from __future__ import annotations

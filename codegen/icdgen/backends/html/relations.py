@@ -1,5 +1,8 @@
 """Relations within a set of ICDs: nodes that use a message, contained messages, and
 places of errata.
+
+Pages link to each other in both directions, so `Relations` goes through the set once.
+All other modules of the package get it as an argument.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 """Arrays that a page represents by one element: repeated structs, variable-length
 arrays and long arrays.
+
+`Repeats` lists the fields that the page of a message shows, with the numbers that they
+have among all scalars. Drawing, table and decoder use the same numbers.
 """
 
 from __future__ import annotations

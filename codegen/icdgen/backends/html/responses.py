@@ -1,5 +1,8 @@
 """Responses to telecommands on framed links, for the pages of the protocol and of
 messages.
+
+Input are the keys ``commands``, ``requests`` and ``response`` of the ICD; output are
+rows with names, links and phrases. `sequences` draws the same rows.
 """
 
 from __future__ import annotations

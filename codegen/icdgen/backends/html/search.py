@@ -1,4 +1,7 @@
-"""Search index: all named objects with their search words and links."""
+"""Search index: all named objects with their search words and links.
+
+Output is the script ``search-index.js``, which ``search.js`` of the site reads.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Sections of a message: contained messages and arrays, or parts of a long message that
 fit on a screen.
+
+`part_sections` follows the structure of the message, `field_sections` only the number
+of fields. Each section has the numbers of its fields.
 """
 
 from __future__ import annotations

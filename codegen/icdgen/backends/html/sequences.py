@@ -1,5 +1,7 @@
 """Sequence diagrams of acknowledges and procedures: two lifelines with arrows between
 them.
+
+`acknowledges` and `procedures` return lists of arrows; a template draws them as SVG.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Sidebar of the pages of a node: its messages by group, and its enumerations."""
+"""Sidebar of the pages of a node: its messages by group, and its enumerations.
+
+A page contains only the group that is open. The script ``contents.js`` of a node has
+the links of all groups, so that pages stay small.
+"""
 
 from __future__ import annotations
 

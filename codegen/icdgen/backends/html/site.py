@@ -1,4 +1,8 @@
-"""All files of the site."""
+"""All files of the site.
+
+`files` renders each page from the values that the other modules of the package return,
+and adds static files, indices and ``icd.json``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Numbers and phrases in the notation of the pages."""
+"""Numbers and phrases in the notation of the pages.
+
+Unlike `icdgen.describe.numbers`, pages use typographic signs: a minus sign, an ellipsis
+between the ends of a range.
+"""
 
 from __future__ import annotations
 

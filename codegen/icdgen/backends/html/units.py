@@ -1,4 +1,8 @@
-"""Reference page of units and types."""
+"""Reference page of units and types.
+
+`values` returns the units that fields use, by quantity, and each type with its number
+of fields.
+"""
 
 from __future__ import annotations
 

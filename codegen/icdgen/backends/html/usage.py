@@ -1,4 +1,8 @@
-"""Use of a message in C, Python and Rust, with the names of the backends."""
+"""Use of a message in C, Python and Rust, with the names of the backends.
+
+A snippet shows one field of the message. The tests of the site compile and run the
+snippets, so they must be complete statements.
+"""
 
 from __future__ import annotations
 

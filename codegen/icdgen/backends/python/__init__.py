@@ -1,5 +1,9 @@
 """Python backend: an installable, typed package with a subpackage per node and a module
 per message or enumeration.
+
+`PythonBackend.files` renders the templates of ``templates/python`` and copies the
+modules of ``runtime/python``. Messages declare their fields by calls of the runtime
+(`fields`), so that generated modules have little code.
 """
 
 from __future__ import annotations

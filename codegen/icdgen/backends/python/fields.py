@@ -1,4 +1,8 @@
-"""Fields of messages and structs: annotations, and the calls that declare them."""
+"""Fields of messages and structs: annotations, and the calls that declare them.
+
+Input is a `FieldDescription`; output is text such as ``mode: Mode = _base.field(...)``.
+The functions of `_base` are in ``runtime/python``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Python expressions for links."""
+"""Python expressions for links.
+
+`icdgen.link_calls` returns the link of a node as nested calls of the runtime;
+`expression` writes them as source, with assumptions as comments.
+"""
 
 from __future__ import annotations
 

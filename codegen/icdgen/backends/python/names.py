@@ -1,4 +1,8 @@
-"""Names of classes and modules of the Python package, and names that it uses itself."""
+"""Names of classes and modules of the Python package, and names that it uses itself.
+
+The symbol table (`symbols`) reports a name of the ICD that would hide one of the
+latter.
+"""
 
 from __future__ import annotations
 

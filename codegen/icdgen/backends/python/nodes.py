@@ -1,5 +1,7 @@
 """Values for the templates of the package, of nodes and of messages, in addition to the
 description.
+
+These are mostly imports, ``__all__`` and literals of dictionaries.
 """
 
 from __future__ import annotations

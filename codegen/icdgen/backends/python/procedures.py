@@ -1,4 +1,8 @@
-"""Values for the template of the procedures of a node."""
+"""Values for the template of the procedures of a node.
+
+A procedure becomes a class with typed inputs and outputs. Its steps are part of the
+link, which the engine of the runtime runs.
+"""
 
 from __future__ import annotations
 

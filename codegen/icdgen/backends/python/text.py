@@ -1,4 +1,8 @@
-"""Text of the ICD in Python source: literals and docstrings that no text can end early."""
+"""Text of the ICD in Python source: literals and docstrings that no text can end early.
+
+`literal` escapes quotes and control characters; `prose` and `paragraph` escape markup
+as well, because documentation tools read docstrings as reStructuredText.
+"""
 
 from __future__ import annotations
 

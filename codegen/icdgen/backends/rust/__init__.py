@@ -1,5 +1,10 @@
 """Rust backend: a `no_std` crate for all nodes, with a module per node and a file per
 message.
+
+`RustBackend.files` renders the templates of ``templates/rust`` and copies the crate of
+``runtime/rust``. Templates get the descriptions of `icdgen.describe`, and the functions
+in `_functions` that spell these in Rust. To follow a field into the code, read
+`messages`, then `bits`.
 """
 
 from __future__ import annotations

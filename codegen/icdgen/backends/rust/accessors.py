@@ -1,5 +1,8 @@
 """Accessors of physical values in double and single precision and in whole parts of the
 unit, and fields as data.
+
+Getters and setters use constants of the module of the message: a `Scale` or a `Curve`
+(`scale_of`, `curve_of`). Their expressions are in `icdgen.backends.rust.physical`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Expressions and statements that read and write fields."""
+"""Expressions and statements that read and write fields.
+
+`read_expression` returns the value of a field over ``bytes``, `write_field` the
+statements that write it, `check_range` those that return an error for a raw value that
+does not fit. Lints of rustc and clippy (pedantic) explain most of the forms.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,9 @@
 """Functions that read and write elements of arrays: structs, and numbers that are not
 whole words.
+
+A large array is read by one function that is called for each element; see
+`icdgen.describe.arrays`. The templates write the functions from the values of
+`array_functions`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Values and statements of examples in the documentation of generated code."""
+"""Values and statements of examples in the documentation of generated code.
+
+`icdgen.describe.examples` chooses field and value. ``cargo test`` runs the examples, so
+they must compile.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Declared facts of the protocol: their names and values in Rust."""
+"""Declared facts of the protocol: their names and values in Rust.
+
+Input is a `Fact` of `icdgen.protocol.declared`; the structs of the wire layer have
+fields of the same names.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,9 @@
 """Links: the protocol facts of a node as the constant ``LINK`` of its module, and sizes
 of buffers for all nodes.
+
+Input is a `LinkDescription`; output is one nested struct expression of the types in
+``runtime/rust/src/wire/link``. Packet formats and responses are in
+`icdgen.backends.rust.streams`.
 """
 
 from __future__ import annotations

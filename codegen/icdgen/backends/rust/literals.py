@@ -1,4 +1,8 @@
-"""Rust expressions for links."""
+"""Rust expressions for links.
+
+`struct`, `flat`, `rows` and `some` build nested expressions; `icdgen.backends.literals`
+writes them as text with one item per line.
+"""
 
 from __future__ import annotations
 

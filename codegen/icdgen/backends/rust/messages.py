@@ -1,4 +1,8 @@
-"""Expressions and statements for the templates of messages and structs."""
+"""Expressions and statements for the templates of messages and structs.
+
+This covers initial values, range checks, lengths of variable parts, and the imports of
+each module. Expressions of single fields are in `icdgen.backends.rust.bits`.
+"""
 
 from __future__ import annotations
 

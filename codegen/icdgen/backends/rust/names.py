@@ -1,4 +1,8 @@
-"""Names in Rust of fields, methods and constants, and the words that cannot be names."""
+"""Names in Rust of fields, methods and constants, and the words that cannot be names.
+
+A keyword such as ``type`` becomes a raw identifier, ``r#type``. The symbol table
+(`symbols`) uses the same functions.
+"""
 
 from __future__ import annotations
 

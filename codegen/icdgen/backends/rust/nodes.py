@@ -1,5 +1,7 @@
 """Documentation of nodes, and the tests that dispatch frames to messages of the same
 id.
+
+The templates ``lib.rs.j2`` and ``node.rs.j2`` call these functions.
 """
 
 from __future__ import annotations

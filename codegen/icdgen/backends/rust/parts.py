@@ -1,4 +1,8 @@
-"""Messages that a composite message contains, as conversions from it."""
+"""Messages that a composite message contains, as conversions from it.
+
+`parts_of` returns the struct expressions of each ``impl From``; see
+`icdgen.describe.contained`.
+"""
 
 from __future__ import annotations
 

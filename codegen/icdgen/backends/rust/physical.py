@@ -1,4 +1,8 @@
-"""Getters of physical values and of derived values."""
+"""Getters of physical values and of derived values.
+
+`icdgen.describe.arithmetic` decides which types compute a scale without an error. Here
+the decision becomes an expression, or a call of the support module.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,9 @@
 """Procedures of a node: the tables of their steps, and types with typed inputs and
 outputs.
+
+`_ProcedureWriter` returns the code of a type, and `_step_literal` the row of a step,
+which the engine of the wire layer runs. A procedure of an included node is generated
+there, once (`NodeProcedures`).
 """
 
 from __future__ import annotations

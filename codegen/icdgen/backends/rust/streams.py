@@ -1,4 +1,9 @@
-"""Packet formats as values of the wire layer."""
+"""Packet formats as values of the wire layer.
+
+Input are the packet formats and exchanges of `icdgen.protocol`; output are struct
+expressions of the types in ``runtime/rust/src/wire/link``. `icdgen.backends.rust.links`
+puts them into the link of a node.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Names that the crate declares, for the symbol table."""
+"""Names that the crate declares, for the symbol table.
+
+The rules on names report two equal names of a scope before any code is generated; see
+`icdgen.describe.symbols`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Documentation comments, literals and lines of Rust."""
+"""Documentation comments, literals and lines of Rust.
+
+Text of an ICD is escaped so that rustdoc shows it unchanged. Generated code is laid out
+as rustfmt would do it.
+"""
 
 from __future__ import annotations
 

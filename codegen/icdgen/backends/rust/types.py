@@ -1,5 +1,8 @@
 """Types of raw values in Rust, and paths of the types of messages, structs and
 enumerations.
+
+A path depends on the module in which it stands, so each function gets the node of that
+module.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Rows of the table of a node: one per field, with its message."""
+"""Rows of the table of a node: one per field, with its message.
+
+Columns are those of `HEADINGS`. Keys of a field without a column are collected in the
+last one, so that an import of the table gives the same ICD.
+"""
 
 from __future__ import annotations
 
