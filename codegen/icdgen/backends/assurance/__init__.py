@@ -1,5 +1,9 @@
 """Verification package for reviews of flight software: traceability, errata,
 assumptions and measurements.
+
+`pack` lists the files. The traceability changes each number of the ICD by itself
+(`changes`), looks for golden vectors that detect it (`detection`, `shared_ids`), and
+reports the result per line of the ICD (`trace`, `tracing`).
 """
 
 from __future__ import annotations

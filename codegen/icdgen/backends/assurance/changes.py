@@ -1,5 +1,9 @@
 """Single changes (mutations) of the content of an ICD: numbers plus and minus one,
 types, formulas and references.
+
+Each function takes an object of the model and yields pairs: the `SingleChange`, and a
+copy of the object with it. Changes that `icdgen check` would report, or that have no
+effect on a frame, are left out.
 """
 
 from __future__ import annotations

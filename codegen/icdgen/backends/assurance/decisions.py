@@ -1,5 +1,7 @@
 """Report on decisions: errata, notes, assumptions, and messages that the manual does
 not describe.
+
+`decision_pages` yields each report as a page and as the rows of its CSV file.
 """
 
 from __future__ import annotations

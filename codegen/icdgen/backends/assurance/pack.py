@@ -1,4 +1,8 @@
-"""Files of the verification package."""
+"""Files of the verification package.
+
+`files` is the only entry point: it traces the ICDs, reads the measurements, and renders
+all pages and tables.
+"""
 
 from __future__ import annotations
 
@@ -139,7 +143,7 @@ def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]
         rows.append(
             (
                 node.title,
-                [*numbers, len(tried), sum(not change.noticed for change in tried)],
+                [*numbers, len(tried), sum(not change.detected for change in tried)],
             )
         )
     # The last row is the total of all nodes.

@@ -68,7 +68,7 @@ class Files:
         folders = {os.path.dirname(os.path.abspath(file)) for file in files}
         self._top = os.path.commonpath(folders) if folders else ""
 
-    def name(self, file: str) -> str:
+    def relative_name(self, file: str) -> str:
         return (
             os.path.relpath(os.path.abspath(file), self._top).replace(os.sep, "/")
             if file
@@ -77,4 +77,4 @@ class Files:
 
     def line(self, place: Place) -> str:
         """Return the place as ``errata/demo.yaml:12``; empty without a file."""
-        return f"{self.name(place.file)}:{place.line}" if place.file else ""
+        return f"{self.relative_name(place.file)}:{place.line}" if place.file else ""

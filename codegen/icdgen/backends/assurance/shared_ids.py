@@ -1,4 +1,8 @@
-"""Detection of changes of messages and nodes by the vectors of shared ids."""
+"""Detection of changes of messages and nodes by the vectors of shared ids.
+
+Constants distinguish the messages of a shared id. A changed message can match the
+frames of another message, so all messages of the id are compared with each frame.
+"""
 
 from __future__ import annotations
 
@@ -35,31 +39,31 @@ class SharedIds:
             if shared_rows:
                 self._rows[node.name] = shared_rows
 
-    def of_message(self, message: Message, now: Message) -> dict[str, list[int]]:
+    def detect_message(self, message: Message, now: Message) -> dict[str, list[int]]:
         """Return the lines that detect a changed message, by node."""
-        return self._noticing(
+        return self._detecting_rows(
             self._icd,
             lambda other: now if other is message else other,
             lambda messages: any(other is message for other in messages),
         )
 
-    def of_node(self, node: Node, now: Node) -> dict[str, list[int]]:
+    def detect_node(self, node: Node, now: Node) -> dict[str, list[int]]:
         """Return the lines that detect a changed node with unchanged messages, by node."""
         nodes = tuple(now if other is node else other for other in self._icd.nodes)
         icd = replace(self._icd, nodes=nodes)
-        return self._noticing(
+        return self._detecting_rows(
             icd,
             lambda message: message,
             lambda messages: any(message.node == node.name for message in messages),
         )
 
-    def _noticing(
+    def _detecting_rows(
         self,
         icd: Icd,
         now: Callable[[Message], Message],
         concerns: Callable[[Sequence[Message]], bool],
     ) -> dict[str, list[int]]:
-        noticed: dict[str, list[int]] = {}
+        detected: dict[str, list[int]] = {}
         for name, rows in self._rows.items():
             for number, row, messages in rows:
                 # A row expects a message, or that its length is refused.
@@ -69,8 +73,8 @@ class SharedIds:
                     and _codec_result(icd, row, [now(message) for message in messages])
                     != expected
                 ):
-                    noticed.setdefault(name, []).append(number)
-        return noticed
+                    detected.setdefault(name, []).append(number)
+        return detected
 
 
 def _codec_result(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:

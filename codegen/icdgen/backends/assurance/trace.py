@@ -1,4 +1,8 @@
-"""Traceability from a line of the ICD to the golden vectors that detect a change of it."""
+"""Traceability from a line of the ICD to the golden vectors that detect a change of it.
+
+`Trace.elements` yields each line of a node with its changes (`changes`), and for each
+change the lines of the vector files that detect it (`detection`, `shared_ids`).
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import SingleChange
-from icdgen.backends.assurance.noticing import MessageWatch
+from icdgen.backends.assurance.detection import MessageWatch
 from icdgen.backends.assurance.shared_ids import SharedIds
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.layout import LayoutNode
@@ -18,7 +22,7 @@ from icdgen.vectors.lines import NodeLines, lines
 from icdgen.vectors.make import NodeVectors, make
 from icdgen.vectors.write import text
 
-Noticed = dict[str, list[int]]
+DetectedLines = dict[str, list[int]]
 """Node -> lines of its vector file."""
 
 
@@ -27,7 +31,7 @@ class Traced:
     """Change with the vectors that detect it."""
 
     change: SingleChange
-    noticed: Noticed
+    detected: DetectedLines
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +81,9 @@ class Element:
         return thing.page if isinstance(thing, Message) else None
 
     @property
-    def noticed(self) -> Noticed:
+    def detected(self) -> DetectedLines:
         """Vectors that detect any of the changes."""
-        return merged(traced.noticed for traced in self.changes)
+        return merged(traced.detected for traced in self.changes)
 
 
 class Trace:
@@ -104,9 +108,9 @@ class Trace:
         """Yield the elements of a node that have a line in the ICD: the node,
         enumerations with members, structs and messages with fields.
         """
-        yield Element("node", node, None, node, None, tuple(self._of_node(node)))
+        yield Element("node", node, None, node, None, tuple(self._trace_node(node)))
         for enum in node.enums:
-            traced = list(self._of_enum(enum))
+            traced = list(self._trace_enum(enum))
             # An enumeration has no numbers of its own; its members do.
             yield Element("enumeration", node, None, enum, None, ())
             for row, member in enumerate(enum.members, 1):
@@ -124,7 +128,7 @@ class Trace:
                     struct,
                     line,
                     row,
-                    tuple(self._of_struct(struct, line, node)),
+                    tuple(self._trace_struct(struct, line, node)),
                 )
         for message in node.messages:
             yield Element(
@@ -133,7 +137,7 @@ class Trace:
                 None,
                 message,
                 None,
-                tuple(self._of_message(message, node)),
+                tuple(self._trace_message(message, node)),
             )
             for row, line in enumerate(message.layout.nodes, 1):
                 yield Element(
@@ -142,20 +146,22 @@ class Trace:
                     message,
                     line,
                     row,
-                    tuple(self._of_line(message, line, node)),
+                    tuple(self._trace_line(message, line, node)),
                 )
 
-    def _of_line(
+    def _trace_line(
         self, message: Message, line: LayoutNode, node: Node
     ) -> Iterator[Traced]:
         """Yield the changes of a line of a message."""
         watch = self._watches[node.name, message.name]
         for change, new in changes.of_line(line, message.layout, node.orders):
             now = replace(message, layout=with_node(message.layout, line, new))
-            shared = self._shared.of_message(message, now)
-            yield Traced(change, merged([_noticed(node, watch.layout(now)), shared]))
+            shared = self._shared.detect_message(message, now)
+            yield Traced(
+                change, merged([_lines_of_node(node, watch.detect_layout(now)), shared])
+            )
 
-    def _of_struct(
+    def _trace_struct(
         self, struct: Struct, line: LayoutNode, node: Node
     ) -> Iterator[Traced]:
         """Yield the changes of a line of a struct, with the vectors of all messages
@@ -163,7 +169,7 @@ class Trace:
         """
         for change, new in changes.of_line(line, struct.layout, node.orders):
             changed = with_node(struct.layout, line, new)
-            results: list[Noticed] = []
+            results: list[DetectedLines] = []
             for watch in self._watches.values():
                 layout = with_struct_layout(
                     watch.message.layout, struct.layout, changed
@@ -172,16 +178,17 @@ class Trace:
                 if layout is not watch.message.layout:
                     now = replace(watch.message, layout=layout)
                     results += (
-                        _noticed(watch.node, watch.layout(now)),
-                        self._shared.of_message(watch.message, now),
+                        _lines_of_node(watch.node, watch.detect_layout(now)),
+                        self._shared.detect_message(watch.message, now),
                     )
             yield Traced(change, merged(results))
 
-    def _of_node(self, node: Node) -> Iterator[Traced]:
+    def _trace_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):
             if change.kind == "node":
                 yield Traced(
-                    change, _noticed(node, [self._lines[node.name].head[change.key]])
+                    change,
+                    _lines_of_node(node, [self._lines[node.name].head[change.key]]),
                 )
             else:
                 watches = (
@@ -190,47 +197,52 @@ class Trace:
                 rows = [
                     line
                     for watch in watches
-                    for line in watch.places(watch.message, now)
+                    for line in watch.detect_places(watch.message, now)
                 ]
                 yield Traced(
                     change,
-                    merged([_noticed(node, rows), self._shared.of_node(node, now)]),
+                    merged(
+                        [
+                            _lines_of_node(node, rows),
+                            self._shared.detect_node(node, now),
+                        ]
+                    ),
                 )
 
-    def _of_enum(self, enum: Enum) -> Iterator[Traced]:
+    def _trace_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
             # The line of the enumeration lists values and names, so each change of a
             # member fails there.
             results = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
             results += (
-                _noticed(watch.node, watch.enum(enum, now))
+                _lines_of_node(watch.node, watch.detect_enum(enum, now))
                 for watch in self._watches.values()
             )
             yield Traced(change, merged(results))
 
-    def _of_message(self, message: Message, node: Node) -> Iterator[Traced]:
+    def _trace_message(self, message: Message, node: Node) -> Iterator[Traced]:
         watch = self._watches[node.name, message.name]
         for change, now in changes.of_message(message, node):
             if change.kind == "id":
-                noticed = merged(
+                detected = merged(
                     [
                         self._lines_of_ids(message, now),
-                        _noticed(node, watch.id(change.key)),
+                        _lines_of_node(node, watch.detect_id(change.key)),
                     ]
                 )
             elif change.kind == "length":
-                noticed = _noticed(node, watch.length())
+                detected = _lines_of_node(node, watch.detect_length())
             else:
-                noticed = _noticed(node, watch.places(now, node))
+                detected = _lines_of_node(node, watch.detect_places(now, node))
             yield Traced(
-                change, merged([noticed, self._shared.of_message(message, now)])
+                change, merged([detected, self._shared.detect_message(message, now)])
             )
 
-    def _lines_of_ids(self, message: Message, now: Message) -> Noticed:
+    def _lines_of_ids(self, message: Message, now: Message) -> DetectedLines:
         """Return the lines with lists of ids that detect a lost id, for each node that
         uses the message.
         """
-        noticed: Noticed = {}
+        detected: DetectedLines = {}
         for node in self.icd.nodes:
             # Only vector files of nodes that use the message list its id.
             if all(message is not other for other in self.icd.messages_of(node)):
@@ -240,20 +252,20 @@ class Trace:
                     id for id, names in names_by_id.items() if message.name in names
                 }
                 if own_ids & (set(message.ids) - set(now.ids)):
-                    noticed.setdefault(node.name, []).append(
+                    detected.setdefault(node.name, []).append(
                         self._lines[node.name].ids[direction]
                     )
-        return noticed
+        return detected
 
 
-def merged(results: Iterator[Noticed] | list[Noticed]) -> Noticed:
+def merged(results: Iterator[DetectedLines] | list[DetectedLines]) -> DetectedLines:
     """Return the union of lines by node, in ascending order."""
     lines_by_node: dict[str, set[int]] = {}
-    for noticed in results:
-        for node, numbers in noticed.items():
+    for detected in results:
+        for node, numbers in detected.items():
             lines_by_node.setdefault(node, set()).update(numbers)
     return {node: sorted(numbers) for node, numbers in lines_by_node.items() if numbers}
 
 
-def _noticed(node: Node, numbers: list[int]) -> Noticed:
+def _lines_of_node(node: Node, numbers: list[int]) -> DetectedLines:
     return {node.name: sorted(set(numbers))} if numbers else {}

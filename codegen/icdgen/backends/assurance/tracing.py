@@ -1,5 +1,8 @@
 """Reports of the traceability: a page per node, a table of all elements, and a table of
 all single changes.
+
+Input are the elements of `trace` and the names that the backends declare; output are
+rows of cells for `paper`.
 """
 
 from __future__ import annotations
@@ -9,7 +12,7 @@ from dataclasses import dataclass
 
 from icdgen import backends
 from icdgen.backends.assurance.paper import Cell, Files, ReportPage, RowGroup
-from icdgen.backends.assurance.trace import Element, Noticed
+from icdgen.backends.assurance.trace import DetectedLines, Element
 from icdgen.frozen import NamedTuple
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Icd, Message, Node
@@ -76,7 +79,7 @@ class SymbolsByLine:
                         Symbol(identifier.scope, identifier.text)
                     )
 
-    def of(self, language: str, source: Map) -> list[Symbol]:
+    def names_of_line(self, language: str, source: Map) -> list[Symbol]:
         """Return the names of a line in a language, without duplicates, in the order of
         the backend.
         """
@@ -110,17 +113,19 @@ class Tracing:
                 _optional_text(element.row),
                 _optional_text(element.table),
                 _optional_text(element.page),
-                self.files.name(place.file),
+                self.files.relative_name(place.file),
                 str(place.line),
                 printed_numbers(element),
                 [erratum.id for erratum in element.errata],
                 str(len(element.changes)),
-                str(_unnoticed(element)),
-                vector_lines(element.noticed),
+                str(_undetected_count(element)),
+                vector_lines(element.detected),
                 *(
                     [
                         str(name)
-                        for name in self.symbols.of(language, element.model.source)
+                        for name in self.symbols.names_of_line(
+                            language, element.model.source
+                        )
                     ]
                     for language in self.symbols.languages
                 ),
@@ -140,12 +145,12 @@ class Tracing:
                     element.part_of,
                     element.name,
                     change.key,
-                    self.files.name(place.file),
+                    self.files.relative_name(place.file),
                     str(place.line),
                     str(place.column),
                     str(change.old),
                     str(change.now),
-                    vector_lines(traced.noticed),
+                    vector_lines(traced.detected),
                 ]
 
     def page(
@@ -198,15 +203,15 @@ class Tracing:
             self.files.line(element.source.place),
             *(self._names(language, element) for language in self.symbols.languages),
             str(len(element.changes)) if element.changes else "",
-            str(_unnoticed(element)) if element.changes else "",
-            vector_lines(element.noticed),
+            str(_undetected_count(element)) if element.changes else "",
+            vector_lines(element.detected),
         ]
 
     def _names(self, language: str, element: Element) -> list[str]:
         return list(
             dict.fromkeys(
                 symbol.name
-                for symbol in self.symbols.of(language, element.model.source)
+                for symbol in self.symbols.names_of_line(language, element.model.source)
             )
         )
 
@@ -232,17 +237,17 @@ def _notes(element: Element) -> tuple[str, ...]:
     return (", ".join(words),) if isinstance(element.model, Message | Enum) else ()
 
 
-def _unnoticed(element: Element) -> int:
-    return sum(not traced.noticed for traced in element.changes)
+def _undetected_count(element: Element) -> int:
+    return sum(not traced.detected for traced in element.changes)
 
 
 def _optional_text(value: int | None) -> str:
     return "" if value is None else str(value)
 
 
-def vector_lines(noticed: Noticed) -> list[str]:
+def vector_lines(detected: DetectedLines) -> list[str]:
     """Return vector files with line numbers: ``demo.json 31-38 40``."""
-    return [f"{node}.json {_ranges(numbers)}" for node, numbers in noticed.items()]
+    return [f"{node}.json {_ranges(numbers)}" for node, numbers in detected.items()]
 
 
 def _ranges(numbers: Iterable[int]) -> str:

@@ -1,5 +1,8 @@
 """Backend of XTCE 1.2 (CCSDS 660.1-G): one file per node with all its messages, for
 Yamcs and other consumers of the standard.
+
+`sides` collects the content of a direction from `frames` (containers), `places`
+(positions of bits) and `types`; the template ``system.xml.j2`` writes it.
 """
 
 from __future__ import annotations

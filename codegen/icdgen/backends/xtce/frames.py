@@ -1,4 +1,9 @@
-"""Messages as containers and commands of XTCE, with their entries and positions."""
+"""Messages as containers and commands of XTCE, with their entries and positions.
+
+`ContainerBuilder.frame` turns a message of one direction into a `MessageContainer`.
+What XTCE cannot represent is left out and noted in ``lacks``, which the file lists in a
+comment.
+"""
 
 from __future__ import annotations
 
@@ -202,7 +207,7 @@ class ContainerBuilder:
         if run is None:
             return None
         name = self._give_name(frame, part)
-        type_ = self.types.of_open(
+        type_ = self.types.type_of_variable_part(
             last, frame.names[last.counter.name], _type_name(frame, name), run.is_little
         )
         _add_parameter(frame, part, type_, last.model.most)
@@ -233,7 +238,9 @@ class ContainerBuilder:
     ) -> ContainerEntry:
         name = frame.names[part.name]
         _add_parameter(
-            frame, part, self.types.of(part, _type_name(frame, name), run.is_little)
+            frame,
+            part,
+            self.types.type_of_field(part, _type_name(frame, name), run.is_little),
         )
         if (
             part.model.const is not None
@@ -270,7 +277,9 @@ class ContainerBuilder:
         self.reserved.setdefault(
             name,
             XtceParameter(
-                name, self.types.name(type_, _encoding_name(type_)), is_reserved=True
+                name,
+                self.types.name_of_type(type_, _encoding_name(type_)),
+                is_reserved=True,
             ),
         )
         base.entries[name] = ContainerEntry(name, run, at=self.head + run.at)
@@ -352,7 +361,9 @@ class ContainerBuilder:
         self.reserved.setdefault(
             name,
             XtceParameter(
-                name, self.types.name(type_, _encoding_name(type_)), is_reserved=True
+                name,
+                self.types.name_of_type(type_, _encoding_name(type_)),
+                is_reserved=True,
             ),
         )
         return ContainerEntry(name, run)

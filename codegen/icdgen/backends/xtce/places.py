@@ -1,4 +1,8 @@
-"""Positions of fields in the bit numbering of XTCE."""
+"""Positions of fields in the bit numbering of XTCE.
+
+`run_of` returns the bits of a field as one run, or None: XTCE cannot represent a field
+in several runs. `gaps` returns the reserved bits between fields.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Content of one direction of a node for the template: header and messages."""
+"""Content of one direction of a node for the template: header and messages.
+
+`direction_content` builds the containers of all messages, and removes telecommands that
+XTCE cannot represent completely.
+"""
 
 from __future__ import annotations
 
@@ -137,7 +141,7 @@ def _head(
                 )
             )
             continue
-        type_ = types.name(
+        type_ = types.name_of_type(
             GeneratedType("Integer", run.bits, "unsigned", most_first(run.bits)),
             f"uint{run.bits}",
         )

@@ -1,4 +1,8 @@
-"""Types of XTCE, each with a unique name."""
+"""Types of XTCE, each with a unique name.
+
+`type_of` translates the type of a field; `TypeBuilder` gives equal types one name, such
+as ``uint16`` or the name of an enumeration.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +82,7 @@ class TypeBuilder:
     names: dict[GeneratedType, str] = field(default_factory=dict)
     taken: set[str] = field(default_factory=set)
 
-    def name(self, of: GeneratedType, wanted: str) -> str:
+    def name_of_type(self, of: GeneratedType, wanted: str) -> str:
         """Return the name of a type: the existing one, otherwise ``wanted`` if it is
         free.
         """
@@ -86,41 +90,47 @@ class TypeBuilder:
             self.names[of] = unique(wanted, self.taken)
         return self.names[of]
 
-    def of(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
+    def type_of_field(
+        self, field: FieldDescription, wanted: str, is_little: bool
+    ) -> str:
         """Return the name of the type of a field; for an array, of the array."""
-        name = self._element(field, wanted, is_little)
+        name = self._element_type(field, wanted, is_little)
         return (
             name
             if not field.count
-            else self.name(
+            else self.name_of_type(
                 GeneratedType("Array", of=name, count=field.count), f"{wanted}_Array"
             )
         )
 
-    def of_open(
-        self, tail: VariablePartDescription, counter: str, wanted: str, is_little: bool
+    def type_of_variable_part(
+        self, part: VariablePartDescription, counter: str, wanted: str, is_little: bool
     ) -> str:
         """Return the name of the type of a variable-length field with a counter."""
-        if tail.field.model.is_bytes and not tail.field.count:
-            variable_type = replace(type_of(tail.field.model), bits=0)
+        if part.field.model.is_bytes and not part.field.count:
+            variable_type = replace(type_of(part.field.model), bits=0)
         else:
             variable_type, wanted = (
-                GeneratedType("Array", of=self._element(tail.field, wanted, is_little)),
+                GeneratedType(
+                    "Array", of=self._element_type(part.field, wanted, is_little)
+                ),
                 f"{wanted}_Array",
             )
-        return self.name(
+        return self.name_of_type(
             replace(
                 variable_type,
-                count=tail.model.most,
+                count=part.model.most,
                 counter=counter,
-                plus=tail.model.plus,
+                plus=part.model.plus,
             ),
             wanted,
         )
 
-    def _element(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
+    def _element_type(
+        self, field: FieldDescription, wanted: str, is_little: bool
+    ) -> str:
         element = type_of(field.model, is_little)
-        return self.name(element, _usual_name(field, element) or wanted)
+        return self.name_of_type(element, _usual_name(field, element) or wanted)
 
 
 def type_of(field: NodePlace, is_little: bool = False) -> GeneratedType:

@@ -57,12 +57,12 @@ class MessageWatch:
             lines,
         )
 
-    def layout(self, now: Message) -> list[int]:
+    def detect_layout(self, now: Message) -> list[int]:
         """Return the lines that detect another layout of the message."""
         olds, news = scalars_in(self.message.layout), scalars_in(now.layout)
         # Another number of elements, for example: the fields have no counterparts.
         if [old.name for old in olds] != [new.name for new in news]:
-            return self.places(now, self.node)
+            return self.detect_places(now, self.node)
         pairs = enumerate(zip(olds, news, strict=True))
         changed = [
             (index, old, new)
@@ -78,14 +78,16 @@ class MessageWatch:
             lines = [
                 self.lines.fields[old.name]
                 for _, old, new in changed
-                if self._line_notices(old, new)
+                if self._field_line_detects(old, new)
             ]
-            return lines + self.places(now, self.node)
+            return lines + self.detect_places(now, self.node)
         return [
-            line for index, _, new in changed for line in self.field(index, new, now)
+            line
+            for index, _, new in changed
+            for line in self.detect_field(index, new, now)
         ]
 
-    def field(self, index: int, now: NodePlace, message: Message) -> list[int]:
+    def detect_field(self, index: int, now: NodePlace, message: Message) -> list[int]:
         """Return the lines that detect another field at an index of the message.
 
         ``message``: changed message.
@@ -100,7 +102,9 @@ class MessageWatch:
                 if codec.derived(message, row.raw).get(now.name)
                 != row.raw.get(now.name)
             ]
-        lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
+        lines = (
+            [self.lines.fields[old.name]] if self._field_line_detects(old, now) else []
+        )
         # The reduced message must contain the fields on which the presence depends.
         needed = {condition.field for condition in (*old.conditions, *now.conditions)}
         reduced_message = self._message_of(
@@ -116,16 +120,16 @@ class MessageWatch:
             if _row_detects(row, old, now, self.node, reduced_message, other_bits)
         ]
 
-    def enum(self, old: Enum, new: Enum) -> list[int]:
+    def detect_enum(self, old: Enum, new: Enum) -> list[int]:
         """Return the lines that detect a changed enumeration."""
         layout = with_enum(self.message.layout, old, new)
         return (
             []
             if layout is self.message.layout
-            else self.layout(replace(self.message, layout=layout))
+            else self.detect_layout(replace(self.message, layout=layout))
         )
 
-    def places(self, now: Message, node: Node) -> list[int]:
+    def detect_places(self, now: Message, node: Node) -> list[int]:
         """Return the lines that detect other positions of bits, by the layout of the
         message or the orders of its node.
         """
@@ -160,7 +164,7 @@ class MessageWatch:
             ),
         )
 
-    def id(self, key: str) -> list[int]:
+    def detect_id(self, key: str) -> list[int]:
         """Return the lines that detect another id.
 
         Frames are requested by the set id if a message has two ids.
@@ -168,11 +172,11 @@ class MessageWatch:
         rows = self.lines.rows[:1] if key == "get_id" else self.lines.rows
         return [self.lines.head, *rows]
 
-    def length(self) -> list[int]:
+    def detect_length(self) -> list[int]:
         """Return the lines that detect another length."""
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
-    def _line_notices(self, old: NodePlace, now: NodePlace) -> bool:
+    def _field_line_detects(self, old: NodePlace, now: NodePlace) -> bool:
         if self._is_in_new_message(old) and _typed_raw(
             old, old.initial_value
         ) != _typed_raw(now, now.initial_value):
