@@ -150,7 +150,8 @@ class _LinkBuilder:
             ),
             "procedures": {
                 each.name: _commented(
-                    _procedure(each), self.assumed.within(f"procedures.{each.name}")
+                    _procedure(each),
+                    self.assumed.of_section_tree(f"procedures.{each.name}"),
                 )
                 for each in facts.procedures
             }
@@ -235,7 +236,7 @@ class _LinkBuilder:
         if form is None:
             return None
         call = self.part(form, name=form.algorithm.name)
-        return _commented(call, self.assumed.within("link.packets"))
+        return _commented(call, self.assumed.of_section_tree("link.packets"))
 
     def mask(self) -> object:
         """Return the call for the log mask."""

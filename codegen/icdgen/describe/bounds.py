@@ -123,44 +123,44 @@ def range_text(field: AnyScalar) -> str:
     An end that is excluded itself reads ``above 0`` or ``below 125``.
     """
     low, high = _lower_end(field), _upper_end(field)
-    unit = f" {field.unit.symbol}" if field.unit else ""
+    if low is None and high is None:
+        return ""
     if low is not None and high is not None:
-        return f"{_end(*low, 'above ')} to {_end(*high, 'below ')}{unit}"
-    if low is not None:
-        return f"{_end(*low, 'above ') if low[1] else 'at least ' + exact_text(low[0])}{unit}"
-    if high is not None:
-        return f"{_end(*high, 'below ') if high[1] else 'at most ' + exact_text(high[0])}{unit}"
-    return ""
+        text = f"{_end_text(low, 'above ')} to {_end_text(high, 'below ')}"
+    elif low is not None:
+        text = _end_text(low, "above ", "at least ")
+    else:
+        assert high is not None
+        text = _end_text(high, "below ", "at most ")
+    return f"{text} {field.unit.symbol}" if field.unit else text
 
 
 _End = tuple[Fraction, bool]  # a value, and whether it is excluded itself
 
 
 def _lower_end(field: AnyScalar) -> _End | None:
+    """Return the narrowest lower end of type and limits."""
     limits = field.limits or Limits()
-    ends = [
-        (value, False)
-        for value in (_type_ends(field)[0], limits.min)
-        if value is not None
-    ]
+    values = (_type_ends(field)[0], limits.min)
+    ends = [(value, False) for value in values if value is not None]
+    if limits.above is not None:
+        ends.append((limits.above, True))
     # Of equal values, the excluded one is the narrower limit: True is above False.
-    return max(
-        [*ends, *([(limits.above, True)] if limits.above is not None else [])],
-        default=None,
-    )
+    return max(ends, default=None)
 
 
 def _upper_end(field: AnyScalar) -> _End | None:
+    """Return the narrowest upper end of type and limits."""
     limits = field.limits or Limits()
-    ends = [
-        (value, False)
-        for value in (_type_ends(field)[1], limits.max)
-        if value is not None
-    ]
-    ends += [(limits.below, True)] if limits.below is not None else []
+    values = (_type_ends(field)[1], limits.max)
+    ends = [(value, False) for value in values if value is not None]
+    if limits.below is not None:
+        ends.append((limits.below, True))
     # Of equal values, the excluded one is the narrower limit.
     return min(ends, key=lambda end: (end[0], not end[1]), default=None)
 
 
-def _end(value: Fraction, is_excluded: bool, word: str) -> str:
-    return f"{word if is_excluded else ''}{exact_text(value)}"
+def _end_text(end: _End, excluded: str, included: str = "") -> str:
+    """Return an end after the word for its kind."""
+    value, is_excluded = end
+    return f"{excluded if is_excluded else included}{exact_text(value)}"

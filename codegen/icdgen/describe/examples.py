@@ -95,30 +95,23 @@ def example_of_message(message: MessageDescription) -> Example:
     """Return the example of a message."""
     field = field_of_example(message)
     shown = _shown(field) if field else None
-    initial = [
-        scalar
-        for place in places_in(message.model.layout)
-        if _has_initial_value(place)
-        for scalar in place.scalars()
-        if not scalar.is_read_only and (scalar.const is not None or scalar.smallest_raw)
-    ]
-    raw: dict[str, int | bytes] = {place.name: place.initial_value for place in initial}
+    raw: dict[str, int | bytes] = {}
+    in_arrays: set[str] = set()  # names of constants in elements of arrays
+    for place in places_in(message.model.layout):
+        # Most messages have no such field: the scalars of all others are not listed.
+        for scalar in place.scalars() if _has_initial_value(place) else ():
+            has_const = scalar.const is not None
+            if scalar.is_read_only or not (has_const or scalar.smallest_raw):
+                continue
+            raw[scalar.name] = scalar.initial_value
+            if has_const and any(step.element is not None for step in scalar.steps):
+                in_arrays.add(scalar.name)
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
-    in_arrays = {
-        place.name
-        for place in initial
-        if place.const is not None
-        and any(step.element is not None for step in place.steps)
-    }
-    few = (
-        raw
-        if len(in_arrays) <= FEW
-        else {name: value for name, value in raw.items() if name not in in_arrays}
-    )
-    frame, brief = (
-        codec.frame_with(message.node, message.model, values) for values in (raw, few)
-    )
+    frame = brief = codec.frame_with(message.node, message.model, raw)
+    if len(in_arrays) > FEW:
+        few = {name: value for name, value in raw.items() if name not in in_arrays}
+        brief = codec.frame_with(message.node, message.model, few)
     return Example(shown, frame, brief)
 
 

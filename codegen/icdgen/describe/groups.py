@@ -167,11 +167,9 @@ def _row(fields: Fields, begin: int, long_enough: int) -> WordRow | None:
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
+        is_same_word = field.is_plain_word and field.byte_order == first.byte_order
         # In memory, padding can follow a struct.
-        is_next = is_next and field.holder == first.holder
-        if not (
-            is_next and field.is_plain_word and field.byte_order == first.byte_order
-        ):
+        if not (is_next and is_same_word and field.holder == first.holder):
             break
         end += 1
     row = fields[begin:end]
@@ -184,18 +182,11 @@ def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
 
     Optional flags and flags that a loop reads do not count.
     """
-    members = (
-        member
-        for member in composite.walk(Into.STRUCTS)
-        if member.model.type == "bool" and not member.model.conditions
-    )
-    flags = (
-        flag
-        for member in members
-        if loop_of(member) is None
-        for flag in member.elements
-    )
-    counts = Counter(flag.pieces[0].byte for flag in flags)
+    counts: Counter[int] = Counter()  # flags by their byte
+    for member in composite.walk(Into.STRUCTS):
+        is_read_alone = not member.model.conditions and loop_of(member) is None
+        if member.model.type == "bool" and is_read_alone:
+            counts.update(flag.pieces[0].byte for flag in member.elements)
     return {byte for byte, count in counts.items() if count >= at_least}
 
 
@@ -239,15 +230,14 @@ class FrameBytes:
                 segment = FrameSegment(byte, *self._whole[byte])
             # Terms stand from the lowest bit up, in whatever order they were added.
             elif byte in self._parts:
-                segment = FrameSegment(
-                    byte, 1, None, tuple(term for _, term in sorted(self._parts[byte]))
-                )
+                terms = tuple(term for _, term in sorted(self._parts[byte]))
+                segment = FrameSegment(byte, 1, None, terms)
             else:
-                used = (
-                    n
-                    for n in range(byte, self._length)
-                    if n in self._whole or n in self._parts
-                )
-                segment = FrameSegment(byte, next(used, self._length) - byte, None)
+                end = byte
+                while end < self._length and not (
+                    end in self._whole or end in self._parts
+                ):
+                    end += 1
+                segment = FrameSegment(byte, end - byte, None)
             yield segment
             byte += segment.length

@@ -104,7 +104,7 @@ class Assumptions:
             if where == section
         ]
 
-    def within(self, start: str) -> list[tuple[str, str]]:
+    def of_section_tree(self, start: str) -> list[tuple[str, str]]:
         """Return path and key, and the reason, of the other assumptions of a section
         and of all sections in it.
         """
@@ -114,7 +114,7 @@ class Assumptions:
             if section == start or section.startswith(f"{start}.")
         ]
 
-    def others(self) -> list[tuple[str, str, str]]:
+    def remaining(self) -> list[tuple[str, str, str]]:
         """Return section, key and reason of all assumptions that were not returned
         before.
         """
@@ -188,13 +188,10 @@ class LinkDescription:
     @property
     def reasons(self) -> list[int]:
         """Codes that the enumerations of refusals on UART and I2C have."""
-        commands = (each.command for each in self.facts.bus_exchanges.values())
-        codes = {
-            code
-            for command in commands
-            for response in (command.responses if command else ())
-            for code, _ in response.reasons
-        }
+        codes: set[int] = set()
+        for exchanges in self.facts.bus_exchanges.values():
+            for response in exchanges.command.responses if exchanges.command else ():
+                codes.update(code for code, _ in response.reasons)
         return sorted(codes)
 
     @property

@@ -166,15 +166,12 @@ class MessageDescription(Composite[Message]):
             "set_id": "Id of the telecommand that sets it.",
             "get_id": "Id of the telemetry that gets it.",
         }
-        ids = (
-            (name, getattr(self.model, name), comment)
-            for name, comment in about.items()
-        )
-        return tuple(
-            MessageId(name, value, comment)
-            for name, value, comment in ids
-            if value is not None
-        )
+        ids = []
+        for name, comment in about.items():
+            value = getattr(self.model, name)
+            if value is not None:
+                ids.append(MessageId(name, value, comment))
+        return tuple(ids)
 
     @property
     def directions(self) -> tuple[str, ...]:
@@ -272,12 +269,10 @@ class MessagesOfId(NamedTuple):
         # Messages with more constants are tried first. If all have the same length, the
         # last one needs no test of it.
         last = self.messages[-1]
-        return (
-            last
-            if not self.is_shared
-            or (self.length is not None and not last.constant_bytes)
-            else None
-        )
+        if not self.is_shared:
+            return last
+        needs_no_test = self.length is not None and not last.constant_bytes
+        return last if needs_no_test else None
 
     @property
     def tested(self) -> tuple[MessageOfId, ...]:
@@ -308,12 +303,8 @@ class NodeDescription:
 
         In an ICD with errors, fields refer to the last one of a name.
         """
-        return tuple(
-            map(
-                self._description.enum,
-                {enum.name: enum for enum in self.model.enums}.values(),
-            )
-        )
+        enums = {enum.name: enum for enum in self.model.enums}.values()
+        return tuple(map(self._description.enum, enums))
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
@@ -378,11 +369,11 @@ class NodeDescription:
             (message, message.telecommand_id_name) for message in self.telecommands
         )
         telemetry = ((message, message.telemetry_id_name) for message in self.telemetry)
-        both_directions = (
+        directions = (
             DirectionMessages("telecommand", tuple(telecommands)),
             DirectionMessages("telemetry", tuple(telemetry)),
         )
-        return tuple(direction for direction in both_directions if direction.messages)
+        return tuple(direction for direction in directions if direction.messages)
 
     def ids(self, direction: str) -> tuple[MessagesOfId, ...]:
         """Return the messages of a direction by their ids, in the order of the ICD."""
@@ -411,24 +402,23 @@ class NodeDescription:
 
     @cached_property
     def _ids(self) -> dict[str, tuple[MessagesOfId, ...]]:
-        telecommands, telemetry = (
-            self.messages_by_id.telecommand,
-            self.messages_by_id.telemetry,
-        )
+        by_id = self.messages_by_id
+        telecommands, telemetry = by_id.telecommand.items(), by_id.telemetry.items()
         return {
             "telecommand": tuple(
-                self._under("set_id", id, variants)
-                for id, variants in telecommands.items()
+                self._messages_of_id("set_id", id, variants)
+                for id, variants in telecommands
             ),
             "telemetry": tuple(
-                self._under("get_id", id, variants)
-                for id, variants in telemetry.items()
+                self._messages_of_id("get_id", id, variants)
+                for id, variants in telemetry
             ),
         }
 
-    def _under(
+    def _messages_of_id(
         self, other_name: str, id: int, variants: tuple[Variant, ...]
     ) -> MessagesOfId:
+        """Return the messages of an id; ``other_name`` is its name in a configuration."""
         candidates = []
         for variant in variants:
             name = "id" if variant.message.id is not None else other_name
@@ -500,15 +490,12 @@ class Description:
     @cached_property
     def id_bits(self) -> int:
         """Bits of the integer for all ids of the set: 8, 16 or 32."""
-        used = (
-            id.bit_length()
-            for node in self.icd.nodes
-            for message in node.messages
-            for id in message.ids
-        )
-        return storage_bits(
-            max((*(node.id_bits for node in self.icd.nodes), *used), default=8)
-        )
+        widths = [8]
+        for node in self.icd.nodes:
+            widths.append(node.id_bits)
+            for message in node.messages:
+                widths += (id.bit_length() for id in message.ids)
+        return storage_bits(max(widths))
 
     def node(self, node: str | Node) -> NodeDescription:
         """Return the description of a node, by its name or by the node itself.

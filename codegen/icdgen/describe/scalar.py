@@ -67,14 +67,8 @@ class ScalarDescription(NamedPart[NodePlace]):
         self.declared_name = self.name
         # Names carry the unit, so that code with a wrong unit is visible where it is
         # written.
-        unit = (
-            "text"
-            if self.is_text
-            else place.unit.identifier
-            if place.unit
-            else "physical"
-        )
-        self.physical_name = f"{self.declared_name}_{unit}"
+        end = place.unit.identifier if place.unit else "physical"
+        self.physical_name = f"{self.declared_name}_{'text' if self.is_text else end}"
 
     @cached_property
     def arithmetic(self) -> ScaleArithmetic | None:

@@ -30,7 +30,7 @@ def storage_bits(bits: int) -> int:
     """Return the width of the smallest integer type of at least ``bits`` bits: 8, 16,
     32 or 64.
     """
-    return 8 if bits <= 8 else 16 if bits <= 16 else 32 if bits <= 32 else 64
+    return next((width for width in (8, 16, 32) if bits <= width), 64)
 
 
 @cache

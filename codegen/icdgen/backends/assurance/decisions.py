@@ -200,10 +200,6 @@ def _pairs(pairs: tuple[tuple[str, object], ...]) -> list[str]:
 
 
 def _value_text(value: object) -> str:
-    return (
-        "(absent)"
-        if value is None
-        else str(value).lower()
-        if isinstance(value, bool)
-        else str(value)
-    )
+    if value is None:
+        return "(absent)"
+    return str(value).lower() if isinstance(value, bool) else str(value)

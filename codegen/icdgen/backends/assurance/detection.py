@@ -112,7 +112,10 @@ class MessageWatch:
             *(place for place in scalars_in(message.layout) if place.name in needed),
         )
         rows = zip(
-            self.lines.rows, self._long_rows, self._of_others[index], strict=True
+            self.lines.rows,
+            self._long_rows,
+            self._bits_of_other_fields[index],
+            strict=True,
         )
         return lines + [
             number
@@ -261,7 +264,7 @@ class MessageWatch:
         return self.message.layout.in_longest(frame, sizes)
 
     @cached_property
-    def _of_others(self) -> list[list[int]]:
+    def _bits_of_other_fields(self) -> list[list[int]]:
         """For each field, the bits that all other fields set in the frame of each row."""
         columns = []
         for field in scalars_in(self.message.layout):

@@ -87,19 +87,22 @@ def enumerator_literals(enum: EnumDescription) -> tuple[bool, Callable[[int], st
         return are_macros, partial(
             _signed_literal, bits=enum.storage.bits if are_macros else 0
         )
-    form = "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
-    return are_macros, form.__mod__
+    if enum.storage.bits == 64:
+        return are_macros, "UINT64_C({})".format
+    return are_macros, ("{}u" if are_macros else "{}").format
 
 
 def range_test(enum: EnumDescription, member: Member) -> str:
     """Return the test whether ``value`` is between the ends of a range."""
     bits, signed = enum.storage
-    form = (
-        partial(_signed_literal, bits=bits)
-        if signed
-        else ("UINT64_C(%d)" if bits == 64 else "%du").__mod__
-    )
-    return f"value > {form(member.value)} && value < {form(member.last)}"
+    if signed:
+        first, last = (
+            _signed_literal(end, bits) for end in (member.value, member.last)
+        )
+    else:
+        form = "UINT64_C({})" if bits == 64 else "{}u"
+        first, last = form.format(member.value), form.format(member.last)
+    return f"value > {first} && value < {last}"
 
 
 def _signed_literal(value: int, bits: int) -> str:

@@ -96,18 +96,15 @@ def _group_statements(
     composite: Composite[Any], message: MessageDescription, groups: list[Group]
 ) -> list[str]:
     """Return a statement per field or group of a message, or of a struct in it."""
-    return [
-        (
-            _read_field(group)
-            if isinstance(group, FieldDescription)
-            else (
-                for_each_struct(group, element_reader(message, group.name))
-                if isinstance(group, StructArray)
-                else _read_group(group, composite)
-            )
-        )
-        for group in groups
-    ]
+    lines = []
+    for group in groups:
+        if isinstance(group, FieldDescription):
+            lines.append(_read_field(group))
+        elif isinstance(group, StructArray):
+            lines.append(for_each_struct(group, element_reader(message, group.name)))
+        else:
+            lines.append(_read_group(group, composite))
+    return lines
 
 
 def _count_from_length(part: VariablePartDescription) -> str:

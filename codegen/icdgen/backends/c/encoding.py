@@ -203,14 +203,8 @@ class _FrameStatements:
             elif terms:
                 lines += self.joined.get(byte, ())
                 lines.append(assigned_byte(f"{self.frame}[{byte}]", terms))
+            elif length == 1:
+                lines.append(f"buffer[{byte}] = 0u;")
             else:
-                lines.append(_zero(byte, length))
+                lines.append(f"(void)memset(&buffer[{byte}], 0, {length}u);")
         return lines
-
-
-def _zero(first: int, count: int) -> str:
-    return (
-        f"buffer[{first}] = 0u;"
-        if count == 1
-        else f"(void)memset(&buffer[{first}], 0, {count}u);"
-    )

@@ -1,7 +1,7 @@
 """Facts of the protocol as values of initialisers.
 
 `fact_value` spells a declared fact (`icdgen.protocol.declared`) as the members of the
-runtime's structs need it, optional facts included. `InitialiserValue` is a line of such
+runtime's structs need it, optional facts included. `TableRow` is a line of such
 an initialiser.
 """
 
@@ -25,8 +25,8 @@ TYPES: dict[type, str] = {
 }  # fmt: skip
 
 
-class InitialiserValue(NamedTuple):
-    """Value of an initialiser, with a comment; subject to a condition of the
+class TableRow(NamedTuple):
+    """Row of a table: a value with a comment, subject to a condition of the
     preprocessor if there is one.
     """
 

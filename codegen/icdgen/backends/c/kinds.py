@@ -35,13 +35,11 @@ def kinds_of(links: Iterable[LinkDescription]) -> list[Kinds]:
         for row in (*stream.telecommands, *stream.telemetry)
     ]
     exchanges = [exchange for each in facts for exchange in each.exchanges]
-    verdicts = {
-        verdict
-        for exchange in exchanges
-        for response in exchange.responses
-        for verdict in (response.verdict, *(each for _, each in response.meanings))
-    }
-    verdicts.add(REPLY)  # a caller can specify a reply
+    verdicts = {REPLY}  # a caller can specify a reply
+    for exchange in exchanges:
+        for response in exchange.responses:
+            verdicts.add(response.verdict)
+            verdicts.update(verdict for _, verdict in response.meanings)
     return [
         _kinds_with_prefix(
             "DELIMITERS",
@@ -101,20 +99,15 @@ def length_type(links: Iterable[LinkDescription]) -> str:
     """Return the type that holds the number of data bytes that any length field of these
     links says.
     """
-    streams = [link.facts.stream for link in links if link.facts.stream]
-    most = max(
-        (
-            (field.mask * field.unit) + abs(field.plus) + packet.overhead
-            for stream in streams
-            for packet in stream.packets
-            for field in packet.fields
-            if field.role in ("length", "response_length")
-        ),
-        default=0,
-    )
-    longest = max((stream.longest for stream in streams), default=0)
-    narrow = max(most, longest) <= MOST_SIGNED
-    return "int_fast32_t" if narrow else "int64_t"
+    largest = 0
+    for stream in (link.facts.stream for link in links if link.facts.stream):
+        largest = max(largest, stream.longest)
+        for packet in stream.packets:
+            for field in packet.fields:
+                if field.role in ("length", "response_length"):
+                    size = field.mask * field.unit + abs(field.plus) + packet.overhead
+                    largest = max(largest, size)
+    return "int_fast32_t" if largest <= MOST_SIGNED else "int64_t"
 
 
 def _kinds_with_prefix(

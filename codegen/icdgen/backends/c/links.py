@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from icdgen.backends.c.facts import InitialiserValue, boolean, or_none
+from icdgen.backends.c.facts import TableRow, boolean, or_none
 from icdgen.backends.c.stream_rows import (
     content_name,
     field_row,
@@ -35,12 +35,7 @@ from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import BUSES, CAN, UART
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
-from icdgen.protocol.packet_formats import (
-    CRC,
-    DIRECTIONS,
-    Escaping,
-    Stream,
-)
+from icdgen.protocol.packet_formats import CRC, DIRECTIONS, Escaping, Stream
 from icdgen.protocol.sections import CAN_KINDS
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -123,15 +118,15 @@ def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
 class _LinkMember(NamedTuple):
     """Member of a link, which is absent in that of a bus where no client needs it."""
 
-    row: InitialiserValue
+    value: str
+    text: str
     buses: Collection[str] = BUSES
     absent: str = "NULL"
 
-    def on(self, bus: str | None) -> InitialiserValue:
+    def row_on(self, bus: str | None) -> TableRow:
         """Return the member in the link of a bus, or in that of the node (None)."""
-        if bus is None or bus in self.buses:
-            return self.row
-        return self.row._replace(value=self.absent)
+        is_needed = bus is None or bus in self.buses
+        return TableRow(self.value if is_needed else self.absent, self.text)
 
 
 class _LinkTables(TableSet):
@@ -152,7 +147,7 @@ class _LinkTables(TableSet):
         before, after = self.before_exchanges(), self.after_exchanges()
         assumed = (
             (key, why)
-            for section, key, why in self.assumed.others()
+            for section, key, why in self.assumed.remaining()
             if not section.startswith("message ")
         )
         links = []
@@ -165,9 +160,9 @@ class _LinkTables(TableSet):
                 "link",
                 "icd_link_t",
                 [
-                    *(each.on(bus) for each in before),
-                    InitialiserValue(f"{{{every}}}", "exchanges on UART, I2C, CAN"),
-                    *(each.on(bus) for each in after),
+                    *(each.row_on(bus) for each in before),
+                    TableRow(f"{{{every}}}", "exchanges on UART, I2C, CAN"),
+                    *(each.row_on(bus) for each in after),
                 ],
                 assumed if bus is None else (),
             )
@@ -193,53 +188,34 @@ class _LinkTables(TableSet):
             "telemetry", (self.message(sent, "0u") for sent in telemetry)
         )
         return [
+            _LinkMember(self.array("nodes", "char *const", nodes), "whose messages"),
+            _LinkMember(f"{len(facts.owners)}u", "how many"),
+            _LinkMember(boolean(facts.little), "byte order: little"),
             _LinkMember(
-                InitialiserValue(
-                    self.array("nodes", "char *const", nodes), "whose messages"
-                )
-            ),
-            _LinkMember(InitialiserValue(f"{len(facts.owners)}u", "how many")),
-            _LinkMember(InitialiserValue(boolean(facts.little), "byte order: little")),
-            _LinkMember(
-                InitialiserValue(
-                    boolean(facts.node.bit_order == "msb0"),
-                    "bit 0 is the most significant one",
-                )
+                boolean(facts.node.bit_order == "msb0"),
+                "bit 0 is the most significant one",
             ),
             _LinkMember(
-                InitialiserValue(
-                    f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
-                    "ids of telemetry",
-                )
+                f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
+                "ids of telemetry",
             ),
             _LinkMember(
-                InitialiserValue(f"{len(link.reasons)}u", "how many codes of refusals"),
+                f"{len(link.reasons)}u",
+                "how many codes of refusals",
                 self.refusing(),
                 "0u",
             ),
             _LinkMember(
-                InitialiserValue(f"{len(facts.unsolicited)}u", "how many unsolicited"),
-                {UART},
-                "0u",
+                f"{len(facts.unsolicited)}u", "how many unsolicited", {UART}, "0u"
             ),
-            _LinkMember(InitialiserValue(_row_count(sent), "how many can be sent")),
-            _LinkMember(
-                InitialiserValue(_row_count(requested), "how many can be requested")
-            ),
-            _LinkMember(InitialiserValue(sent, "what can be sent")),
-            _LinkMember(InitialiserValue(requested, "what can be requested")),
-            _LinkMember(InitialiserValue(longest, "longest telecommand, reply, any")),
-            _LinkMember(
-                InitialiserValue(
-                    f"{facts.longest_data}u", "longest without id and checksum"
-                )
-            ),
-            _LinkMember(
-                InitialiserValue(
-                    f"{received_bytes(link)}u", "buffer for what is received"
-                )
-            ),
-            _LinkMember(InitialiserValue(self.stream(), "framing"), ()),
+            _LinkMember(_row_count(sent), "how many can be sent"),
+            _LinkMember(_row_count(requested), "how many can be requested"),
+            _LinkMember(sent, "what can be sent"),
+            _LinkMember(requested, "what can be requested"),
+            _LinkMember(longest, "longest telecommand, reply, any"),
+            _LinkMember(f"{facts.longest_data}u", "longest without id and checksum"),
+            _LinkMember(f"{received_bytes(link)}u", "buffer for what is received"),
+            _LinkMember(self.stream(), "framing", ()),
         ]
 
     def after_exchanges(self) -> list[_LinkMember]:
@@ -254,56 +230,38 @@ class _LinkTables(TableSet):
         packet = facts.acknowledge
         log_mask, log_file, log_message = self.optional("LOGS", self.logs())
         return [
+            _LinkMember(self.checksum(), "checksums of messages", checked),
             _LinkMember(
-                InitialiserValue(self.checksum(), "checksums of messages"), checked
-            ),
-            _LinkMember(
-                InitialiserValue(
-                    self.numbers("reasons", "uint32_t", codes, 8), "codes of refusals"
-                ),
+                self.numbers("reasons", "uint32_t", codes, 8),
+                "codes of refusals",
                 self.refusing(),
             ),
             _LinkMember(
-                InitialiserValue(
-                    self.part("framing", facts.framing), "framing of the UART"
-                ),
-                {UART},
+                self.part("framing", facts.framing), "framing of the UART", {UART}
             ),
             _LinkMember(
-                InitialiserValue(
-                    f"{packet.overhead if packet else 0}u", "bytes of an acknowledge"
-                ),
+                f"{packet.overhead if packet else 0}u",
+                "bytes of an acknowledge",
                 {UART},
                 "0u",
             ),
-            _LinkMember(InitialiserValue(self.unsolicited(), "unsolicited"), {UART}),
+            _LinkMember(self.unsolicited(), "unsolicited", {UART}),
             log_message,
-            _LinkMember(InitialiserValue(self.can(), "CAN"), {CAN}),
+            _LinkMember(self.can(), "CAN", {CAN}),
+            _LinkMember(settings, "times and limits: icd_client_settings_t"),
+            _LinkMember(or_none(facts.node.node_type), "node type"),
+            _LinkMember(or_none(facts.node.interface_version), "interface version"),
+            _LinkMember(or_none(facts.i2c_address), "I2C address"),
             _LinkMember(
-                InitialiserValue(settings, "times and limits: icd_client_settings_t")
+                boolean(facts.i2c_repeated_start),
+                "I2C: a read may follow its write without a stop",
             ),
-            _LinkMember(InitialiserValue(or_none(facts.node.node_type), "node type")),
-            _LinkMember(
-                InitialiserValue(
-                    or_none(facts.node.interface_version), "interface version"
-                )
-            ),
-            _LinkMember(InitialiserValue(or_none(facts.i2c_address), "I2C address")),
-            _LinkMember(
-                InitialiserValue(
-                    boolean(facts.i2c_repeated_start),
-                    "I2C: a read may follow its write without a stop",
-                )
-            ),
-            _LinkMember(InitialiserValue(or_none(facts.boot_ms), "boot time in ms")),
+            _LinkMember(or_none(facts.boot_ms), "boot time in ms"),
             log_mask,
             log_file,
             *self.optional("FILES", self.of_files()),
             _LinkMember(
-                InitialiserValue(
-                    self.report("identification", link.identification), "identification"
-                ),
-                (),
+                self.report("identification", link.identification), "identification", ()
             ),
         ]
 
@@ -322,7 +280,7 @@ class _LinkTables(TableSet):
             "unsolicited",
             "icd_unsolicited_t",
             (
-                InitialiserValue(
+                TableRow(
                     f"{{{id}u, {contained}u, {telemetry[contained].length}u}}",
                     plain(telemetry[contained].name),
                 )
@@ -332,17 +290,13 @@ class _LinkTables(TableSet):
 
     def logs(self) -> Iterator[_LinkMember]:
         facts = self.facts_of_link
-        yield _LinkMember(InitialiserValue(self.log_mask(), "mask of logs"), ())
-        yield _LinkMember(
-            InitialiserValue(self.part("log_file", facts.log_file), "log files"), ()
-        )
-        yield _LinkMember(
-            InitialiserValue(self.log_message(), "unsolicited logs"), {UART}
-        )
+        yield _LinkMember(self.log_mask(), "mask of logs", ())
+        yield _LinkMember(self.part("log_file", facts.log_file), "log files", ())
+        yield _LinkMember(self.log_message(), "unsolicited logs", {UART})
 
     def of_files(self) -> Iterator[_LinkMember]:
-        yield _LinkMember(InitialiserValue(self.time(), "packed times"), ())
-        yield _LinkMember(InitialiserValue(self.index(), "index of files"), ())
+        yield _LinkMember(self.time(), "packed times", ())
+        yield _LinkMember(self.index(), "index of files", ())
 
     def optional(
         self, what: str, parts: Iterable[_LinkMember]
@@ -350,16 +304,16 @@ class _LinkTables(TableSet):
         """List members that a program can omit, together with their tables."""
         first = len(self.tables)
         for part in parts:
-            value = part.row.value
-            row = part.row._replace(value=f"ICDGEN_OF_{what}({value})")
             # The macro becomes NULL if a program omits these tables, so that no member
             # refers to them.
-            yield part if value == "NULL" else part._replace(row=row)
+            if part.value != "NULL":
+                part = part._replace(value=f"ICDGEN_OF_{what}({part.value})")
+            yield part
         self.tables[first:] = [
             table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]
         ]
 
-    def messages(self, name: str, rows: Iterable[InitialiserValue]) -> str:
+    def messages(self, name: str, rows: Iterable[TableRow]) -> str:
         """Return the messages of a direction.
 
         A last row of zeros is there because a program can omit all others.
@@ -368,12 +322,10 @@ class _LinkTables(TableSet):
         return self.array(
             name,
             "icd_message_t",
-            [*messages, InitialiserValue("{0u, 0u, 0u}", "the end")]
-            if messages
-            else (),
+            [*messages, TableRow("{0u, 0u, 0u}", "the end")] if messages else (),
         )
 
-    def message(self, sent: SentMessage, flags: str) -> InitialiserValue:
+    def message(self, sent: SentMessage, flags: str) -> TableRow:
         """Return the row of a message."""
         conditions = []
         if not any(sent.message is needed for needed in self.link.always_needed):
@@ -386,7 +338,7 @@ class _LinkTables(TableSet):
             ]
             if any(sent.message is needed for needed in self.link.in_procedures):
                 conditions.append("!defined(ICDGEN_NO_FILES)")
-        return InitialiserValue(
+        return TableRow(
             f"{{{sent.id}u, {flags}, {sent.message.length}u}}",
             plain(sent.message.name),
             f" || \\\n{STEP * 2}".join(conditions),
@@ -399,7 +351,7 @@ class _LinkTables(TableSet):
         if report is None:
             return "NULL"
         rows = [
-            InitialiserValue(
+            TableRow(
                 f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}",
                 plain(field.model.name),
             )
@@ -408,10 +360,10 @@ class _LinkTables(TableSet):
         places = self.array(f"{name}_places", "icd_place_t", rows)
         message = report.message
         ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
-        row = InitialiserValue(f"{ids}, {message.length}u, {len(rows)}u, {places}")
+        row = TableRow(f"{ids}, {message.length}u, {len(rows)}u, {places}")
         return self.add(name, "icd_report_t", [row])
 
-    def telecommand(self, sent: SentMessage) -> InitialiserValue:
+    def telecommand(self, sent: SentMessage) -> TableRow:
         """Return the row of a telecommand, with a comment on assumed facts."""
         message = sent.message
         flags = ["ICD_ACKNOWLEDGED"] if message.acknowledge else []
@@ -441,26 +393,22 @@ class _LinkTables(TableSet):
             "can",
             can,
             *(
-                InitialiserValue(
+                TableRow(
                     f"{{{can.parts[role].bits}u, {can.parts[role].shift}u}}",
                     f"{role}: bits, shift",
                 )
                 for role in CAN_PARTS
             ),
-            InitialiserValue(f"{{{types}}}", "types"),
-            InitialiserValue(
-                f"{{{extended_types}}}", "types of messages of several packets"
-            ),
-            InitialiserValue(
-                self.part("can_extended", form), "messages of several packets"
-            ),
+            TableRow(f"{{{types}}}", "types"),
+            TableRow(f"{{{extended_types}}}", "types of messages of several packets"),
+            TableRow(self.part("can_extended", form), "messages of several packets"),
         )
 
     def checksum(self) -> str:
         checksum = self.facts_of_link.checksum
         if checksum is None:
             return "NULL"
-        algorithm = InitialiserValue(self.algorithm(checksum.algorithm), "algorithm")
+        algorithm = TableRow(self.algorithm(checksum.algorithm), "algorithm")
         return self.part("checksum", checksum, algorithm)
 
     def algorithms(self) -> None:
@@ -469,8 +417,8 @@ class _LinkTables(TableSet):
             name = algorithm_table(each.name)
             crc = self.crc(name, each.crc, each.kind == CRC)
             rows = [
-                InitialiserValue(f"ICD_CHECK_{each.kind.upper()}"),
-                InitialiserValue(f"{_CRC}{{{crc}}}"),
+                TableRow(f"ICD_CHECK_{each.kind.upper()}"),
+                TableRow(f"{_CRC}{{{crc}}}"),
             ]
             self.add(name, "icd_checksum_algorithm_t", rows)
 
@@ -499,14 +447,12 @@ class _LinkTables(TableSet):
         request = "NULL"
         if form.request:
             exchange = exchanges[form.request.exchange]
-            row = InitialiserValue(f"{exchange}, {form.request.packet}u")
+            row = TableRow(f"{exchange}, {form.request.packet}u")
             request = self.add("request", "icd_telemetry_request_t", [row])
         escaping = "NULL"
         if form.escaping:
             escaping = self.add(
-                "escaping",
-                "icd_escaping_t",
-                [InitialiserValue(_escaping(form.escaping))],
+                "escaping", "icd_escaping_t", [TableRow(_escaping(form.escaping))]
             )
         around = (
             # -1 means that no packet has this direction. 0 is a packet without header
@@ -515,30 +461,29 @@ class _LinkTables(TableSet):
             for each in DIRECTIONS
         )
         parts = [
-            InitialiserValue(
+            TableRow(
                 f"ICD_DELIMITED_BY_{form.delimited_by.upper()}, {boolean(form.per_id)}",
                 "a sequence for each id",
             ),
-            InitialiserValue(
+            TableRow(
                 f"{len(form.packets)}u, {{{', '.join(map(str, around))}}}, {packets}",
                 "packet formats",
             ),
-            InitialiserValue(
+            TableRow(
                 f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}",
                 "messages",
             ),
-            InitialiserValue(
-                f"{len(form.confirming)}u, {confirming}",
-                "telemetry that only responds",
+            TableRow(
+                f"{len(form.confirming)}u, {confirming}", "telemetry that only responds"
             ),
-            InitialiserValue(request, "request of telemetry"),
-            InitialiserValue(escaping, "escape characters"),
+            TableRow(request, "request of telemetry"),
+            TableRow(escaping, "escape characters"),
         ]
         return self.add(
             "stream", "icd_stream_form_t", parts, self.assumed.of_section("link")
         )
 
-    def packet(self, form: Stream, number: int) -> InitialiserValue:
+    def packet(self, form: Stream, number: int) -> TableRow:
         """Return the row of a packet format; its fields and its checksum are separate
         tables.
         """
@@ -550,10 +495,10 @@ class _LinkTables(TableSet):
         check = "NULL"
         if packet.check:
             name, algorithm = f"check{suffix}", packet.check.algorithm
-            row = InitialiserValue(self.algorithm(algorithm), "algorithm")
+            row = TableRow(self.algorithm(algorithm), "algorithm")
             covered = f"{packet.check.covered_from}u, {packet.check.covered_trailer}u, {boolean(packet.check.is_seeded)}"
             check = self.add(
-                name, "icd_check_form_t", [row, InitialiserValue(covered, "covered")]
+                name, "icd_check_form_t", [row, TableRow(covered, "covered")]
             )
         sizes = (
             f"{len(packet.fields)}u, {packet.header_bytes}u, {packet.trailer_bytes}u"
@@ -565,7 +510,7 @@ class _LinkTables(TableSet):
             for each in DIRECTIONS
         )
         sent = ", ".join(boolean(each in packet.directions) for each in DIRECTIONS)
-        return InitialiserValue(
+        return TableRow(
             f"{{{{{ids}}}, {fields}, {check}, {sizes}, "
             f"ICD_PACKET_{content_name(packet).upper()}, {{{sent}}}, {packet.reserved}u}}",
             plain(packet.name),
@@ -580,7 +525,7 @@ class _LinkTables(TableSet):
             given = [exchanges.request, exchanges.command]
             declared = [each for each in given if each]
             names = self.exchanges(f"{bus}_exchanges", declared)
-            row = InitialiserValue(
+            row = TableRow(
                 ", ".join(names.get(each, "NULL") for each in reversed(given))
             )
             on[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
@@ -614,7 +559,7 @@ class _LinkTables(TableSet):
             poll = "NULL"
             if exchange.poll:
                 until = number_place(exchange.poll.until, ID_BYTES)
-                row = InitialiserValue(f"{exchange.poll.telemetry}u, {until}")
+                row = TableRow(f"{exchange.poll.telemetry}u, {until}")
                 poll = self.add("outcome_poll", "icd_outcome_poll_t", [row])
             rows.append(
                 f"{{{sources}, {responses},\n{STEP * 3}{counts}, {exchange.timeout}u, {poll}}}"
@@ -671,25 +616,23 @@ class _LinkTables(TableSet):
             row = mask.bits.get(bit)
             id, length = (row.id, row.length) if row else (None, mask.slot_bytes)
             text = f"bit {bit}" + (f": {plain(row.name)}" if row and row.name else "")
-            rows.append(InitialiserValue(f"{{{or_none(id)}, {length}u}}", text))
+            rows.append(TableRow(f"{{{or_none(id)}, {length}u}}", text))
         return self.part(
-            "log_mask",
-            mask,
-            InitialiserValue(self.array("log_bits", "icd_log_bit_t", rows)),
+            "log_mask", mask, TableRow(self.array("log_bits", "icd_log_bit_t", rows))
         )
 
     def log_message(self) -> str:
         mask = self.facts_of_link.mask
         if mask is None:
             return "NULL"
-        sizes = InitialiserValue(
+        sizes = TableRow(
             f"{mask.size}u, {mask.slot_bytes}u", "size of the mask, slot_bytes"
         )
         return self.part("log_message", self.facts_of_link.log_message, sizes)
 
     def time(self) -> str:
         rows = [
-            InitialiserValue(
+            TableRow(
                 f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name
             )
             for name, part in self.link.time
@@ -700,8 +643,7 @@ class _LinkTables(TableSet):
         form = self.link.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         rows = (
-            InitialiserValue(f"{{{span.at}u, {span.bytes}u}}", name)
-            for name, span in fields
+            TableRow(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields
         )
         return self.part("index_entry", form, *rows)
 

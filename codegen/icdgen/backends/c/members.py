@@ -39,23 +39,23 @@ def _statements_of_field(
         return lines_of(field, member, name)
     # An inner loop has an index of its own name: compilers warn if a variable hides
     # another one (`-Wshadow`).
-    index = "0" if count == "1u" else "element" if depth == 1 else f"element_{depth}"
-    member += f"[{index}]"
+    index = "element" if depth == 1 else f"element_{depth}"
+    has_loop = count != "1u"
+    member += f"[{index}]" if has_loop else "[0]"
+    lines = []
     if field.element_struct is None:
-        lines = lines_of(field, member, name)
+        lines += lines_of(field, member, name)
     else:
-        members = (
-            (inner, f"{inner.count}u")
-            for inner in field.element_struct.walk(Into.STRUCTS)
-        )
-        lines = [
-            line
-            for inner, many in members
-            for line in _statements_of_field(
-                inner, lines_of, many, f"{member}.", f"{name}[].", depth + 1
+        for inner in field.element_struct.walk(Into.STRUCTS):
+            lines += _statements_of_field(
+                inner,
+                lines_of,
+                f"{inner.count}u",
+                f"{member}.",
+                f"{name}[].",
+                depth + 1,
             )
-        ]
-    if not lines or index == "0":
+    if not lines or not has_loop:
         return lines
     return [loop(index, count), *(f"{STEP}{line}" for line in lines), "}"]
 

@@ -71,15 +71,11 @@ def _wide_scale(steps: Steps) -> Iterator[str]:
 
 def int64(value: int) -> str:
     """Return the literal of a signed integer of 64 bits."""
-    return (
-        # A minus sign is an operator and no part of a literal (C99 6.4.4.1), and
-        # 9223372036854775808 does not fit into 64 bits with a sign.
-        "INT64_MIN"
-        if value == -INT64 - 1
-        else f"INT64_C({value})"
-        if abs(value) > INT32
-        else str(value)
-    )
+    # A minus sign is an operator and no part of a literal (C99 6.4.4.1), and
+    # 9223372036854775808 does not fit into 64 bits with a sign.
+    if value == -INT64 - 1:
+        return "INT64_MIN"
+    return f"INT64_C({value})" if abs(value) > INT32 else str(value)
 
 
 def _limit(value: int, storage: Storage) -> str:

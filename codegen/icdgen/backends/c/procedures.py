@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from icdgen.backends.c.facts import InitialiserValue, boolean
+from icdgen.backends.c.facts import TableRow, boolean
 from icdgen.backends.c.names import (
     PROCEDURE_PARAMETERS,
     input_parameters,
@@ -276,7 +276,7 @@ class _ProcedureTables(TableSet):
         The tables of its steps come first, because C needs their declarations before
         the table that refers to them.
         """
-        self._rows: dict[str, list[InitialiserValue]] = {
+        self._rows: dict[str, list[TableRow]] = {
             name: [] for name in ("sends", "polls", "receives", "checksums", "tests")
         }
         steps = [self.step(step) for step in procedure.steps]
@@ -293,35 +293,33 @@ class _ProcedureTables(TableSet):
         )
         receives = len(self._rows["receives"])
         rows = [
-            InitialiserValue(
+            TableRow(
                 f"{self.array('steps', 'icd_step_form_t', steps)}, {len(steps)}u",
                 "steps",
             ),
-            InitialiserValue(arrays, ", ".join(self._rows)),
-            InitialiserValue(
+            TableRow(arrays, ", ".join(self._rows)),
+            TableRow(
                 self.array("inputs", "icd_input_form_t", map(self.input, inputs)),
                 "inputs",
             ),
-            InitialiserValue(
-                f"{len(inputs)}u, {receives}u", "how many inputs, receives"
-            ),
-            InitialiserValue(self.blocks(procedure.blocks), "blocks"),
-            InitialiserValue(
+            TableRow(f"{len(inputs)}u, {receives}u", "how many inputs, receives"),
+            TableRow(self.blocks(procedure.blocks), "blocks"),
+            TableRow(
                 f"{content.most if content else 0}u", "largest number of bytes to send"
             ),
-            InitialiserValue(f"{procedure.most_entries}u", "largest number of entries"),
-            InitialiserValue(f"{procedure.time}u", "longest duration in ms"),
-            InitialiserValue(f"{procedure.requests}u", "largest number of requests"),
+            TableRow(f"{procedure.most_entries}u", "largest number of entries"),
+            TableRow(f"{procedure.time}u", "longest duration in ms"),
+            TableRow(f"{procedure.requests}u", "largest number of requests"),
         ]
         self.add(
             "form",
             "icd_procedure_form_t",
             rows,
-            self.assumed.within(f"procedures.{procedure.name}"),
+            self.assumed.of_section_tree(f"procedures.{procedure.name}"),
         )
         return self.tables
 
-    def step(self, step: Step) -> InitialiserValue:
+    def step(self, step: Step) -> TableRow:
         """Return the row of a step; what it does is in another table."""
         index, text = 0, ""
         if isinstance(step, Send):
@@ -336,18 +334,18 @@ class _ProcedureTables(TableSet):
             index = self._row("tests", test_initialiser(step.test))
         elif isinstance(step, SetLength):
             index = self._row("tests", f"{{0u, {value_initialiser(step.value)}}}")
-        again = boolean(getattr(step, "again", False))
+        repeats = boolean(getattr(step, "again", False))
         to = getattr(step, "to", 0)
         kind = f"ICD_STEP_{_KINDS[type(step)]}"
-        return InitialiserValue(f"{{{kind}, {index}u, {again}, {to}u}}", plain(text))
+        return TableRow(f"{{{kind}, {index}u, {repeats}, {to}u}}", plain(text))
 
     def _row(self, table: str, row: str) -> int:
         """Return the index of a row, which is added unless it is there."""
         rows = self._rows[table]
         # Steps often repeat the same message or test. They then share the row.
-        if InitialiserValue(row) not in rows:
-            rows.append(InitialiserValue(row))
-        return rows.index(InitialiserValue(row))
+        if TableRow(row) not in rows:
+            rows.append(TableRow(row))
+        return rows.index(TableRow(row))
 
     def send(self, step: Send) -> str:
         # NULL stands for zeros, which need no table.
@@ -404,10 +402,10 @@ class _ProcedureTables(TableSet):
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
         return f"{{{self.algorithm(step.algorithm)}, {flags}, {value_initialiser(step.value)}}}"
 
-    def input(self, each: Input) -> InitialiserValue:
+    def input(self, each: Input) -> TableRow:
         values = self.shared("values", "uint32_t", (f"{n}u" for n in each.values))
         optional = boolean(each.is_optional)
-        return InitialiserValue(
+        return TableRow(
             f"{{{each.most}u, {values}, {len(each.values)}u, {optional}}}", each.name
         )
 
@@ -421,7 +419,7 @@ class _ProcedureTables(TableSet):
                 "map_messages",
                 "icd_map_message_t",
                 [
-                    InitialiserValue(
+                    TableRow(
                         f"{{{_id_literal(message.telecommand_id)}, {_id_literal(message.telemetry_id)}}}",
                         plain(message.name),
                     )
@@ -430,12 +428,12 @@ class _ProcedureTables(TableSet):
             )
             flags = (map.msb0, map.received, map.beyond_end)
             rows = [
-                InitialiserValue(f"{messages}, {len(map.messages)}u", "messages"),
-                InitialiserValue(
+                TableRow(f"{messages}, {len(map.messages)}u", "messages"),
+                TableRow(
                     f"{map.messages[0].length}u, {map.at}u, {map.bytes}u",
                     "length of a message, offset and bytes of the map",
                 ),
-                InitialiserValue(
+                TableRow(
                     ", ".join(boolean(flag) for flag in flags),
                     "bit 0 is the most significant one, received, beyond the end",
                 ),
@@ -445,22 +443,18 @@ class _ProcedureTables(TableSet):
             "blocks",
             "icd_blocks_form_t",
             [
-                InitialiserValue(boolean(blocks.sends), "sends"),
+                TableRow(boolean(blocks.sends), "sends"),
                 # 0 is the register of the offset, so it can mean that there is none.
-                InitialiserValue(
-                    f"{blocks.total or 0}u", "register with the number of bytes"
-                ),
-                InitialiserValue(
+                TableRow(f"{blocks.total or 0}u", "register with the number of bytes"),
+                TableRow(
                     f"{blocks.begin}u, {blocks.size}u", "first step, bytes of a block"
                 ),
-                InitialiserValue(
+                TableRow(
                     f"{blocks.packet_bytes}u, {blocks.first_packet}u, {blocks.fill:#04x}u",
                     "bytes of a packet, first number, fill",
                 ),
-                InitialiserValue(
-                    f"{blocks.rounds}u, {blocks.most}u", "rounds, bytes in all"
-                ),
-                InitialiserValue(form, "map"),
+                TableRow(f"{blocks.rounds}u, {blocks.most}u", "rounds, bytes in all"),
+                TableRow(form, "map"),
             ],
         )
 

@@ -30,12 +30,8 @@ def short_names(identifiers: Iterable[Identifier]) -> dict[str, str]:
     for identifier in identifiers:
         if len(identifier.text) >= SIGNIFICANT and _LONG.fullmatch(identifier.text):
             alike[identifier.text[:SIGNIFICANT]].add(identifier.text)
-    return {
-        text: _short_name(text)
-        for texts in alike.values()
-        if len(texts) > 1
-        for text in texts
-    }
+    ambiguous = (texts for texts in alike.values() if len(texts) > 1)
+    return {text: _short_name(text) for texts in ambiguous for text in texts}
 
 
 def _short_name(text: str) -> str:
@@ -54,8 +50,8 @@ def with_short_names(
     short = short_names(identifiers)
     for path, text in files:
         # Few ICDs have such names, and the search takes longer than the text of a file.
-        yield path, _replaced(text, short) if short else text
-
-
-def _replaced(text: str, short: dict[str, str]) -> str:
-    return _LONG_OR_INCLUDE.sub(lambda match: short.get(match[0], match[0]), text)
+        if short:
+            text = _LONG_OR_INCLUDE.sub(
+                lambda match: short.get(match[0], match[0]), text
+            )
+        yield path, text

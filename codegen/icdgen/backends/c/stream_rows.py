@@ -7,7 +7,7 @@ packet fields, messages, responses. Rows have the member order of structs in
 
 from __future__ import annotations
 
-from icdgen.backends.c.facts import InitialiserValue, boolean
+from icdgen.backends.c.facts import TableRow, boolean
 from icdgen.backends.c.text import plain
 from icdgen.icd.responses import AGAIN, KINDS
 from icdgen.protocol.exchange import NumberPlace, Response
@@ -55,7 +55,7 @@ def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
     ]
 
 
-def field_row(field: PacketField) -> InitialiserValue:
+def field_row(field: PacketField) -> TableRow:
     """Return the row of a field of packets."""
     pair = field.values
     if field.role == "id":
@@ -66,7 +66,7 @@ def field_row(field: PacketField) -> InitialiserValue:
         pair = field.plus & (1 << WORD) - 1, field.unit
     values = ", ".join(f"{value:#x}u" for value in pair)
     numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
-    return InitialiserValue(
+    return TableRow(
         f"{{ICD_FIELD_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
     )
 
@@ -119,7 +119,7 @@ def stream_flags(form: Stream, row: StreamRow) -> list[str]:
     return [f"ICD_STREAM_{name}" for name, is_set in flags.items() if is_set]
 
 
-def message_row(form: Stream, row: StreamRow, exchange: str | None) -> InitialiserValue:
+def message_row(form: Stream, row: StreamRow, exchange: str | None) -> TableRow:
     """Return the row of a message in packets."""
     values = (
         f"{row.id:#x}u, {row.least}u, {row.most}u",
@@ -127,4 +127,4 @@ def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Initialis
         f"{row.seed}u, {row.packet}u, {row.requests or 0:#x}u",
         exchange or "NULL",
     )
-    return InitialiserValue(f"{{{', '.join(values)}}}", plain(row.name))
+    return TableRow(f"{{{', '.join(values)}}}", plain(row.name))

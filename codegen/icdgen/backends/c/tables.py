@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from icdgen.backends.c import names
-from icdgen.backends.c.facts import TYPES, InitialiserValue, fact_value
+from icdgen.backends.c.facts import TYPES, TableRow, fact_value
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import Assumptions, LinkDescription, byte_table
@@ -56,7 +56,7 @@ class TableSet:
         self,
         name: str,
         type: str,
-        rows: Iterable[str | InitialiserValue],
+        rows: Iterable[str | TableRow],
         assumed: Iterable[tuple[str, str]] = (),
     ) -> str:
         """Declare a table, with a comment on assumed facts: their keys and reasons."""
@@ -68,7 +68,7 @@ class TableSet:
         self,
         name: str,
         type: str,
-        rows: Iterable[str | InitialiserValue],
+        rows: Iterable[str | TableRow],
         assumed: Iterable[tuple[str, str]] = (),
     ) -> Table:
         """Return a table, with a comment on assumed facts."""
@@ -77,14 +77,9 @@ class TableSet:
             comment([about], STEP) if about else "", type, name, list(map(str, rows))
         )
 
-    def array(
-        self, name: str, type: str, rows: Iterable[str | InitialiserValue]
-    ) -> str:
+    def array(self, name: str, type: str, rows: Iterable[str | TableRow]) -> str:
         """Declare an array; return NULL if it is empty."""
-        items = [
-            row if isinstance(row, InitialiserValue) else InitialiserValue(row)
-            for row in rows
-        ]
+        items = [row if isinstance(row, TableRow) else TableRow(row) for row in rows]
         # The name of an array is its address: `&rows[]` becomes `rows`.
         return self.add(f"{name}[]", type, items).strip("&[]") if items else "NULL"
 
@@ -105,7 +100,7 @@ class TableSet:
             self._shared[name, items] = self.array(f"{name}_{number}", type, items)
         return self._shared.get((name, items), "NULL")
 
-    def part(self, name: str, part: object, *further: InitialiserValue) -> str:
+    def part(self, name: str, part: object, *further: TableRow) -> str:
         """Declare the table of a part: its facts, then further rows.
 
         Return NULL for None.
@@ -119,13 +114,13 @@ class TableSet:
             self.assumed.of_part(part),
         )
 
-    def facts(self, name: str, part: object) -> list[InitialiserValue]:
+    def facts(self, name: str, part: object) -> list[TableRow]:
         """Return a row for each declared fact."""
         rows = []
         for fact in facts_of(part):
             value, text = getattr(part, fact.name), fact.name
             about = f"{text} in ms" if fact.kind is Kind.TIME else text
-            rows.append(InitialiserValue(fact_value(fact, value), about))
+            rows.append(TableRow(fact_value(fact, value), about))
         return rows
 
     def values(self, name: str, part: object) -> str:

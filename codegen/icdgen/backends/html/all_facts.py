@@ -223,6 +223,6 @@ def as_text(value: object) -> str:
             for key, item in value.items()
             if key != "assumptions"
         )
-    return (
-        f"{value:,}" if isinstance(value, int) else "" if value is None else str(value)
-    )
+    if isinstance(value, int):
+        return f"{value:,}"
+    return "" if value is None else str(value)

@@ -120,10 +120,12 @@ class _Canvas:
         ]
         self.owner = self._owners()
         self.grid, self.rows = self._grid()
-        # Higher rows leave room for names in two lines.
+        self.row = 34  # height of a row
+        if self.across == 4:
+            self.row = 30
         # More fields than two per byte: names need a second line.
-        narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
-        self.row = (46 if narrow else 34) if self.across < 4 else 30
+        elif any(len(set(row)) > 2 * self.across for _, row in self.grid):
+            self.row = 46
 
     def _labels(self) -> dict[int, str]:
         """Return the name of each field by its key; for an optional field, also the

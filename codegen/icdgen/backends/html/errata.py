@@ -39,20 +39,17 @@ def values(relations: Relations) -> dict[str, object]:
     groups = [
         _node_errata(relations, node) for node in relations.icd.nodes if node.errata
     ]
-    entries = [
-        entry
-        for group in groups
-        for _, _, entries_of_kind in group.kinds
-        for entry in entries_of_kind
-    ]
+    names: set[str] = set()
+    used_levels: set[str] = set()
+    for group in groups:
+        for _, _, entries in group.kinds:
+            for entry in entries:
+                names.update(entry.messages)
+                used_levels.add(entry.erratum.confidence)
     return {
         "groups": groups,
-        "messages": sorted({name for entry in entries for name in entry.messages}),
-        "levels": [
-            level
-            for level in _LEVELS
-            if any(entry.erratum.confidence == level for entry in entries)
-        ],
+        "messages": sorted(names),
+        "levels": [level for level in _LEVELS if level in used_levels],
     }
 
 

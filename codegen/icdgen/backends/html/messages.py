@@ -83,7 +83,9 @@ def _facts(
     """Return label, text and link of each fact."""
     protocol = relations.icd.protocol_of(node) or {}
     # Packet formats have responses instead of acknowledges.
-    is_acknowledged = message.telecommand_id is not None and not framed_link(protocol)
+    acknowledged = ""
+    if message.telecommand_id is not None and not framed_link(protocol):
+        acknowledged = "yes" if message.acknowledge else "no"
     source = [
         f"{word} {number}"
         for word, number in (("table", message.table), ("page", message.page))
@@ -115,11 +117,7 @@ def _facts(
         ("Group", message.group, ""),
         ("Period", f"{message.period_ms} ms" if message.period_ms else "", ""),
         *responses.of_message(relations, node, message),
-        (
-            "Acknowledged",
-            ("yes" if message.acknowledge else "no") if is_acknowledged else "",
-            "",
-        ),
+        ("Acknowledged", acknowledged, ""),
         *(
             (
                 "Log mask",
@@ -146,11 +144,12 @@ def _variable_parts(message: Message) -> Iterator[tuple[str, str, str]]:
     """Yield the limits of each variable-length part."""
     parts = message.layout.parts
     for part in parts:
-        until = (
-            ("up to the fields behind it" if part.behind else "up to the end")
-            if part.is_rest
-            else f"as many as {count_text(part.counter, part.plus)} says"
-        )
+        if not part.is_rest:
+            until = f"as many as {count_text(part.counter, part.plus)} says"
+        elif part.behind:
+            until = "up to the fields behind it"
+        else:
+            until = "up to the end"
         most = count(part.most, "element" if part.is_array else "byte")
         is_end = part is parts[-1] and not part.behind
         yield (

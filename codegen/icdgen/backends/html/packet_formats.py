@@ -88,7 +88,7 @@ class FormatField(NamedTuple):
     role: str
     place: str
     about: str
-    holds: str
+    value: str
     url: str = ""  # of the enumeration of its values
     name: str = ""
 
@@ -102,7 +102,12 @@ def script_facts(
     meaning of packets without a message.
     """
     # A message page contains only its own rows, which keeps it small.
-    ids = None if message is None else _ids_of(message)
+    ids: dict[str, set[int | None]] | None = None
+    if message is not None:
+        ids = {
+            "telecommand": {message.telecommand_id},
+            "telemetry": {message.telemetry_id},
+        }
     # The length of other messages shows where packets without a length field end.
     unmeasured = [
         index
@@ -139,12 +144,6 @@ def script_facts(
     if responses and with_responses:
         script_data["responses"] = responses
     return script_data
-
-
-def _ids_of(message: Message) -> dict[str, set[int]]:
-    """Return the ids of a message by direction."""
-    ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
-    return {direction: set() if id is None else {id} for direction, id in ids.items()}
 
 
 def _packet_data(packet: PacketFormat) -> dict[str, object]:
@@ -184,19 +183,15 @@ def _response_data(form: Stream) -> Iterator[dict[str, object]]:
     """Yield what each packet without a message says about which messages: the verdict,
     and where status and reason are in the frame.
     """
-    exchanges = [
-        (direction, row.id, exchange)
-        for direction in ("telemetry", "telecommand")
-        for row in form.rows(direction)
-        if (exchange := form.exchange_of(row))
-    ]
-    # Responses that differ in what they repeat only are the same for a reader.
     ids: dict[Response, dict[str, list[int]]] = {}
-    for direction, id, exchange in exchanges:
-        for response in exchange.responses:
-            if response.packet is not None:
-                about = ids.setdefault(replace(response, echoes=()), {})
-                about.setdefault(direction, []).append(id)
+    for direction in ("telemetry", "telecommand"):
+        for row in form.rows(direction):
+            exchange = form.exchange_of(row)
+            for response in exchange.responses if exchange else ():
+                if response.packet is not None:
+                    # Responses that differ only in their echoes are equal for a reader.
+                    about = ids.setdefault(replace(response, echoes=()), {})
+                    about.setdefault(direction, []).append(row.id)
     for response, about in ids.items():
         response_data: dict[str, object] = {
             "packet": response.packet,
@@ -255,18 +250,20 @@ def format_fields(packet: Packet, enum_urls: Mapping[str, str]) -> list[FormatFi
     ``enum_urls``: links to the enumerations, by name.
     """
     id_parts = dict(_id_parts(packet))
-    return [
-        FormatField(
-            row["role"],
-            f"{part}, {bit_range(row['at'], row['bits'])}",
-            _purpose_text(row) + id_parts.get(id(row), ""),
-            _value_text(row),
-            enum_urls.get(row.get("enum", ""), ""),
-            row.get("name", ""),
-        )
-        for part, rows in (("header", packet.header), ("trailer", packet.trailer))
-        for row in sorted(rows, key=lambda row: int(row["at"]))
-    ]
+    fields = []
+    for part, rows in (("header", packet.header), ("trailer", packet.trailer)):
+        for row in sorted(rows, key=lambda row: int(row["at"])):
+            fields.append(
+                FormatField(
+                    row["role"],
+                    f"{part}, {bit_range(row['at'], row['bits'])}",
+                    _purpose_text(row) + id_parts.get(id(row), ""),
+                    _value_text(row),
+                    enum_urls.get(row.get("enum", ""), ""),
+                    row.get("name", ""),
+                )
+            )
+    return fields
 
 
 def _id_parts(packet: Packet) -> Iterator[tuple[int, str]]:

@@ -58,21 +58,24 @@ def packet_views(relations: Relations, node: Node, stream: Stream) -> list[Packe
         for owner in (*relations.icd.included(node), node)
         for enum in owner.enums
     }
-    return [
-        PacketView(
-            packet.name,
-            urls[packet.name].partition("#")[2],
-            packet.section.get("summary", "") if packet.name else "",
-            (
-                _contents(relations, node, packets, packet, form, stream)
-                if packet.name
-                else []
-            ),
-            packet_formats.packet_boxes(packet, form),
-            packet_formats.format_fields(packet, enum_urls),
+    views = []
+    for packet, form in zip(packets.all, stream.packets, strict=True):
+        summary, contents = "", list[PacketContent]()
+        # A link with one format has no name for it: its section is the page itself.
+        if packet.name:
+            summary = packet.section.get("summary", "")
+            contents = _contents(relations, node, packets, packet, form, stream)
+        views.append(
+            PacketView(
+                packet.name,
+                urls[packet.name].partition("#")[2],
+                summary,
+                contents,
+                packet_formats.packet_boxes(packet, form),
+                packet_formats.format_fields(packet, enum_urls),
+            )
         )
-        for packet, form in zip(packets.all, stream.packets, strict=True)
-    ]
+    return views
 
 
 def packet_urls(relations: Relations, node: Node) -> dict[str, str]:
@@ -120,7 +123,8 @@ def _contents(
     if form.content == NOTHING:
         section = _section(relations, node)
         refused = _responded_to(section.get("commands", {}), messages, packet.name)
-        is_of_request = packet.name in _packets_in(section.get("requests", {}))
+        rows = responses_in(section.get("requests", {})).values()
+        is_of_request = any(row.get("packet") == packet.name for row in rows)
         text = "requests of telemetry" if is_of_request else ""
         return [
             *contents,
@@ -157,11 +161,6 @@ def _packets_of(packets: Packets, message: Message) -> list[Packet]:
         if id is not None
         for packet in packets.of(message.name, direction)
     ]
-
-
-def _packets_in(keys: Mapping[str, Any]) -> set[str]:
-    """Return the packets that respond, of `commands`, `requests` or a `response`."""
-    return {row["packet"] for row in responses_in(keys).values() if "packet" in row}
 
 
 def _responded_to(

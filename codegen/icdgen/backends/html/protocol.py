@@ -206,16 +206,13 @@ def error_codes(
     enums = [] if node_facts.stream else node_facts.reason_enums
     if not enums:
         return [(code, role, "", "") for code, role in sorted(roles.items())]
-    return [
-        (
-            m.value,
-            m.name,
-            roles.get(m.value, ""),
-            f"{relations.links.enum(enum)}#{relations.links.anchor(enum, str(m.value))}",
-        )
-        for enum in enums
-        for m in enum.members
-    ]
+    codes = []
+    for enum in enums:
+        page = relations.links.enum(enum)
+        for member in enum.members:
+            url = f"{page}#{relations.links.anchor(enum, str(member.value))}"
+            codes.append((member.value, member.name, roles.get(member.value, ""), url))
+    return codes
 
 
 def search_entries(

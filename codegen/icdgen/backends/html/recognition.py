@@ -91,21 +91,16 @@ def message_numbers(
 
     For a shared id, each message has the bytes of its constants.
     """
-    candidates = {
-        id: [
-            (
-                numbers[variant.message.node, variant.message.name],
-                constant_bytes(variant),
-            )
-            for variant in variants
+    numbers_by_id: dict[str, Any] = {}
+    for id, variants in ids.items():
+        candidates = [
+            (numbers[each.message.node, each.message.name], constant_bytes(each))
+            for each in variants
         ]
-        for id, variants in ids.items()
-    }
-    return {
         # Most ids have one message: its number alone keeps the index small.
-        str(id): messages if len(messages) > 1 else messages[0][0]
-        for id, messages in candidates.items()
-    }
+        is_shared = len(candidates) > 1
+        numbers_by_id[str(id)] = candidates if is_shared else candidates[0][0]
+    return numbers_by_id
 
 
 def _speaker_data(

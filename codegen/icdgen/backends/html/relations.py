@@ -51,14 +51,13 @@ class Relations:
         # The prefix changes names in C only, so it is a second ICD.
         self._in_c = with_prefix(icd, self.packages.c_prefix)
         # Nodes that use the messages of a node: itself, and those that include it.
-        self.speakers: dict[str, list[Node]] = {
-            owner.name: [
+        self.speakers: dict[str, list[Node]] = {}
+        for owner in icd.nodes:
+            self.speakers[owner.name] = [
                 node
                 for node in icd.nodes
                 if node is owner or owner in icd.included(node)
             ]
-            for owner in icd.nodes
-        }
         # Fields of an enumeration type
         self.uses: dict[tuple[str, str], list[PageLink]] = defaultdict(list)
         self.units: dict[str, tuple[Unit, list[PageLink]]] = {}  # unit with its fields

@@ -78,16 +78,16 @@ def _message_sections(
     parts = sorted(
         relations.contains[message.node, message.name], key=lambda part: part.at
     )
-    found_sections: list[MessageSection] = []
+    sections: list[MessageSection] = []
     end = 0
     for part in parts:
         first = part.at // 8
         # A drawing has whole bytes, and a byte belongs to one section.
         if part.at % 8 or first < end or first + part.length > message.length:
             return []
-        found_sections += _section_between(message, repeats, end, first)
+        sections += _section_between(message, repeats, end, first)
         end = first + part.length
-        found_sections.append(
+        sections.append(
             MessageSection(
                 part.place.text,
                 first,
@@ -99,7 +99,7 @@ def _message_sections(
     return (
         _fold_sections(
             repeats,
-            found_sections + _section_between(message, repeats, end, message.length),
+            sections + _section_between(message, repeats, end, message.length),
         )
         if parts
         else []

@@ -240,14 +240,14 @@ def _step_arrows(
             case Send():
                 arrows = [_message_arrow(relations, True, step.message)]
             case Get() | Poll():
-                asked = f"request for {step.message.name}"
+                request = f"request for {step.message.name}"
                 note = until = ""
                 if isinstance(step, Poll):
                     note = f"every {step.interval} ms, for {step.timeout} ms at most"
                     tests = (_test_text(procedure, test) for test in step.until)
                     until = f"until {', '.join(tests)}"
                 arrows = [
-                    _message_arrow(relations, True, step.message, asked, note),
+                    _message_arrow(relations, True, step.message, request, note),
                     _message_arrow(relations, False, step.message, note=until),
                 ]
             case Receive():

@@ -52,13 +52,9 @@ def _element_annotation(field: FieldDescription) -> str:
         return PYTHON_NAMES.symbol(field.struct, "class")
     if field.is_text:
         return "bytes"
-    return (
-        PYTHON_NAMES.symbol(field.enum, "class")
-        if field.enum
-        else "int"
-        if field.model.type == "uint"
-        else field.model.type
-    )
+    if field.enum is not None:
+        return PYTHON_NAMES.symbol(field.enum, "class")
+    return "int" if field.model.type == "uint" else field.model.type
 
 
 def default_value(field: FieldDescription) -> str:
@@ -79,14 +75,12 @@ def _element_default(field: FieldDescription) -> str:
     kind, value = field.model.type, field.initial_raw
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
+    if kind == "bool":
+        return str(bool(value))
+    if kind == "float":
+        return "0.0"
     if field.enum is None:
-        return (
-            str(bool(value))
-            if kind == "bool"
-            else "0.0"
-            if kind == "float"
-            else str(value)
-        )
+        return str(value)
     # An initial value can be without a name. The class then gives a member for the
     # number.
     name, member = PYTHON_NAMES.symbol(field.enum, "class"), field.enum.member(value)

@@ -66,7 +66,7 @@ class RustBackend:
         links = links_of(description)
         # Nodes come after the nodes that they include, so the procedures of these are
         # in the table when a node asks for their code.
-        known: dict[str, NodeProcedures] = {}
+        procedures_by_node: dict[str, NodeProcedures] = {}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         of_crate = {
             "has_tails": has_tails,
@@ -81,8 +81,10 @@ class RustBackend:
             link = links.get(node.name)
             shared = {**common, "origin": origin(node.model)}
             if link and link.facts.procedures:
-                procedures = NodeProcedures(link, description, known, self.crate)
-                known[node.name] = procedures
+                procedures = NodeProcedures(
+                    link, description, procedures_by_node, self.crate
+                )
+                procedures_by_node[node.name] = procedures
                 yield (
                     folder / "procedures.rs",
                     render("procedures.rs.j2", procedures=procedures, **shared),

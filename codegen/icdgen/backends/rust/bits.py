@@ -85,7 +85,9 @@ def _loop_helper(field: FieldDescription) -> str:
     iteration of an array; empty without such a function.
     """
     loop = loop_of(field)
-    return "" if loop is None else "rounds" if loop.per_iteration > 1 else "each"
+    if loop is None:
+        return ""
+    return "rounds" if loop.per_iteration > 1 else "each"
 
 
 def _called(field: FieldDescription, helper: str, within: str, depth: int) -> str:
@@ -163,7 +165,9 @@ def _whole_word(field: FieldDescription, size: int) -> str:
 
 def _word_type(field: FieldDescription) -> str:
     """Return the type of a word: ``u16``, ``f32``."""
-    return f"{'f' if field.model.type == 'float' else 'i' if field.model.is_signed else 'u'}{field.model.bits}"
+    if field.model.type == "float":
+        return f"f{field.model.bits}"
+    return f"{'i' if field.model.is_signed else 'u'}{field.model.bits}"
 
 
 def _as_field_type(field: FieldDescription, value: str, size: int) -> str:
@@ -259,8 +263,10 @@ def _source_expression(field: FieldDescription, owner: str = "self") -> str:
     """Return the expression to write: the member, or the variable with the value of an
     optional field.
     """
+    if field.model.conditions:
+        return RAW
     name = field_name(field)
-    return RAW if field.model.conditions else f"{owner}.{name}" if owner else name
+    return f"{owner}.{name}" if owner else name
 
 
 def write_field(

@@ -48,8 +48,9 @@ def _value_test(need: PresenceCondition) -> str:
     if field.model.type == "bool":
         # A flag has two values, so with more than one value the condition is always
         # met.
-        is_any = len(need.values) > 1
-        return "true" if is_any else member if need.values[0] else f"!{member}"
+        if len(need.values) > 1:
+            return "true"
+        return member if need.values[0] else f"!{member}"
     member += ".raw()" if field.enum is not None else ""
     if len(need.values) == 1:
         return f"{member} == {need.values[0]}"

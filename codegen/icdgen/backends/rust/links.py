@@ -57,7 +57,7 @@ def values(link: LinkDescription) -> dict[str, object]:
     about = [
         f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."
     ]
-    for section, key, why in link_literal.assumed.others():
+    for section, key, why in link_literal.assumed.remaining():
         if section.startswith(procedures.SECTION):
             continue  # the module of the procedures shows it
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")

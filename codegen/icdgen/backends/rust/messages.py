@@ -56,12 +56,11 @@ def literal(message: MessageDescription) -> str:
 
 def write_statements(message: MessageDescription) -> list[str]:
     """Return the statements that write all members but optional ones."""
-    return [
-        line
-        for member in message.walk(Into.STRUCTS)
-        if not member.model.conditions
-        for line in bits.write_field(member)
-    ]
+    lines = []
+    for member in message.walk(Into.STRUCTS):
+        if not member.model.conditions:
+            lines += bits.write_field(member)
+    return lines
 
 
 def overlay_value(field: FieldDescription) -> str:
@@ -136,12 +135,11 @@ def default(composite: Composite[Any]) -> str:
 
 def fits(composite: Composite[Any]) -> list[str]:
     """Return the statements that return an error if a raw value does not fit."""
-    return [
-        line
-        for field in composite.members
-        if field.needs_range_check and not field.model.conditions
-        for line in bits.check_range(field)
-    ]
+    lines = []
+    for field in composite.members:
+        if field.needs_range_check and not field.model.conditions:
+            lines += bits.check_range(field)
+    return lines
 
 
 def typed_constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
@@ -219,4 +217,6 @@ def _value_expression(field: FieldDescription, raw: int) -> str:
         return f"Coded::from_raw({integer(raw)})"
     if kind == "float":
         return "0.0"
-    return ("true" if raw else "false") if kind == "bool" else integer(raw)
+    if kind == "bool":
+        return "true" if raw else "false"
+    return integer(raw)

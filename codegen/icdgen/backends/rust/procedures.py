@@ -113,7 +113,7 @@ class NodeProcedures:
         self,
         link: LinkDescription,
         description: Description,
-        others: Mapping[str, NodeProcedures],
+        of_included: Mapping[str, NodeProcedures],
         crate: str,
     ) -> None:
         self.node = link.facts.node.name
@@ -127,7 +127,8 @@ class NodeProcedures:
             owners = (
                 name
                 for name in description.node(self.node).included
-                if name in others and any(map(text.is_code_of, others[name].own))
+                if name in of_included
+                and any(map(text.is_code_of, of_included[name].own))
             )
             owner = next(owners, None)
             self.all.append(text)

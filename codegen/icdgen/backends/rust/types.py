@@ -73,13 +73,13 @@ def open_type(field: FieldDescription) -> str:
 
 def one_type(field: FieldDescription) -> str:
     """Return the type of the raw value; for an array that of an element."""
-    one = field.model
+    place = field.model
     if field.struct is not None:
         return struct_path(field.struct, field.message.node)
     if field.enum is not None:
         return f"Coded<{enum_path(field.enum, field.message.node)}>"
-    if one.is_bytes:
-        return f"[u8; {one.bits // 8}]"
-    if one.type == "float":
-        return f"f{one.bits}"
-    return "bool" if one.type == "bool" else integer_type(field)
+    if place.is_bytes:
+        return f"[u8; {place.bits // 8}]"
+    if place.type == "float":
+        return f"f{place.bits}"
+    return "bool" if place.type == "bool" else integer_type(field)

@@ -26,12 +26,8 @@ _SHOWN = frozenset({
 
 def of_node(node: Node) -> list[Row]:
     """Return the rows of the messages that the node declares itself, in their order."""
-    return [
-        row
-        for message in node.messages
-        if message.node == node.name
-        for row in _rows_of_message(message)
-    ]
+    own = (message for message in node.messages if message.node == node.name)
+    return [row for message in own for row in _rows_of_message(message)]
 
 
 def _rows_of_message(message: Message) -> Iterator[Row]:
@@ -48,7 +44,9 @@ def _rows_of_message(message: Message) -> Iterator[Row]:
 
 
 def _cell(value: object) -> Cell:
-    return int(value) if isinstance(value, int) else "" if value is None else str(value)
+    if value is None:
+        return ""
+    return int(value) if isinstance(value, int) else str(value)
 
 
 def _cells_of_fields(message: Message) -> Iterator[dict[str, object]]:

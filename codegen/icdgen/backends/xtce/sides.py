@@ -60,33 +60,18 @@ def direction_content(
     icd: Icd, node: NodeDescription, direction: str
 ) -> DirectionContent | None:
     """Return the content of a direction; None if the node has no messages in it."""
-    messages = next(
-        (
-            node_direction.messages
-            for node_direction in node.directions
-            if node_direction.kind == direction
-        ),
-        (),
-    )
+    messages = {each.kind: each.messages for each in node.directions}.get(direction)
     if not messages:
         return None
     types = TypeBuilder()
-    id_bits = max(
-        node.model.id_bits,
-        *(
-            id.bit_length()
-            for described in node.all_messages
-            for id in described.model.ids
-        ),
-    )
+    ids = [id for described in node.all_messages for id in described.model.ids]
+    id_bits = max(node.model.id_bits, *(id.bit_length() for id in ids))
     head = _head(id_bits, icd.protocol_of(node.model), direction, types)
-    shared = {
-        entry.id: min(
-            candidate.message.model.layout.shortest for candidate in entry.messages
-        )
-        for entry in node.ids(direction)
-        if entry.is_shared
-    }
+    shared = {}  # shared id -> bytes that all its frames have
+    for entry in node.ids(direction):
+        if entry.is_shared:
+            layouts = (each.message.model.layout for each in entry.messages)
+            shared[entry.id] = min(layout.shortest for layout in layouts)
     maker = ContainerBuilder(
         direction,
         types,

@@ -135,20 +135,11 @@ class TypeBuilder:
 
 def type_of(field: NodePlace, is_little: bool = False) -> GeneratedType:
     """Return the type of a field; for an array, of an element."""
-    order = (
-        ""
-        if field.is_bytes
-        else "leastSignificantByteFirst"
-        if is_little
-        else most_first(field.bits)
-    )
-    encoding = (
-        ""
-        if field.type == "float" or field.is_bytes
-        else "twosComplement"
-        if field.is_signed
-        else "unsigned"
-    )
+    order = encoding = ""
+    if not field.is_bytes:
+        order = "leastSignificantByteFirst" if is_little else most_first(field.bits)
+        if field.type != "float":
+            encoding = "twosComplement" if field.is_signed else "unsigned"
     field_type = GeneratedType(
         _KINDS[field.type], field.bits, encoding, order, field.unit_symbol
     )
