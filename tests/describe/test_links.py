@@ -84,7 +84,10 @@ def test_an_assumption_is_told_once():
         "packet_timeout_ms"
     ]
     assert not assumed.of_section("link.buses.can.segments")
-    assert len(assumed.remaining()) == len(facts.assumptions) - 2 and not assumed.remaining()
+    assert (
+        len(assumed.remaining()) == len(facts.assumptions) - 2
+        and not assumed.remaining()
+    )
 
 
 @pytest.mark.parametrize(

@@ -93,14 +93,10 @@ class FieldDescription(ScalarDescription):
         if place is self.model:
             return self
         element = self.moved(place)
-        element.name, element.member = (
-            f"{self.name}_{place.index}",
-            f"{self.member}[{place.index}]",
-        )
-        element.array, element.is_repeated = (
-            self,
-            self.is_repeated or self.struct is not None,
-        )
+        element.name = f"{self.name}_{place.index}"
+        element.member = f"{self.member}[{place.index}]"
+        element.array = self
+        element.is_repeated = self.is_repeated or self.struct is not None
         return element
 
     def _inner(self, place: NodePlace) -> FieldDescription:
@@ -109,14 +105,10 @@ class FieldDescription(ScalarDescription):
         declared = self.struct.member_for[id(place.node)]
         inner = declared.moved(place)
         inner.message, inner.node_orders = self.message, self.node_orders
-        inner.member_of_message, inner.is_repeated = (
-            self.member_of_message,
-            self.is_repeated,
-        )
-        inner.name, inner.member = (
-            f"{self.name}_{declared.name}",
-            f"{self.member}.{declared.member}",
-        )
+        inner.member_of_message = self.member_of_message
+        inner.is_repeated = self.is_repeated
+        inner.name = f"{self.name}_{declared.name}"
+        inner.member = f"{self.member}.{declared.member}"
         inner.holder, inner.declaration = self.member, declared
         return inner
 
@@ -125,10 +117,8 @@ class FieldDescription(ScalarDescription):
         # The copy takes computed names and constants along: they do not depend on the
         # place, and an array of structs has a copy per element and member.
         other = copy(self)
-        other.model, other.owner = (
-            place,
-            f"field `{place.name}` of `{self.message.model.name}`",
-        )
+        other.model = place
+        other.owner = f"field `{place.name}` of `{self.message.model.name}`"
         for name in _OF_PLACE:
             other.__dict__.pop(name, None)
         return other

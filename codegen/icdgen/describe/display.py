@@ -166,10 +166,8 @@ def _resolution(curve: Curve, low: int, high: int) -> float:
     if curve.points:
         # Beyond its points a lookup table is constant, extrapolated or without a value,
         # so only raw values between them count.
-        low, high = (
-            max(low, math.ceil(curve.points[0][0])),
-            min(high, math.floor(curve.points[-1][0])),
-        )
+        low = max(low, math.ceil(curve.points[0][0]))
+        high = min(high, math.floor(curve.points[-1][0]))
     every = max(1, (high - low) // _SAMPLES)
     starts = range(low, max(high, low + 1), every)
     steps = [abs(curve.double(raw + 1) - curve.double(raw)) for raw in starts]

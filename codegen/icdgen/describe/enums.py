@@ -66,11 +66,9 @@ class EnumDescription(NamedPart[Enum]):
 
     def __init__(self, enum: Enum, node: Node, bits: int, icd: Icd) -> None:
         super().__init__(enum, enum, node.vocabulary, f"enumeration `{enum.name}`")
-        self.icd, self.node, self.storage = (
-            icd,
-            node,
-            Storage(storage_bits(bits), enum.signed),
-        )
+        self.icd = icd
+        self.node = node
+        self.storage = Storage(storage_bits(bits), enum.signed)
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:

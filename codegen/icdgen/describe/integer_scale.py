@@ -53,10 +53,8 @@ def integer_scale(steps: Steps) -> IntegerScale | None:
     """
     # Thousandths come first, because their numbers are smaller.
     for per in (1000, 1_000_000):
-        factor, offset = (
-            Fraction(steps.p * per, steps.q),
-            Fraction(steps.c * per, steps.q),
-        )
+        factor = Fraction(steps.p * per, steps.q)
+        offset = Fraction(steps.c * per, steps.q)
         if factor.denominator == offset.denominator == 1:
             return _integer_scale(per, int(factor), int(offset), steps)
     return None

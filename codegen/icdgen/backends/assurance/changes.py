@@ -157,10 +157,8 @@ def _condition_changes(
         if (scalar := scalar_of(other)) is not None
     }
     for place, condition in enumerate(node.present_if):
-        value, other = (
-            node.source["when"].get(condition.field),
-            scalars[condition.field],
-        )
+        value = node.source["when"].get(condition.field)
+        other = scalars[condition.field]
         for step in (-1, 1) if type(value) is int else ():
             if not other.raw_min <= value + step <= other.raw_max:
                 continue
@@ -240,11 +238,9 @@ def _formula_changes(
 def _table_changes(
     node: LayoutNode, scalar: Scalar, old: Curve
 ) -> Iterator[tuple[SingleChange, LayoutNode]]:
-    source, printed, outside = (
-        node.source,
-        plain(node.source["points"]),
-        node.source.get("outside", ""),
-    )
+    source = node.source
+    printed = plain(node.source["points"])
+    outside = node.source.get("outside", "")
     variants = [
         (SingleChange("points", source, "points", printed, points), points, outside)
         for points in tables(printed)

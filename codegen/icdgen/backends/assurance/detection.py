@@ -50,12 +50,10 @@ class MessageWatch:
     def __init__(
         self, node: Node, vectors: MessageVectors, lines: MessageLines
     ) -> None:
-        self.node, self.message, self.vectors, self.lines = (
-            node,
-            vectors.message,
-            vectors,
-            lines,
-        )
+        self.node = node
+        self.message = vectors.message
+        self.vectors = vectors
+        self.lines = lines
 
     def detect_layout(self, now: Message) -> list[int]:
         """Return the lines that detect another layout of the message."""

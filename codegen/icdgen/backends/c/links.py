@@ -174,10 +174,8 @@ class _LinkTables(TableSet):
         use come first: a processor reaches these with shorter instructions.
         """
         link, facts = self.link, self.facts_of_link
-        telecommands, telemetry = (
-            _storable_messages(link.telecommands),
-            _storable_messages(link.telemetry),
-        )
+        telecommands = _storable_messages(link.telecommands)
+        telemetry = _storable_messages(link.telemetry)
         telecommand = (
             facts.stream.longest_request if facts.stream else facts.longest_telecommand
         )

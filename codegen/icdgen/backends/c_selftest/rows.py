@@ -378,10 +378,8 @@ def _accessor_rows(accessor: Accessor, settings: Settings | None) -> AccessorRow
     elif accessor.kind == "integer":
         type, rows = f"int{accessor.integers.bits}_t", _integer_rows(accessor)
     else:
-        type, rows = (
-            "double",
-            ([] if settings is None else _double_rows(accessor.field, settings)),
-        )
+        type = "double"
+        rows = [] if settings is None else _double_rows(accessor.field, settings)
     stem = names.stem(accessor.field.declaration.message)
     return AccessorRows(
         f"{stem}_{accessor.name}", f"{stem}_set_{accessor.name}", type, rows

@@ -127,10 +127,8 @@ def request_row(relations: Relations, node: Node) -> RequestRow | None:
     if stream is None or stream.request is None:
         return None
     section = relations.icd.protocol_of(node)["link"]["requests"]
-    name, urls = (
-        stream.packets[stream.request.packet].name,
-        packet_urls(relations, node),
-    )
+    name = stream.packets[stream.request.packet].name
+    urls = packet_urls(relations, node)
     response: str | None = section.get("response")
     ids = {row.id for row in stream.telemetry if row.is_requested}
     return RequestRow(

@@ -202,10 +202,8 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
 def _enum_entries(
     relations: Relations, node: Node, enum: Enum, is_error: bool
 ) -> Iterator[SearchEntry]:
-    links, own = (
-        relations.links,
-        " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower(),
-    )
+    links = relations.links
+    own = " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower()
     about = f"enum {node.name} {enum.summary}"
     phrases = tuple(_table_phrases(enum.table))
     yield SearchEntry(

@@ -175,10 +175,8 @@ def field_sections(message: Message, repeats: Repeats) -> list[MessageSection]:
         places = [field.place for field in fields[start : start + size]]
         # A section of derived values only is placed at the last field that has bits.
         places = [place for place in places if _has_bits(place)] or with_bits[-1:]
-        first, end = (
-            min(place.at for place in places) // 8,
-            -(-max(place.at + place.bits for place in places) // 8),
-        )
+        first = min(place.at for place in places) // 8
+        end = -(-max(place.at + place.bits for place in places) // 8)
         section_list.append(
             MessageSection(
                 f"Fields {section_keys[0]} to {section_keys[-1]}",

@@ -288,11 +288,9 @@ def _physical_declaration(field: FieldDescription) -> str:
     """Return the declaration of a physical value: ``estimated_roll_angle_deg: float =
     _base.scaled(...)``.
     """
-    curve, steps, first = (
-        field.curve,
-        field.steps,
-        _double_literal(field.initial_physical),
-    )
+    curve = field.curve
+    steps = field.steps
+    first = _double_literal(field.initial_physical)
     first, note = (
         (_repeated(field, first), "tuple[float, ...]")
         if field.count

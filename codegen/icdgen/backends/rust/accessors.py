@@ -71,10 +71,8 @@ def _accessor_code(accessor: Accessor) -> RustAccessorCode:
         )
     if accessor.kind == "integer":
         type, refused = f"i{accessor.integers.bits}", "if it does not fit"
-        value, raw = (
-            integer_value(field, accessor.integers),
-            integer_raw(field, accessor.integers),
-        )
+        value = integer_value(field, accessor.integers)
+        raw = integer_raw(field, accessor.integers)
     else:
         type, value, raw = "f64", double_value(field), double_raw(field)
         refused = (

@@ -279,10 +279,8 @@ def write_field(
         return []
     helper = _loop_helper(field)
     if helper:
-        values, function = (
-            f"&{owner}.{field_name(field)}",
-            f"Self::{writer(within + field.name)}",
-        )
+        values = f"&{owner}.{field_name(field)}"
+        function = f"Self::{writer(within + field.name)}"
         arguments = ("&mut bytes", str(field.model.at // 8), values, function)
         return [bracketed(f"put_{helper}(", arguments, ");", WIDTH, STEP * 2)]
     if field.count:
@@ -341,11 +339,9 @@ def _put_run(field: FieldDescription, source: str) -> list[str]:
 
 
 def _put_whole(field: FieldDescription, source: str) -> list[str]:
-    first, size, is_enum = (
-        field.model.at // 8,
-        field.storage.bits,
-        field.model.type == "enum",
-    )
+    first = field.model.at // 8
+    size = field.storage.bits
+    is_enum = field.model.type == "enum"
     if size == 8 and not field.model.is_signed:
         return [f"bytes[{first}] = {source}{'.raw()' if is_enum else ''};"]
     # A byte in memory has no order, but an `i8` needs a conversion, so it takes this

@@ -42,10 +42,8 @@ def array_functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
 
 
 def _struct_functions(struct: StructDescription, within: str) -> dict[str, object]:
-    tables, type = (
-        bytes_of_flags(struct, bits.FLAGS_FROM),
-        struct_path(struct, struct.using_node),
-    )
+    tables = bytes_of_flags(struct, bits.FLAGS_FROM)
+    type = struct_path(struct, struct.using_node)
     value = struct_literal(
         struct.members,
         [

@@ -89,11 +89,9 @@ class _LinkLiteral:
     """Expression of the link of a node."""
 
     def __init__(self, link: LinkDescription) -> None:
-        self.description, self.facts, self.assumed = (
-            link,
-            link.facts,
-            Assumptions(link.facts),
-        )
+        self.description = link
+        self.facts = link.facts
+        self.assumed = Assumptions(link.facts)
 
     def link(self) -> Brackets:
         facts, link = self.facts, self.description

@@ -30,10 +30,8 @@ def about(node: NodeDescription) -> str:
     """Return the documentation of the module of a node: title, source and included
     nodes.
     """
-    model, owners = (
-        node.model,
-        dict.fromkeys(message.node.name for message in node.all_messages),
-    )
+    model = node.model
+    owners = dict.fromkeys(message.node.name for message in node.all_messages)
     printed = ", ".join(f"{key} {value}" for key, value in model.document)
     included = ", ".join(
         f"[`{name}`](crate::{name})" for name in owners if name != node.name

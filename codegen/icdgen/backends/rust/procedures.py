@@ -220,10 +220,8 @@ class _ProcedureWriter:
 
     def _example(self) -> Iterator[str]:
         """Yield the lines of an example, which is run."""
-        names, arguments = (
-            [self._type],
-            list(map(_example_argument, self._procedure.inputs)),
-        )
+        names = [self._type]
+        arguments = list(map(_example_argument, self._procedure.inputs))
         if self._procedure.blocks:
             names.append(self._memory)
             arguments.append("&mut memory")

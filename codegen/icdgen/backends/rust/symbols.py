@@ -118,11 +118,9 @@ class RustNames(NamingPolicy):
         self, composite: Composite[Any], fields: Iterable[FieldDescription]
     ) -> Symbols:
         scope, has_variable_parts = _scope(composite), composite.last_part is not None
-        members, methods, constants = (
-            f"fields of {scope}",
-            f"methods of {scope}",
-            f"constants of {scope}",
-        )
+        members = f"fields of {scope}"
+        methods = f"methods of {scope}"
+        constants = f"constants of {scope}"
         for field in fields:
             name, is_read_only = names.own_name(field), field.model.is_read_only
             # Fields and methods have separate namespaces in Rust, so the member and the

@@ -110,12 +110,10 @@ class TypeBuilder:
         if part.field.model.is_bytes and not part.field.count:
             variable_type = replace(type_of(part.field.model), bits=0)
         else:
-            variable_type, wanted = (
-                GeneratedType(
-                    "Array", of=self._element_type(part.field, wanted, is_little)
-                ),
-                f"{wanted}_Array",
+            variable_type = GeneratedType(
+                "Array", of=self._element_type(part.field, wanted, is_little)
             )
+            wanted = f"{wanted}_Array"
         return self.name_of_type(
             replace(
                 variable_type,
