@@ -103,17 +103,14 @@ def _type_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
     """Return the smallest and largest physical value by type alone; None for floats,
     flags, enumerations and bytes.
     """
-    ends = None
     if field.curve is not None:
-        ends = settable_span(field.curve, field)
-    elif field.type in ("uint", "int"):
-        scaled = steps_of_scale(field)
-        ends = (
-            scaled.span
-            if scaled
-            else (Fraction(field.raw_min), Fraction(field.raw_max))
-        )
-    return ends or (None, None)
+        return settable_span(field.curve, field) or (None, None)
+    if field.type not in ("uint", "int"):
+        return None, None
+    scaled = steps_of_scale(field)
+    if scaled is not None:
+        return scaled.span
+    return Fraction(field.raw_min), Fraction(field.raw_max)
 
 
 def range_text(field: AnyScalar) -> str:

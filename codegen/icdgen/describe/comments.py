@@ -269,11 +269,9 @@ def field_comment(
         how = f"derived as `{words(field.formula)}`, computed in doubles"
         head = f"{words(field.name)}{_unit_text(field)}: {how}; it has no setter."
         return _comment(head, (sentence(field.summary),), field.errata, elsewhere)
-    facts = (
-        ["Overlay field: reads bits of other fields and has no setter."]
-        if field.is_read_only
-        else []
-    )
+    facts = []
+    if field.is_read_only:
+        facts.append("Overlay field: reads bits of other fields and has no setter.")
     if field.conditions:
         facts.append(f"Present only if {_conditions(field, message)}.")
     if field.const is not None:
@@ -284,25 +282,20 @@ def field_comment(
         f"{special_text(special)}: {sentence(special.meaning)}"
         for special in field.special
     )
-    for part in (
-        part for part in message.layout.counted_parts if part.counter == field.name
-    ):
-        plus = (
-            f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}"
-            if part.plus
-            else ""
-        )
-        facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
+    for part in message.layout.counted_parts:
+        if part.counter == field.name:
+            more = f"{abs(part.plus)} {'more' if part.plus > 0 else 'less'}"
+            plus = f", of which there are {more}" if part.plus else ""
+            facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
     own_part = next((part for part in parts if part.name == field.name), None)
-    place = (
-        _variable_place(field, message, own_part)
-        if own_part
-        else _place_text(field) + _inner_count(field)
-    )
-    front = message.layout.part_in_front_of(field.node)
-    if front is not None and own_part is None:
-        # Behind a part of variable length the position depends on the frame.
-        place = f"behind {words(front.name)}, in the longest frame {place}"
+    if own_part is not None:
+        place = _variable_place(field, message, own_part)
+    else:
+        place = _place_text(field) + _inner_count(field)
+        front = message.layout.part_in_front_of(field.node)
+        if front is not None:
+            # Behind a part of variable length the position depends on the frame.
+            place = f"behind {words(front.name)}, in the longest frame {place}"
     head = f"{words(field.name)}: {place}{_values_text(field)}."
     return _comment(
         head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere
@@ -379,26 +372,24 @@ def orders_text(field: NodePlace) -> str:
 
 
 def _values_text(field: NodePlace) -> str:
-    text = (
-        f", raw {field.raw_min} to {field.raw_max}"
-        if field.type in ("uint", "int")
-        else ""
-    )
+    """Return raw range, formula, physical range and unit, each after a comma."""
+    text = ""
     if field.type == "float":
         text = f", {field.bits}-bit float"
+    elif field.type in ("uint", "int"):
+        text = f", raw {field.raw_min} to {field.raw_max}"
     if not field.has_formula:
         return text + _unit_text(field, ", in ")
-    how = f"`{words(field.formula)}`"
-    if field.curve is not None:
-        how = (
-            f"by points {points_text(field.curve, 6)}"
-            if field.curve.points
-            else f"{how}, in doubles"
-        )
+    if field.curve is None:
+        how = f"`{words(field.formula)}`"
+    elif field.curve.points:
+        how = f"by points {points_text(field.curve, 6)}"
+    else:
+        how = f"`{words(field.formula)}`, in doubles"
     range = span_text(field)
-    return f"{text}; physical {how}" + (
-        f", {range}{_unit_text(field, ' ')}" if range else _unit_text(field, ", in ")
-    )
+    if range:
+        return f"{text}; physical {how}, {range}{_unit_text(field, ' ')}"
+    return f"{text}; physical {how}{_unit_text(field, ', in ')}"
 
 
 def span_text(field: NodePlace) -> str:
@@ -424,11 +415,9 @@ def accepted_values_text(field: NodePlace, is_narrow: bool) -> str:
     raw, span = f"{field.raw_min} to {field.raw_max}", span_text(field)
     if field.enum is not None:
         return f"{words(field.enum.name)}, {raw}"
-    return (
-        f"{span}{unit}{f', raw {raw}' if is_narrow else ''}"
-        if span
-        else f"{raw}{'' if field.has_formula else unit}"
-    )
+    if span:
+        return f"{span}{unit}{f', raw {raw}' if is_narrow else ''}"
+    return raw if field.has_formula else f"{raw}{unit}"
 
 
 @lru_cache(maxsize=4096)

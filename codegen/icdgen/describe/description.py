@@ -206,11 +206,9 @@ class FieldDescription(ScalarDescription):
     @cached_property
     def needs(self) -> tuple[PresenceCondition, ...]:
         """Conditions of an optional field, which must all be met."""
-        members = (
-            {member.model.name: member for member in self.message.members}
-            if self.model.conditions
-            else {}
-        )
+        if not self.model.conditions:
+            return ()
+        members = {member.model.name: member for member in self.message.members}
         return tuple(
             PresenceCondition(members[condition.field], tuple(sorted(condition.values)))
             for condition in self.model.conditions

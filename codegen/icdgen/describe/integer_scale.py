@@ -8,6 +8,7 @@ which integer computes them without overflow; `part_of_unit` how the part is nam
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from functools import lru_cache
 
@@ -61,14 +62,20 @@ def integer_scale(steps: Steps) -> IntegerScale | None:
 
 
 def _integer_scale(per: int, factor: int, offset: int, steps: Steps) -> IntegerScale:
-    low, high = sorted(
-        (raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max)
-    )
-    bottom, top = low[0] - Fraction(abs(factor), 2), high[0] + Fraction(abs(factor), 2)
-    least, most = -int(-bottom // 1), int(top // 1)
-    least += least == bottom and low[1] % 2  # ties are rounded to the even raw value
-    most -= most == top and high[1] % 2
-    return IntegerScale(per, factor, offset, low[0], high[0], least, most)
+    """Return the scale with the smallest and largest value that a setter accepts."""
+    ends = ((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
+    # A negative factor exchanges the ends.
+    (low, raw_of_low), (high, raw_of_high) = sorted(ends)
+    # A setter rounds to the nearest raw value: it accepts half a step beyond each end.
+    half_step = Fraction(abs(factor), 2)
+    bottom, top = low - half_step, high + half_step
+    least, most = math.ceil(bottom), math.floor(top)
+    # Ties are rounded to the even raw value.
+    if least == bottom and raw_of_low % 2:
+        least += 1
+    if most == top and raw_of_high % 2:
+        most -= 1
+    return IntegerScale(per, factor, offset, low, high, least, most)
 
 
 def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
@@ -83,12 +90,8 @@ def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
         max(scale.least, ends.min) - scale.offset,
         min(scale.most, ends.max) - scale.offset,
     )
-    return (
-        bits
-        if is_computable(storage, scale.factor, scale.offset, bits)
-        and fits_bits(64, *differences)
-        else None
-    )
+    can_compute = is_computable(storage, scale.factor, scale.offset, bits)
+    return bits if can_compute and fits_bits(64, *differences) else None
 
 
 def is_computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:

@@ -37,14 +37,15 @@ from icdgen.describe.groups import (
 
 def size_terms(message: MessageDescription) -> list[str]:
     """Return the length of the frame of a message as the terms of a sum."""
-    parts = [
-        (
-            f"{_encoded_elements(part)} * ({_size_of_element(part)})"
-            if part.inner
-            else in_bytes(_encoded_elements(part), part.model.step)
+    parts = []
+    for part in message.variable_parts:
+        count = _encoded_elements(part)
+        has_one_size = not part.inner
+        parts.append(
+            in_bytes(count, part.model.step)
+            if has_one_size
+            else f"{count} * ({_size_of_element(part)})"
         )
-        for part in message.variable_parts
-    ]
     fixed = message.constant_bytes
     if message.has_gaps:
         return [f"{fixed}u", *parts]

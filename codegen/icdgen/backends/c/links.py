@@ -518,7 +518,7 @@ class _LinkTables(TableSet):
         """Declare the exchanges on each bus, and return the expressions that refer to
         them.
         """
-        on = {}
+        tables = {}
         for bus, exchanges in self.facts_of_link.bus_exchanges.items():
             given = [exchanges.request, exchanges.command]
             declared = [each for each in given if each]
@@ -526,8 +526,8 @@ class _LinkTables(TableSet):
             row = TableRow(
                 ", ".join(names.get(each, "NULL") for each in reversed(given))
             )
-            on[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
-        return on
+            tables[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
+        return tables
 
     def exchanges(
         self, name: str, exchanges: Sequence[Exchange]

@@ -8,7 +8,6 @@ the decision becomes an expression, or a call of the support header.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import accumulate
 
 from icdgen.backends.c.types import cast
 from icdgen.describe import FieldDescription
@@ -32,19 +31,19 @@ def accessor_declarations(field: FieldDescription) -> Iterator[str]:
 
 def _curve_declarations(curve: Curve) -> Iterator[str]:
     """List the declarations of a calibration: the terms of all pieces, then the pieces."""
-    terms = [", ".join(map(repr, piece.terms)) for piece in curve.pieces]
-    begin = accumulate((len(piece.terms) for piece in curve.pieces), initial=0)
-    pieces = (
+    terms: list[str] = []  # those of a piece in a row
+    pieces: list[str] = []
+    at = 0  # index of the first term of the piece
+    for start, own_terms in curve.pieces:
         # A piece without terms has no physical value and does not read its pointer.
         # `&terms[at]` could be beyond the array there.
-        f"{{{start!r}, {f'&terms[{at}]' if own_terms else 'terms'}, {len(own_terms)}u}}"
-        # `accumulate` with an initial value yields one sum more than there are pieces.
-        for (start, own_terms), at in zip(curve.pieces, begin, strict=False)
-    )
-    yield from _array_declaration(
-        "static const double terms[]", list(filter(None, terms))
-    )
-    yield from _array_declaration("static const icdgen_piece_t curve[]", list(pieces))
+        pointer = f"&terms[{at}]" if own_terms else "terms"
+        pieces.append(f"{{{start!r}, {pointer}, {len(own_terms)}u}}")
+        if own_terms:
+            terms.append(", ".join(map(repr, own_terms)))
+        at += len(own_terms)
+    yield from _array_declaration("static const double terms[]", terms)
+    yield from _array_declaration("static const icdgen_piece_t curve[]", pieces)
 
 
 def _array_declaration(head: str, rows: list[str]) -> Iterator[str]:

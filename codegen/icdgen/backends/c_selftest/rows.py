@@ -158,15 +158,10 @@ class _SelftestFile:
 
         Each has a reason and bytes: the frame, then the packed raw values.
         """
-        used_bits = bytes(message.model.length)
         vectors = _vectors_in_c(message, vectors)
-        for row in vectors.rows:  # a bit that no encoded frame sets is reserved
-            used_bits = bytes(
-                a | b
-                for a, b in zip(
-                    used_bits, row.encoded.ljust(len(used_bits), b"\0"), strict=True
-                )
-            )
+        used_bits = 0  # a bit that no encoded frame sets is reserved
+        for row in vectors.rows:
+            used_bits |= int.from_bytes(row.encoded, "little")
         tables: dict[tuple[int, ...], str] = {}
         fields = [self.field(field, vectors, tables) for field in _scalars(message)]
         doubles = (
@@ -182,7 +177,7 @@ class _SelftestFile:
                 (plain(row.why), self.vector(row, fields)) for row in vectors.rows
             ],
             "vector_size": message.model.length + sum(field.packed for field in fields),
-            "kept": _byte_rows(used_bits),
+            "kept": _byte_rows(used_bits.to_bytes(message.model.length, "little")),
             "doubles": in_rows(doubles, NUMBERS_IN_ROW),
             "texts": [
                 f"{_text_literal(text)},"

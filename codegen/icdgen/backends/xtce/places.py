@@ -62,24 +62,18 @@ def run_of(field: NodePlace, node: Node) -> BitRun | None:
 
 def run_of_all(fields: Iterable[NodePlace], node: Node) -> BitRun | None:
     """Return the bits of all elements of an array; None if they are not consecutive."""
-    runs = [run_of(field, node) for field in fields]
-    usual_runs = [
-        run
-        for run in runs
-        if run is not None
-        and run.is_usual
-        and run.is_little == (runs[0] or run).is_little
-    ]
-    start = (
-        _joined([(run.at, run.bits) for run in usual_runs])
-        if len(usual_runs) == len(runs)
-        else None
-    )
-    return (
-        None
-        if start is None
-        else BitRun(start, sum(run.bits for run in usual_runs), usual_runs[0].is_little)
-    )
+    runs: list[BitRun] = []
+    for field in fields:
+        run = run_of(field, node)
+        if run is None or not run.is_usual:
+            return None
+        if runs and run.is_little != runs[0].is_little:
+            return None
+        runs.append(run)
+    start = _joined([(run.at, run.bits) for run in runs])
+    if start is None:
+        return None
+    return BitRun(start, sum(run.bits for run in runs), runs[0].is_little)
 
 
 def _joined(places: Sequence[tuple[int, int]]) -> int | None:
