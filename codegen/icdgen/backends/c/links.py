@@ -111,7 +111,7 @@ class LinkCode(NamedTuple):
 def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
     """Return the links of a node, and their tables."""
     tables = _LinkTables(link, assumed)
-    links = tables.links()
+    links = tables.link_tables()
     return LinkCode(tables.tables, links)
 
 
@@ -138,13 +138,13 @@ class _LinkTables(TableSet):
     def __init__(self, link: LinkDescription, assumed: Assumptions) -> None:
         super().__init__(link, assumed, f"{NODE_PREFIX}{link.facts.node.name}_")
 
-    def links(self) -> list[LinkTable]:
+    def link_tables(self) -> list[LinkTable]:
         """Return the link of the node, and one for the clients on each bus: with these,
         the linker of a program can drop the tables of everything else.
         """
-        self.algorithms()
-        exchanges = self.buses()
-        before, after = self.before_exchanges(), self.after_exchanges()
+        self.declare_algorithms()
+        exchanges = self.declare_bus_exchanges()
+        before, after = self.members_before_exchanges(), self.members_after_exchanges()
         assumed = (
             (key, why)
             for section, key, why in self.assumed.remaining()
@@ -169,7 +169,7 @@ class _LinkTables(TableSet):
             links.append(LinkTable(f"{bus}_link" if bus else "link", bus, table))
         return links
 
-    def before_exchanges(self) -> list[_LinkMember]:
+    def members_before_exchanges(self) -> list[_LinkMember]:
         """Return the members of a link up to the exchanges. Members that small clients
         use come first: a processor reaches these with shorter instructions.
         """
@@ -181,9 +181,11 @@ class _LinkTables(TableSet):
         )
         longest = f"{telecommand}u, {facts.longest_reply}u, {facts.longest}u"
         nodes = (f'"{name}"' for name in facts.owners)
-        sent = self.messages("telecommands", map(self.telecommand, telecommands))
-        requested = self.messages(
-            "telemetry", (self.message(sent, "0u") for sent in telemetry)
+        sent = self.declare_messages(
+            "telecommands", map(self.row_of_telecommand, telecommands)
+        )
+        requested = self.declare_messages(
+            "telemetry", (self.row_of_message(sent, "0u") for sent in telemetry)
         )
         return [
             _LinkMember(self.array("nodes", "char *const", nodes), "whose messages"),
@@ -200,7 +202,7 @@ class _LinkTables(TableSet):
             _LinkMember(
                 f"{len(link.reasons)}u",
                 "how many codes of refusals",
-                self.refusing(),
+                self.buses_with_refusals(),
                 "0u",
             ),
             _LinkMember(
@@ -213,10 +215,10 @@ class _LinkTables(TableSet):
             _LinkMember(longest, "longest telecommand, reply, any"),
             _LinkMember(f"{facts.longest_data}u", "longest without id and checksum"),
             _LinkMember(f"{received_bytes(link)}u", "buffer for what is received"),
-            _LinkMember(self.stream(), "framing", ()),
+            _LinkMember(self.declare_stream(), "framing", ()),
         ]
 
-    def after_exchanges(self) -> list[_LinkMember]:
+    def members_after_exchanges(self) -> list[_LinkMember]:
         """Return the members of a link after the exchanges."""
         link, facts = self.link, self.facts_of_link
         settings = f"{{{self.values('client', facts.client)}}}"
@@ -226,13 +228,15 @@ class _LinkTables(TableSet):
         }
         codes = (f"{code}u" for code in link.reasons)
         packet = facts.acknowledge
-        log_mask, log_file, log_message = self.optional("LOGS", self.logs())
+        log_mask, log_file, log_message = self.optional_members(
+            "LOGS", self.log_members()
+        )
         return [
-            _LinkMember(self.checksum(), "checksums of messages", checked),
+            _LinkMember(self.declare_checksum(), "checksums of messages", checked),
             _LinkMember(
                 self.numbers("reasons", "uint32_t", codes, 8),
                 "codes of refusals",
-                self.refusing(),
+                self.buses_with_refusals(),
             ),
             _LinkMember(
                 self.part("framing", facts.framing), "framing of the UART", {UART}
@@ -243,9 +247,9 @@ class _LinkTables(TableSet):
                 {UART},
                 "0u",
             ),
-            _LinkMember(self.unsolicited(), "unsolicited", {UART}),
+            _LinkMember(self.declare_unsolicited(), "unsolicited", {UART}),
             log_message,
-            _LinkMember(self.can(), "CAN", {CAN}),
+            _LinkMember(self.declare_can(), "CAN", {CAN}),
             _LinkMember(settings, "times and limits: icd_client_settings_t"),
             _LinkMember(or_none(facts.node.node_type), "node type"),
             _LinkMember(or_none(facts.node.interface_version), "interface version"),
@@ -257,13 +261,15 @@ class _LinkTables(TableSet):
             _LinkMember(or_none(facts.boot_ms), "boot time in ms"),
             log_mask,
             log_file,
-            *self.optional("FILES", self.of_files()),
+            *self.optional_members("FILES", self.file_members()),
             _LinkMember(
-                self.report("identification", link.identification), "identification", ()
+                self.declare_report("identification", link.identification),
+                "identification",
+                (),
             ),
         ]
 
-    def refusing(self) -> list[str]:
+    def buses_with_refusals(self) -> list[str]:
         """Return the buses on which a refusal has an error code."""
         return [
             bus
@@ -272,7 +278,7 @@ class _LinkTables(TableSet):
             and any(each.reason for each in exchanges.command.responses)
         ]
 
-    def unsolicited(self) -> str:
+    def declare_unsolicited(self) -> str:
         telemetry = self.facts_of_link.telemetry
         return self.array(
             "unsolicited",
@@ -286,17 +292,17 @@ class _LinkTables(TableSet):
             ),
         )
 
-    def logs(self) -> Iterator[_LinkMember]:
+    def log_members(self) -> Iterator[_LinkMember]:
         facts = self.facts_of_link
-        yield _LinkMember(self.log_mask(), "mask of logs", ())
+        yield _LinkMember(self.declare_log_mask(), "mask of logs", ())
         yield _LinkMember(self.part("log_file", facts.log_file), "log files", ())
-        yield _LinkMember(self.log_message(), "unsolicited logs", {UART})
+        yield _LinkMember(self.declare_log_message(), "unsolicited logs", {UART})
 
-    def of_files(self) -> Iterator[_LinkMember]:
-        yield _LinkMember(self.time(), "packed times", ())
-        yield _LinkMember(self.index(), "index of files", ())
+    def file_members(self) -> Iterator[_LinkMember]:
+        yield _LinkMember(self.declare_packed_time(), "packed times", ())
+        yield _LinkMember(self.declare_index(), "index of files", ())
 
-    def optional(
+    def optional_members(
         self, what: str, parts: Iterable[_LinkMember]
     ) -> Iterator[_LinkMember]:
         """List members that a program can omit, together with their tables."""
@@ -311,7 +317,7 @@ class _LinkTables(TableSet):
             table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]
         ]
 
-    def messages(self, name: str, rows: Iterable[TableRow]) -> str:
+    def declare_messages(self, name: str, rows: Iterable[TableRow]) -> str:
         """Return the messages of a direction.
 
         A last row of zeros is there because a program can omit all others.
@@ -323,7 +329,7 @@ class _LinkTables(TableSet):
             [*messages, TableRow("{0u, 0u, 0u}", "the end")] if messages else (),
         )
 
-    def message(self, sent: SentMessage, flags: str) -> TableRow:
+    def row_of_message(self, sent: SentMessage, flags: str) -> TableRow:
         """Return the row of a message."""
         conditions = []
         if not any(sent.message is needed for needed in self.link.always_needed):
@@ -342,7 +348,7 @@ class _LinkTables(TableSet):
             f" || \\\n{STEP * 2}".join(conditions),
         )
 
-    def report(self, name: str, report: ReportDescription | None) -> str:
+    def declare_report(self, name: str, report: ReportDescription | None) -> str:
         """Declare the table of telemetry that the link reads; its places are a table of
         their own.
         """
@@ -361,13 +367,13 @@ class _LinkTables(TableSet):
         row = TableRow(f"{ids}, {message.length}u, {len(rows)}u, {places}")
         return self.add(name, "icd_report_t", [row])
 
-    def telecommand(self, sent: SentMessage) -> TableRow:
+    def row_of_telecommand(self, sent: SentMessage) -> TableRow:
         """Return the row of a telecommand, with a comment on assumed facts."""
         message = sent.message
         flags = ["ICD_ACKNOWLEDGED"] if message.acknowledge else []
         flags += ["ICD_EXPECTS_RESET"] if message.expects_reset else []
         flags += ["ICD_SETTING"] if sent.is_setting else []
-        row = self.message(sent, " | ".join(flags) or "0u")
+        row = self.row_of_message(sent, " | ".join(flags) or "0u")
         why = self.assumed.why(f"message {message.name}", "acknowledge")
         about = (
             comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2)
@@ -376,7 +382,7 @@ class _LinkTables(TableSet):
         )
         return row._replace(value=f"{about}\n{STEP * 2}{row.value}") if why else row
 
-    def can(self) -> str:
+    def declare_can(self) -> str:
         can = self.link.can
         form = can and can.extended
         if can is None or (
@@ -402,14 +408,14 @@ class _LinkTables(TableSet):
             TableRow(self.part("can_extended", form), "messages of several packets"),
         )
 
-    def checksum(self) -> str:
+    def declare_checksum(self) -> str:
         checksum = self.facts_of_link.checksum
         if checksum is None:
             return "NULL"
         algorithm = TableRow(self.algorithm(checksum.algorithm), "algorithm")
         return self.part("checksum", checksum, algorithm)
 
-    def algorithms(self) -> None:
+    def declare_algorithms(self) -> None:
         """Declare the algorithms of all checksums."""
         for each in self.facts_of_link.checksums.values():
             name = algorithm_table(each.name)
@@ -420,17 +426,17 @@ class _LinkTables(TableSet):
             ]
             self.add(name, "icd_checksum_algorithm_t", rows)
 
-    def stream(self) -> str:
+    def declare_stream(self) -> str:
         form = self.facts_of_link.stream
         if form is None:
             return "NULL"
         packets = self.array(
             "packets",
             "icd_packet_form_t",
-            [self.packet(form, number) for number in range(len(form.packets))],
+            [self.row_of_packet(form, number) for number in range(len(form.packets))],
         )
         directions = (("sent", form.telecommands), ("received", form.telemetry))
-        exchanges = self.exchanges("exchanges", form.exchanges)
+        exchanges = self.declare_exchanges("exchanges", form.exchanges)
         rows = [
             self.array(
                 name,
@@ -481,7 +487,7 @@ class _LinkTables(TableSet):
             "stream", "icd_stream_form_t", parts, self.assumed.of_section("link")
         )
 
-    def packet(self, form: Stream, number: int) -> TableRow:
+    def row_of_packet(self, form: Stream, number: int) -> TableRow:
         """Return the row of a packet format; its fields and its checksum are separate
         tables.
         """
@@ -514,7 +520,7 @@ class _LinkTables(TableSet):
             plain(packet.name),
         )
 
-    def buses(self) -> dict[str, str]:
+    def declare_bus_exchanges(self) -> dict[str, str]:
         """Declare the exchanges on each bus, and return the expressions that refer to
         them.
         """
@@ -522,14 +528,14 @@ class _LinkTables(TableSet):
         for bus, exchanges in self.facts_of_link.bus_exchanges.items():
             given = [exchanges.request, exchanges.command]
             declared = [each for each in given if each]
-            names = self.exchanges(f"{bus}_exchanges", declared)
+            names = self.declare_exchanges(f"{bus}_exchanges", declared)
             row = TableRow(
                 ", ".join(names.get(each, "NULL") for each in reversed(given))
             )
             tables[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
         return tables
 
-    def exchanges(
+    def declare_exchanges(
         self, name: str, exchanges: Sequence[Exchange]
     ) -> dict[Exchange | None, str]:
         """Declare exchanges, and return the expression that refers to each."""
@@ -550,7 +556,9 @@ class _LinkTables(TableSet):
                 if each.telemetry is not None or each.packet is not None
             ]
             responses = self.shared(
-                "responses", "icd_response_t", map(self.response, declared)
+                "responses",
+                "icd_response_t",
+                map(self.initialiser_of_response, declared),
             )
             is_request = boolean(len(declared) < len(exchange.responses))
             counts = f"{len(exchange.sources)}u, {exchange.in_header}u, {len(declared)}u, {is_request}"
@@ -567,7 +575,7 @@ class _LinkTables(TableSet):
             exchange: f"&{table}[{number}]" for number, exchange in enumerate(exchanges)
         }
 
-    def response(self, response: Response) -> str:
+    def initialiser_of_response(self, response: Response) -> str:
         """Return the initialiser of a response; its echoes and meanings are separate
         tables.
         """
@@ -575,7 +583,7 @@ class _LinkTables(TableSet):
             "echoes",
             "icd_echo_t",
             (
-                f"{{{self.place(echo.place)}, {echo.source}u}}"
+                f"{{{self.declare_place(echo.place)}, {echo.source}u}}"
                 for echo in response.echoes
             ),
         )
@@ -594,18 +602,18 @@ class _LinkTables(TableSet):
             f"{len(response.echoes)}u, {boolean(is_packet)}, {verdict_mask(response)}, {len(response.meanings)}u",
         )
         places = (
-            self.place(place)
+            self.declare_place(place)
             for place in (response.status, response.reason, response.detail)
         )
         lines = (", ".join(numbers), f"{echoes}, {meanings}", ", ".join(places))
         return f"{{{_in_lines(lines)}}}"
 
-    def place(self, place: NumberPlace | None) -> str:
+    def declare_place(self, place: NumberPlace | None) -> str:
         """Declare the position of a number in a frame; return NULL for None."""
         rows = [number_place(place, ID_BYTES)] if place else []
         return self.shared("place", "icd_number_place_t", rows)
 
-    def log_mask(self) -> str:
+    def declare_log_mask(self) -> str:
         mask = self.facts_of_link.mask
         if mask is None:
             return "NULL"
@@ -619,7 +627,7 @@ class _LinkTables(TableSet):
             "log_mask", mask, TableRow(self.array("log_bits", "icd_log_bit_t", rows))
         )
 
-    def log_message(self) -> str:
+    def declare_log_message(self) -> str:
         mask = self.facts_of_link.mask
         if mask is None:
             return "NULL"
@@ -628,7 +636,7 @@ class _LinkTables(TableSet):
         )
         return self.part("log_message", self.facts_of_link.log_message, sizes)
 
-    def time(self) -> str:
+    def declare_packed_time(self) -> str:
         rows = [
             TableRow(
                 f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name
@@ -637,7 +645,7 @@ class _LinkTables(TableSet):
         ]
         return self.add("packed_time", "icd_time_form_t", rows) if rows else "NULL"
 
-    def index(self) -> str:
+    def declare_index(self) -> str:
         form = self.link.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         rows = (

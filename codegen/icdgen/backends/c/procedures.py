@@ -103,7 +103,7 @@ class ProcedureCode:
     ) -> None:
         self.node, self.link, self.procedure = node, link, model
         self._description: Description = link.description
-        self.tables = _ProcedureTables(link, assumed).of_procedure(model)
+        self.tables = _ProcedureTables(link, assumed).declare_procedure(model)
 
     @property
     def name(self) -> str:
@@ -270,7 +270,7 @@ class ProcedureCode:
 class _ProcedureTables(TableSet):
     """Tables of a procedure."""
 
-    def of_procedure(self, procedure: Procedure) -> list[Table]:
+    def declare_procedure(self, procedure: Procedure) -> list[Table]:
         """Return the tables of a procedure.
 
         The tables of its steps come first, because C needs their declarations before
@@ -279,7 +279,7 @@ class _ProcedureTables(TableSet):
         self._rows: dict[str, list[TableRow]] = {
             name: [] for name in ("sends", "polls", "receives", "checksums", "tests")
         }
-        steps = [self.step(step) for step in procedure.steps]
+        steps = [self.row_of_step(step) for step in procedure.steps]
         types = {
             "sends": "icd_send_form_t",
             "polls": "icd_poll_form_t",
@@ -299,11 +299,13 @@ class _ProcedureTables(TableSet):
             ),
             TableRow(arrays, ", ".join(self._rows)),
             TableRow(
-                self.array("inputs", "icd_input_form_t", map(self.input, inputs)),
+                self.array(
+                    "inputs", "icd_input_form_t", map(self.row_of_input, inputs)
+                ),
                 "inputs",
             ),
             TableRow(f"{len(inputs)}u, {receives}u", "how many inputs, receives"),
-            TableRow(self.blocks(procedure.blocks), "blocks"),
+            TableRow(self.declare_blocks(procedure.blocks), "blocks"),
             TableRow(
                 f"{content.most if content else 0}u", "largest number of bytes to send"
             ),
@@ -319,27 +321,32 @@ class _ProcedureTables(TableSet):
         )
         return self.tables
 
-    def step(self, step: Step) -> TableRow:
+    def row_of_step(self, step: Step) -> TableRow:
         """Return the row of a step; what it does is in another table."""
         index, text = 0, ""
         if isinstance(step, Send):
-            index, text = self._row("sends", self.send(step)), step.message.name
+            index = self._index_of_row("sends", self.send_initialiser(step))
+            text = step.message.name
         elif isinstance(step, (Get, Poll)):
-            index, text = self._row("polls", self.poll(step)), step.message.name
+            index = self._index_of_row("polls", self.poll_initialiser(step))
+            text = step.message.name
         elif isinstance(step, Receive):
-            index, text = self._row("receives", self.receive(step)), step.message.name
+            index = self._index_of_row("receives", self.receive_initialiser(step))
+            text = step.message.name
         elif isinstance(step, VerifyChecksum):
-            index = self._row("checksums", self.checksum(step))
+            index = self._index_of_row("checksums", self.checksum_initialiser(step))
         elif isinstance(step, (Verify, SkipUnless)):
-            index = self._row("tests", test_initialiser(step.test))
+            index = self._index_of_row("tests", test_initialiser(step.test))
         elif isinstance(step, SetLength):
-            index = self._row("tests", f"{{0u, {value_initialiser(step.value)}}}")
+            index = self._index_of_row(
+                "tests", f"{{0u, {value_initialiser(step.value)}}}"
+            )
         repeats = boolean(getattr(step, "again", False))
         to = getattr(step, "to", 0)
         kind = f"ICD_STEP_{_KINDS[type(step)]}"
         return TableRow(f"{{{kind}, {index}u, {repeats}, {to}u}}", plain(text))
 
-    def _row(self, table: str, row: str) -> int:
+    def _index_of_row(self, table: str, row: str) -> int:
         """Return the index of a row, which is added unless it is there."""
         rows = self._rows[table]
         # Steps often repeat the same message or test. They then share the row.
@@ -347,7 +354,7 @@ class _ProcedureTables(TableSet):
             rows.append(TableRow(row))
         return rows.index(TableRow(row))
 
-    def send(self, step: Send) -> str:
+    def send_initialiser(self, step: Send) -> str:
         # NULL stands for zeros, which need no table.
         data = "NULL"
         if any(step.data):
@@ -367,7 +374,7 @@ class _ProcedureTables(TableSet):
         start = f"{step.message.telecommand_id:#x}u, {len(step.data)}u, {data}"
         return f"{{{start}, {puts}, {len(step.puts)}u, {packet_at}, {flags}}}"
 
-    def poll(self, step: Get | Poll) -> str:
+    def poll_initialiser(self, step: Get | Poll) -> str:
         until: tuple[Test, ...] = ()
         fails: tuple[Test, ...] = ()
         times = "0u, 0u"
@@ -390,7 +397,7 @@ class _ProcedureTables(TableSet):
             f"{{{step.message.telemetry_id:#x}u, {takes}, {tests}, {counts}, {times}}}"
         )
 
-    def receive(self, step: Receive) -> str:
+    def receive_initialiser(self, step: Receive) -> str:
         buses = sum(1 << BUSES.index(bus) for bus in step.requested_on)
         number = number_place(step.number, ID_BYTES)
         return (
@@ -398,18 +405,18 @@ class _ProcedureTables(TableSet):
             f"{step.silence}u, {buses}u}}"
         )
 
-    def checksum(self, step: VerifyChecksum) -> str:
+    def checksum_initialiser(self, step: VerifyChecksum) -> str:
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
         return f"{{{self.algorithm(step.algorithm)}, {flags}, {value_initialiser(step.value)}}}"
 
-    def input(self, each: Input) -> TableRow:
+    def row_of_input(self, each: Input) -> TableRow:
         values = self.shared("values", "uint32_t", (f"{n}u" for n in each.values))
         optional = boolean(each.is_optional)
         return TableRow(
             f"{{{each.most}u, {values}, {len(each.values)}u, {optional}}}", each.name
         )
 
-    def blocks(self, blocks: Blocks | None) -> str:
+    def declare_blocks(self, blocks: Blocks | None) -> str:
         """Declare the tables of the blocks and their map; return NULL without blocks."""
         if blocks is None:
             return "NULL"

@@ -80,7 +80,7 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         text = render(
             "node.c.j2",
             origin=origin(node.model, with_digest=True),
-            **_SelftestFile(icd, node).all(),
+            **_SelftestFile(icd, node).template_values(),
         )
         yield PurePosixPath(f"nodes/{node.name}.c"), text
 
@@ -92,14 +92,14 @@ class _SelftestFile:
         self.icd, self.node = icd, node
         self.vectors = make(icd, node.model)
 
-    def all(self) -> dict[str, object]:
+    def template_values(self) -> dict[str, object]:
         node, id_bits = self.node, describe(self.icd).id_bits
         return {
             "node": node.name,
             "enums": [names.stem(enum) for enum in node.enums],
-            "names": list(self.names()),
+            "names": list(self.enum_names()),
             "messages": [
-                self.message(*message_and_vectors)
+                self.message_values(*message_and_vectors)
                 for message_and_vectors in zip(
                     node.messages, self.vectors.messages, strict=True
                 )
@@ -116,7 +116,7 @@ class _SelftestFile:
             "plain": plain,
         }
 
-    def names(self) -> Iterator[tuple[str, str, str]]:
+    def enum_names(self) -> Iterator[tuple[str, str, str]]:
         """Yield enumeration, value and name."""
         for enum, (_, unknown) in zip(self.node.enums, self.vectors.enums, strict=True):
             stem = names.stem(enum)
@@ -151,7 +151,7 @@ class _SelftestFile:
         ]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
-    def message(
+    def message_values(
         self, message: MessageDescription, vectors: MessageVectors
     ) -> dict[str, object]:
         """Return a message with its vectors.
@@ -163,7 +163,9 @@ class _SelftestFile:
         for row in vectors.rows:
             used_bits |= int.from_bytes(row.encoded, "little")
         tables: dict[tuple[int, ...], str] = {}
-        fields = [self.field(field, vectors, tables) for field in _scalars(message)]
+        fields = [
+            self.selftest_field(field, vectors, tables) for field in _scalars(message)
+        ]
         doubles = (
             f"UINT64_C(0x{double})"
             for row in vectors.rows
@@ -174,7 +176,7 @@ class _SelftestFile:
             "message": message,
             "stem": names.stem(message),
             "vectors": [
-                (plain(row.why), self.vector(row, fields)) for row in vectors.rows
+                (plain(row.why), self.vector_rows(row, fields)) for row in vectors.rows
             ],
             "vector_size": message.model.length + sum(field.packed for field in fields),
             "kept": _byte_rows(used_bits.to_bytes(message.model.length, "little")),
@@ -198,7 +200,7 @@ class _SelftestFile:
             ),
         }
 
-    def vector(self, row: Row, fields: list[SelftestField]) -> list[str]:
+    def vector_rows(self, row: Row, fields: list[SelftestField]) -> list[str]:
         data = bytearray(
             row.frame.ljust(
                 fields[0].field.message.model.length if fields else 0, b"\0"
@@ -215,7 +217,7 @@ class _SelftestFile:
             )
         return _byte_rows(bytes(data))
 
-    def field(
+    def selftest_field(
         self,
         description: FieldDescription,
         vectors: MessageVectors,

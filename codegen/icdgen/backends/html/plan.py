@@ -32,7 +32,7 @@ def message_plan(
     # that they have in the expanded list.
     in_frame = places_in(message.layout)
     places = dict(_indices(in_frame, 0, _needed_names(message.layout)))
-    fields = _FieldPlans(message, node, places, represented).items(in_frame, "")
+    fields = _FieldPlans(message, node, places, represented).field_plans(in_frame, "")
     plan: dict[str, object] = {
         "name": message.name,
         "length": message.length,
@@ -137,7 +137,7 @@ class _FieldPlans:
         self._represented = represented
         self._parts = message.layout.parts
 
-    def items(
+    def field_plans(
         self, places: Iterable[NodePlace], prefix: str
     ) -> list[dict[str, object]]:
         """Return the data of fields and arrays, with names without ``prefix``."""
@@ -146,18 +146,18 @@ class _FieldPlans:
             # Elements of an array that are not whole bytes begin at different bits of a
             # byte, so each has pieces of its own.
             if place.count > 1 and place.bits % 8 == 0:
-                items.append(self._array(place, prefix))
+                items.append(self._array_plan(place, prefix))
                 continue
             for element in place.elements():
                 if element.struct is None:
                     items.append(
-                        self._field(element, element.name.removeprefix(prefix))
+                        self._field_plan(element, element.name.removeprefix(prefix))
                     )
                 else:
-                    items += self.items(element.inner(), prefix)
+                    items += self.field_plans(element.inner(), prefix)
         return items
 
-    def _array(self, place: NodePlace, prefix: str) -> dict[str, object]:
+    def _array_plan(self, place: NodePlace, prefix: str) -> dict[str, object]:
         """Return the data of an array; its fields have names within their element, an
         element without struct none.
         """
@@ -167,9 +167,9 @@ class _FieldPlans:
             "count": place.count,
             "step": place.bits // 8,
             "fields": (
-                [self._field(first, "")]
+                [self._field_plan(first, "")]
                 if first.struct is None
-                else self.items(first.inner(), f"{first.name}.")
+                else self.field_plans(first.inner(), f"{first.name}.")
             ),
         }
         part = next((part for part in self._parts if part.node is place.node), None)
@@ -180,7 +180,7 @@ class _FieldPlans:
             array["isShownOnce"] = True
         return array
 
-    def _field(self, field: NodePlace, name: str) -> dict[str, object]:
+    def _field_plan(self, field: NodePlace, name: str) -> dict[str, object]:
         """Return the data of a field without inapplicable keys."""
         node, places, variable = self._node, self._places, self._parts
         scaled, curve, how = steps_of_scale(field), field.curve, field.derived

@@ -71,7 +71,7 @@ class Relations:
         )
         self._spoken: dict[str, Speaker] = {}
         for node in icd.nodes:
-            self._node(node)
+            self._add_node(node)
 
     def in_c(self, message: Message) -> MessageDescription:
         """Return the message with the C prefix of its node."""
@@ -83,19 +83,19 @@ class Relations:
         )
         return describe(self._in_c).message(message_in_c)
 
-    def _node(self, node: Node) -> None:
+    def _add_node(self, node: Node) -> None:
         used_messages = {
             message.name: message for message in self.icd.messages_of(node)
         }
         for message in node.messages:
-            self._errata(
+            self._add_errata(
                 message.errata, PageLink(message.name, self.links.message(message))
             )
             for name, field in self.shown_fields(message):
                 place = PageLink(
                     f"{message.name}: {name}", self.links.field(message, field)
                 )
-                self._errata(field.errata, place)
+                self._add_errata(field.errata, place)
                 if field.enum is not None:
                     self.uses[field.enum.node, field.enum.name].append(place)
                 if field.unit is not None:
@@ -112,10 +112,10 @@ class Relations:
                     self.contained_in[other.node, other.name].append(outer)
         for enum in node.enums:
             url = self.links.enum(enum)
-            self._errata(enum.errata, PageLink(enum.name, url))
+            self._add_errata(enum.errata, PageLink(enum.name, url))
             for member in enum.members:
                 anchor = self.links.anchor(enum, str(member.value))
-                self._errata(
+                self._add_errata(
                     member.errata,
                     PageLink(f"{enum.name}: {member.name}", f"{url}#{anchor}"),
                 )
@@ -129,14 +129,14 @@ class Relations:
             if row.id in by_id:
                 message = by_id[row.id]
                 self.logged[message.node, message.name].append((node, row))
-            self._errata(
+            self._add_errata(
                 row.errata,
                 PageLink(
                     f"Log mask bit {row.bit}", self.links.node(node.name) + "#log-mask"
                 ),
             )
 
-    def _errata(self, errata: tuple[Erratum, ...], place: PageLink) -> None:
+    def _add_errata(self, errata: tuple[Erratum, ...], place: PageLink) -> None:
         for erratum in errata:
             self.places[erratum.id, erratum.title].append(place)
 

@@ -53,7 +53,7 @@ def values(link: LinkDescription) -> dict[str, object]:
     ``tables`` has the name and the CRC of each lookup table.
     """
     facts, link_literal = link.facts, _LinkLiteral(link)
-    text = written(link_literal.link(), _note)
+    text = written(link_literal.link_expression(), _note)
     about = [
         f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."
     ]
@@ -93,11 +93,11 @@ class _LinkLiteral:
         self.facts = link.facts
         self.assumed = Assumptions(link.facts)
 
-    def link(self) -> Brackets:
+    def link_expression(self) -> Brackets:
         facts, link = self.facts, self.description
         packet = facts.acknowledge
         # Before the checksums: it shows the assumptions about its use.
-        checksum = self.checksum()
+        checksum = self.checksum_form()
         unsolicited = (
             f"({integer(first)}, {integer(id)})"
             for first, id in sorted(facts.unsolicited.items())
@@ -113,9 +113,9 @@ class _LinkLiteral:
             part("telemetry_ids", flat("Ids", **members(facts.telemetry_ids))),
             part("telecommands", rows(map(_message_form, link.telecommands))),
             part("telemetry", rows(map(_message_form, link.telemetry))),
-            part("client", self.struct(facts.client) or ""),
+            part("client", self.struct_of_facts(facts.client) or ""),
             part("reasons", flat_rows(map(integer, link.reasons))),
-            part("framing", some(self.struct(facts.framing))),
+            part("framing", some(self.struct_of_facts(facts.framing))),
             part(
                 "acknowledge_bytes",
                 some(packet.overhead if packet else None),
@@ -125,18 +125,18 @@ class _LinkLiteral:
             ),
             part("i2c_address", some(facts.i2c_address)),
             part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),
-            part("can", some(self.can())),
-            part("checksums", rows(self.checksums())),
+            part("can", some(self.can_form())),
+            part("checksums", rows(self.checksum_pairs())),
             part("checksum", some(checksum)),
-            part("mask", some(self.mask())),
-            part("log_file", some(self.struct(facts.log_file))),
+            part("mask", some(self.mask_form())),
+            part("log_file", some(self.struct_of_facts(facts.log_file))),
             part(
                 "log_message",
-                some(self.struct(facts.log_message)),
+                some(self.struct_of_facts(facts.log_message)),
                 self.assumed.why("unsolicited_log", "framed"),
             ),
-            part("time", some(self.time())),
-            part("index", some(self.index())),
+            part("time", some(self.time_form())),
+            part("index", some(self.index_form())),
             part("unsolicited", flat_rows(unsolicited)),
             part("exchanges", bus_exchanges_of(facts.bus_exchanges)),
             part("identification", some(_identification(link.identification))),
@@ -144,7 +144,7 @@ class _LinkLiteral:
             part("stream", some(stream_of(facts.stream) if facts.stream else None)),
         )
 
-    def struct(self, declared: object, *further: Item) -> Brackets | None:
+    def struct_of_facts(self, declared: object, *further: Item) -> Brackets | None:
         """Return the facts of a part as a struct, with further items."""
         if declared is None:
             return None
@@ -159,7 +159,7 @@ class _LinkLiteral:
             )
         return struct(type_name(type(declared)), *items, *further)
 
-    def can(self) -> Brackets | None:
+    def can_form(self) -> Brackets | None:
         can = self.description.can
         if can is None:
             return None
@@ -167,29 +167,29 @@ class _LinkLiteral:
             part(_RENAMED.get(role, role), flat("CanPart", **members(can.parts[role])))
             for role in CAN_PARTS
         )
-        extended = self.struct(
+        extended = self.struct_of_facts(
             can.extended, part("types", _can_types(can.extended_types))
         )
-        return self.struct(
+        return self.struct_of_facts(
             can,
             *parts,
             part("types", _can_types(can.types)),
             part("extended", some(extended)),
         )
 
-    def checksums(self) -> Iterator[str]:
+    def checksum_pairs(self) -> Iterator[str]:
         for name, algorithm in self.facts.checksums.items():
             yield f"({string(name)}, {written(algorithm_of(algorithm), _note)})"
 
-    def checksum(self) -> Brackets | None:
+    def checksum_form(self) -> Brackets | None:
         form = self.facts.checksum
         return (
-            self.struct(form, part("algorithm", algorithm_of(form.algorithm)))
+            self.struct_of_facts(form, part("algorithm", algorithm_of(form.algorithm)))
             if form
             else None
         )
 
-    def mask(self) -> Brackets | None:
+    def mask_form(self) -> Brackets | None:
         mask = self.facts.mask
         if mask is None:
             return None
@@ -198,26 +198,26 @@ class _LinkLiteral:
             for _, row in sorted(mask.bits.items())
             if row.id is not None
         )
-        return self.struct(
+        return self.struct_of_facts(
             mask,
             part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")),
         )
 
-    def time(self) -> Brackets | None:
+    def time_form(self) -> Brackets | None:
         parts = [
             part(name, flat("TimePart", **members(time_part)))
             for name, time_part in self.description.time
         ]
         return struct("TimeForm", *parts) if parts else None
 
-    def index(self) -> Brackets | None:
+    def index_form(self) -> Brackets | None:
         form = self.description.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         spans = (
             part(_RENAMED.get(name, name), flat("Span", **members(span)))
             for name, span in fields
         )
-        return self.struct(form, *spans)
+        return self.struct_of_facts(form, *spans)
 
 
 def _message_form(sent: SentMessage) -> Brackets:

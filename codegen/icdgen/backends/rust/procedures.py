@@ -123,7 +123,9 @@ class NodeProcedures:
         for procedure in link.facts.procedures:
             # A node can have procedures of the nodes that it includes. Code that is the
             # same is generated once, in the module of the included node.
-            text = _ProcedureWriter(procedure, link.facts, description, crate).text()
+            text = _ProcedureWriter(
+                procedure, link.facts, description, crate
+            ).procedure_text()
             owners = (
                 name
                 for name in description.node(self.node).included
@@ -161,7 +163,7 @@ class _ProcedureWriter:
         blocks = procedure.blocks
         self._receives = blocks is not None and not blocks.sends
 
-    def text(self) -> ProcedureText:
+    def procedure_text(self) -> ProcedureText:
         procedure = self._procedure
         sink, into_sink, bound = self._sink()
         has_memory = procedure.blocks is not None
