@@ -51,7 +51,7 @@ def shipped():
 
 @pytest.fixture(scope="module")
 def strange(tmp_path_factory):
-    return asked(icd_of([odd.write(tmp_path_factory.mktemp("icd"))]), 20)
+    return asked(icd_of([odd.write(tmp_path_factory.mktemp("icd"))]), 8)
 
 
 def agree(language, asked):

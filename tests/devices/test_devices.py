@@ -36,7 +36,7 @@ def test_values_of_messages_that_are_held_are_those_of_the_library(
     nodes = (
         1 if name.startswith("mavlink") else 3
     )  # each dialect includes most of the others
-    row = measure(name, LANGUAGES, tmp_path, frames=6, sample=25, nodes=nodes)
+    row = measure(name, LANGUAGES, tmp_path, frames=6, sample=12, nodes=nodes)
     assert row.held
     for agreement in row.by_language.values():
         assert agreement.messages == row.held and agreement.values > row.held

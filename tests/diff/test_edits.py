@@ -47,7 +47,7 @@ def test_an_icd_does_not_differ_from_itself():
     assert compare(icd, icd_of()).changes == []
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(names=st.lists(st.sampled_from(sorted(EDITS)), max_size=5), seed=SEEDS)
 def test_no_edited_icd_differs_from_itself(names, seed):
     assert compare(edited(names, seed), edited(names, seed)).changes == []
@@ -106,7 +106,7 @@ def subject(change: Change) -> tuple:
     return tuple(id(side.node if isinstance(side, Line) else side) for side in sides)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=30)
 @given(
     names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=8), seed=SEEDS
 )
@@ -119,7 +119,7 @@ def test_backwards_is_the_mirror_of_forwards(names, seed):
     assert Counter(map(mirrored, forwards)) == Counter(map(as_it_is, backwards))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(names=st.lists(st.sampled_from(TEXT), min_size=1, max_size=8), seed=SEEDS)
 def test_words_alone_never_amount_to_more_than_words(names, seed):
     assert {
@@ -127,7 +127,7 @@ def test_words_alone_never_amount_to_more_than_words(names, seed):
     } <= {"text"}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(
     names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=6), seed=SEEDS
 )

@@ -58,7 +58,7 @@ def test_output_of_show_that_was_tampered_with(tmp_path):
     tree = json.loads(json.dumps(to_json(icd)))
     whole = shown.from_bytes(json.dumps(tree).encode(), "whole.json")
     read = 0
-    for seed in range(150):
+    for seed in range(70):
         try:
             side = shown.from_bytes(
                 json.dumps(mutated(tree, seed)).encode(), "tampered.json"
@@ -71,7 +71,7 @@ def test_output_of_show_that_was_tampered_with(tmp_path):
             continue
         read += 1
         compared_both_ways(whole, side)
-    assert read > 15
+    assert read > 8
 
 
 def test_icds_that_break_rules(tmp_path, demo):
@@ -79,14 +79,14 @@ def test_icds_that_break_rules(tmp_path, demo):
 
     tree = yaml.safe_load(demo.read_text(encoding="utf-8"))
     whole, read = from_paths([demo]), 0
-    for seed in range(150):
+    for seed in range(70):
         path = tmp_path / "tampered.yaml"
         path.write_text(json.dumps(mutated(tree, seed), indent=1), encoding="utf-8")
         side = from_paths([path], unchecked=True)
         if side.is_comparable(unchecked=True):
             read += 1
             compared_both_ways(whole, side)
-    assert read > 15
+    assert read > 8
 
 
 @pytest.mark.parametrize(

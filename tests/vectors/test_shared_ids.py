@@ -81,7 +81,7 @@ def test_the_bytes_that_code_looks_at_tell_what_the_reference_reads_from_constan
     assert hold(apart, random.Random(1)) > 300
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(icds())
 def test_so_they_do_in_random_icds(trees):
     with tempfile.TemporaryDirectory() as name:
