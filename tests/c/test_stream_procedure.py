@@ -5,7 +5,6 @@ examples/links, which loses every fifth telecommand.
 from __future__ import annotations
 
 from tests.c.test_stream_client import EXAMPLES, run
-from tests.conftest import ROOT
 
 PROGRAM = r"""
 #include "loader.h"
@@ -123,22 +122,3 @@ int main(void)
 
 def test_an_upload_runs_above_the_client_of_a_framed_link(tmp_path):
     run(tmp_path, PROGRAM, EXAMPLES / "bootloader.yaml")
-
-
-WIDE = r"""
-#include "store.h"
-#include <assert.h>
-
-int main(void)
-{
-    icd_procedure_t procedure;
-    assert(store_choose(&procedure, STORE_MODE_BUSY) == ICD_OK);
-    assert(store_choose(&procedure, UINT64_C(0x100000001)) == ICD_ERROR_RANGE);
-    return 0;
-}
-"""
-
-
-def test_a_value_of_an_enumeration_that_its_field_cannot_have_is_refused(tmp_path):
-    source = ROOT / "tests" / "procedures" / "wide_enumeration.yaml"
-    run(tmp_path, WIDE, source)

@@ -1,4 +1,6 @@
-"""Fields that are not always there: None where they are not."""
+"""Optional fields in Python: equality, JSON and columns of messages that have them.
+`tests/every_language/optional_fields.py` has what all languages do with them.
+"""
 
 from __future__ import annotations
 
@@ -21,38 +23,6 @@ def messages(package):
     return package.module("mux")
 
 
-def test_what_is_not_there_is_none_and_what_is_has_its_value(messages):
-    message = messages.Multiplexed.from_bytes(
-        bytes([1, 0x04, 0xE2, 0, 0, 0x80, 0, 0, 0])
-    )
-    assert (message.angle, message.angle_deg, message.flag, message.is_fast) == (
-        1250,
-        12.5,
-        True,
-        False,
-    )
-    assert (
-        message.rate,
-        message.rate_deg_per_s,
-        message.speed,
-        message.turned,
-        message.slow,
-    ) == (None,) * 5
-    assert message.to_bytes() == bytes([1, 0x04, 0xE2, 0, 0, 0x80, 0, 0, 0])
-
-
-def test_a_new_message_has_what_is_there_while_all_others_are_zero(messages):
-    message = messages.Multiplexed()
-    assert (
-        message.rate,
-        message.rest,
-        message.slow,
-        message.angle,
-        message.on_count,
-    ) == (0, 5, 0, None, None)
-    assert message == messages.Multiplexed.from_bytes(message.to_bytes())
-
-
 def test_a_message_of_another_alternative_is_equal_to_what_its_frame_is_decoded_to(
     messages,
 ):
@@ -65,20 +35,6 @@ def test_a_message_of_another_alternative_is_equal_to_what_its_frame_is_decoded_
         choice.longer == 15
         and messages.Choice.from_json(choice.to_json(physical=True)) == choice
     )
-
-
-def test_what_must_be_there_is_demanded_and_what_is_not_there_is_not_looked_at(
-    package, messages
-):
-    message = messages.Multiplexed()
-    message.mode = 1
-    with pytest.raises(
-        package.module("_errors").RangeError,
-        match="angle takes integers from 0 to 65535, not None",
-    ):
-        message.to_bytes()
-    message.angle, message.rate = 7, 1 << 20
-    assert message.to_bytes()[1:3] == bytes([0, 7])
 
 
 def test_columns_are_masked_where_a_field_is_not_there(messages):

@@ -1,4 +1,6 @@
-"""Structs in Python: values in messages, by themselves or in tuples."""
+"""Structs in Python: dictionaries, JSON, dataclasses and columns of messages that have
+them. `tests/every_language/structs.py` has what all languages do with structs.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,7 @@ import math
 
 import pytest
 
-from tests.c.test_structs import ICD
+from tests.every_language.structs import STRUCTS
 from tests.python import packages
 
 FRAME = bytes(
@@ -19,30 +21,14 @@ FRAME = bytes(
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("structs")
-    (folder / "demo.yaml").write_text(ICD, encoding="utf-8")
-    return packages.write(
-        packages.read(folder / "demo.yaml"), folder, "struct_messages"
-    )
+    path = folder / "structs.yaml"
+    path.write_text(STRUCTS.icd, encoding="utf-8")
+    return packages.write(packages.read(path), folder, "struct_messages")
 
 
 @pytest.fixture(scope="module")
 def demo(package):
-    return package.module("demo")
-
-
-def test_a_struct_is_read_and_written_where_it_stands(demo):
-    view = demo.View.from_bytes(FRAME)
-    assert (view.best.system, view.best.quality, view.best.signals) == (
-        demo.System.GALILEO,
-        3,
-        (1, 2),
-    )
-    assert view.best.azimuth_deg == 50.0
-    assert view.pairs[0].both[0].azimuth_deg == -1.0
-    assert [one.signals for one in view.pairs[0].both] == [(3, 4), (5, 6)]
-    assert view.to_bytes() == FRAME
-    view.pairs[0].both[1].azimuth_deg = 1.0
-    assert view.to_bytes() == FRAME[:11] + b"\x02\x00" + FRAME[13:]
+    return package.module("structs")
 
 
 def test_each_new_message_has_structs_of_its_own(demo):
@@ -139,20 +125,6 @@ def test_each_field_of_a_struct_is_a_column(demo):
     assert columns["best.azimuth_deg"].tolist() == [50.0] * 3
     assert columns["pairs[0].both[1].signals_v"].tolist() == [[1.25, 1.5]] * 3
     assert "pairs[0].both[0].azimuth_deg" in demo.View.decode_table(FRAME).schema.names
-
-
-def test_what_is_told_of_a_struct_leads_to_its_fields(demo):
-    pairs = demo.View.FIELDS[1]
-    assert (pairs.type, pairs.struct, pairs.elements, pairs.at) == (
-        "struct",
-        demo.Pair,
-        1,
-        40,
-    )
-    assert [one.attribute for one in pairs.leaves[-4:]] == [
-        "pairs[0].both[1].azimuth", "pairs[0].both[1].signals[0]", "pairs[0].both[1].signals[1]", "pairs[0].version",
-    ]  # fmt: skip
-    assert [one.at for one in pairs.leaves[-4:]] == [88, 104, 112, 120]
 
 
 FLOATS = """\

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import pytest
 
 from icdgen.icd.model import Icd
+from tests.every_language.programs import write_icds
+from tests.every_language.stories import STORIES
 from tests.rust import harness, odd
 
 
@@ -33,6 +35,14 @@ def strange(tmp_path_factory) -> Subject:
     """ICDs unlike ours."""
     icd = harness.read(*odd.write(tmp_path_factory.mktemp("icd")))
     return Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("strange")))
+
+
+@pytest.fixture(scope="session")
+def stories(tmp_path_factory) -> Subject:
+    """The ICDs of `tests.every_language`: arrays, structs, optional fields and more."""
+    folder = tmp_path_factory.mktemp("stories")
+    icd = write_icds(STORIES, folder / "icd")
+    return Subject(icd, harness.generate(icd, folder))
 
 
 @pytest.fixture(scope="session", params=["shipped", "strange"])

@@ -152,6 +152,13 @@ def test_no_way_to_a_panic_is_left_in_odd_messages(strange, tmp_path):
     assert suspicious(symbols(strange, "default", SMALL, tmp_path)) == []
 
 
+@pytest.mark.parametrize("level", [FAST, SMALL])
+def test_no_way_to_a_panic_is_left_in_arrays_structs_and_parts(
+    stories, level, tmp_path
+):
+    assert suspicious(symbols(stories, "default", level, tmp_path)) == []
+
+
 def test_messages_of_variable_length_neither_panic_nor_allocate(
     tmp_path_factory, tmp_path
 ):

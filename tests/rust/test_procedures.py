@@ -45,24 +45,3 @@ def test_a_program_arrives_although_messages_are_lost(client, faults):
 
 def test_a_refused_telecommand_ends_the_procedure(client):
     assert told(client, "--fault", "nak=1:Locked") == "Refused"
-
-
-WIDE = """
-use icd::store::enums::Mode;
-use icd::store::procedures::Choose;
-
-fn main() {
-    assert!(Choose::new(Mode::Busy).is_ok());
-    let error = Choose::new(Mode::from(0x1_0000_0001)).err();
-    assert!(matches!(error, Some(icd::wire::Error::Range { .. })), "{error:?}");
-}
-"""
-
-
-def test_a_value_of_an_enumeration_that_its_field_cannot_have_is_refused(tmp_path):
-    source = ROOT / "tests" / "procedures" / "wide_enumeration.yaml"
-    tools = Toolchain("default")
-    library = tools.library(harness.generate(harness.read(source), tmp_path), *USED)
-    (tmp_path / "main.rs").write_text(WIDE, encoding="utf-8")
-    program = tools.program(tmp_path / "main.rs", library, tmp_path / "main")
-    assert subprocess.run([program]).returncode == 0

@@ -43,6 +43,13 @@ def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
     )
 
 
+def test_arrays_structs_and_parts_are_tidy(stories, tmp_path):
+    tools = Toolchain("default")
+    tools.formatted(stories.crate)
+    tools.linted(stories.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+    tools.documented(stories.crate, tmp_path)
+
+
 def test_nor_with_the_standard_library(toolchain, tmp_path):
     """Of a node that speaks on each bus; the messages of any node are the same without
     it.

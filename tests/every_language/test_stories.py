@@ -1,0 +1,27 @@
+"""The claims of every story hold in every language."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.every_language import programs
+from tests.every_language.stories import STORIES
+from tests.rust.tools import toolchains
+
+RUST = {f"rust {name}": name for name in toolchains()}
+
+
+@pytest.fixture(scope="module", params=["gcc", "clang", "g++", *RUST, "python"])
+def run(request, tmp_path_factory) -> programs.Run:
+    """Checks the claims of a story in one language."""
+    name, folder = request.param, tmp_path_factory.mktemp("stories")
+    if name == "python":
+        return programs.in_python(STORIES, folder)
+    if name in RUST:
+        return programs.in_rust(RUST[name], STORIES, folder)
+    return programs.in_c(name, STORIES, folder)
+
+
+@pytest.mark.parametrize("story", STORIES, ids=lambda story: story.node)
+def test_the_claims_of_a_story_hold(run, story):
+    run(story)
