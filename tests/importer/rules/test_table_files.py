@@ -163,8 +163,5 @@ def test_a_finding_of_a_rule_shows_the_rule(folder):
         "import", "state.txt", "--profile", "rules.yaml", "--dry-run", cwd=folder
     )
     assert result.returncode == 1
-    assert (
-        "error[IMP102]: table 1 (`4.1 Basic state (STATE) ID:0x02F4`): it has no column `Scale` of rule `state`\n"
-        in result.stdout
-    )
+    assert "error[IMP102]: table 1 (`4.1 Basic state (STATE) " in result.stdout
     assert "  = rule: rules.yaml:12:7\n" in result.stdout
