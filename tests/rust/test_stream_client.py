@@ -4,6 +4,8 @@ as no other.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tests.conformance.icds import LINKS
@@ -11,7 +13,7 @@ from tests.conftest import ROOT
 from tests.rust import harness
 from tests.rust.tools import USED, Toolchain, run, toolchains
 
-PROGRAM = """
+READING = """
 use icd::datagram::{self, LevelOfAnother, LevelOfTheFirst, ShortLevel, LINK};
 use icd::wire::{self, stream, Direction};
 
@@ -207,47 +209,33 @@ fn main() {
 """
 
 
+LINK_ICDS = (
+    ROOT / "examples" / "links" / "jbd.yaml",
+    ROOT / "examples" / "links" / "wheel.yaml",
+    LINKS / "packets.yaml",
+)
+
+
+@pytest.fixture(scope="module")
+def crate(tmp_path_factory) -> Path:
+    """One crate of all links."""
+    icd = harness.read(*LINK_ICDS)
+    return harness.generate(icd, tmp_path_factory.mktemp("links"))
+
+
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_telemetry_is_requested_and_refused_by_packets_of_their_own(
-    toolchain, tmp_path
+@pytest.mark.parametrize(
+    "source",
+    [
+        pytest.param(READING, id="an event is read as the message that it brings"),
+        pytest.param(OUTCOMES, id="each outcome is an event with its response"),
+        pytest.param(PACKETS, id="packets request telemetry and refuse it"),
+    ],
+)
+def test_a_program_gets_the_events_that_its_link_brings(
+    crate, toolchain, source, tmp_path
 ):
-    crate = harness.generate(
-        harness.read(ROOT / "examples" / "links" / "jbd.yaml"), tmp_path
-    )
-    (tmp_path / "user.rs").write_text(PACKETS)
-    run(
-        Toolchain(toolchain).program(
-            tmp_path / "user.rs",
-            Toolchain(toolchain).library(crate, *USED),
-            tmp_path / "user",
-        )
-    )
-
-
-@pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_each_outcome_is_an_event_with_its_response(toolchain, tmp_path):
-    wheel = ROOT / "examples" / "links" / "wheel.yaml"
-    crate = harness.generate(harness.read(wheel), tmp_path)
-    (tmp_path / "user.rs").write_text(OUTCOMES)
-    run(
-        Toolchain(toolchain).program(
-            tmp_path / "user.rs",
-            Toolchain(toolchain).library(crate, *USED),
-            tmp_path / "user",
-        )
-    )
-
-
-@pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_an_event_is_read_as_the_message_that_it_brings_and_as_no_other(
-    toolchain, tmp_path
-):
-    crate = harness.generate(harness.read(LINKS / "packets.yaml"), tmp_path)
-    (tmp_path / "user.rs").write_text(PROGRAM)
-    run(
-        Toolchain(toolchain).program(
-            tmp_path / "user.rs",
-            Toolchain(toolchain).library(crate, *USED),
-            tmp_path / "user",
-        )
-    )
+    tools = Toolchain(toolchain)
+    (tmp_path / "user.rs").write_text(source)
+    library = tools.library(crate, *USED)
+    run(tools.program(tmp_path / "user.rs", library, tmp_path / "user"))
