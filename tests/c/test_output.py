@@ -1,5 +1,5 @@
-"""What the files look like, which of them change, and that all names they declare are
-known to the name rules.
+"""Layout of the generated files in C, which of them change, and texts in comments and
+literals.
 """
 
 from __future__ import annotations
@@ -116,55 +116,6 @@ def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
         text=True,
     )
     assert done.returncode == 0, done.stderr[:4000]
-
-
-@pytest.mark.parametrize("which", ["shipped", "odd", "links"])
-def test_every_declared_name_is_known_to_the_name_rules(tmp_path, which):
-    links = [harness.HERE.parent.parent / "examples" / "links"]
-    icd = (
-        harness.shipped()
-        if which == "shipped"
-        else harness.read(*(odd.write(tmp_path) if which == "odd" else links))
-    )
-    known = {one.text for one in CBackend().identifiers(icd)}
-    undeclared = []
-    for path, text in files(icd).items():
-        if path in ("icdgen.h", "icdgen_wide.h", "icdgen_wire.h", "icdgen_wire.c"):
-            continue
-        code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
-        names = re.findall(r"^#define (\w+)", code, re.M)
-        names += re.findall(
-            r"^(?:static inline|ICDGEN_API) [\w \n*]*?(\w+)\(", code, re.M
-        )
-        names += re.findall(r"^(?:typedef \w+|\}) (\w+);", code, re.M)
-        names += re.findall(r"^    (\w+) = \w+,?$", code, re.M)
-        for body in re.findall(r"^typedef struct \{(.*?)^\}", code, re.M | re.S):
-            names += [
-                n
-                for n in re.findall(r"(\w+)(?:\[\d+\])?;", body)
-                if n
-                not in (
-                    "id",
-                    "as",
-                    "empty",
-                    "client",
-                    "sender",
-                    "stream",
-                    "uart",
-                    "i2c",
-                    "can",
-                )
-            ]
-        undeclared += [f"{path}: {name}" for name in names if name not in known]
-        assert path in known
-    assert not undeclared
-
-
-def test_no_two_names_of_the_shipped_icds_clash():
-    seen = {}
-    for one in CBackend().identifiers(harness.shipped()):
-        assert (one.scope, one.text) not in seen, (one, seen[one.scope, one.text])
-        seen[one.scope, one.text] = one
 
 
 def test_no_two_names_of_the_shipped_icds_are_the_same_in_the_63_characters_that_c_guarantees():

@@ -117,11 +117,3 @@ def test_reserved_words_are_known(word):
 
 def test_soft_keywords_are_good_names():
     assert not {"match", "case", "type", "print"} & PythonBackend.reserved
-
-
-def test_shipped_names_do_not_clash(shipped):
-    seen = set()
-    for one in PythonBackend().identifiers(shipped.icd):
-        assert (one.scope, one.text) not in seen, one
-        assert one.text.isidentifier() and one.text not in PythonBackend.reserved
-        seen.add((one.scope, one.text))

@@ -108,26 +108,6 @@ def test_hostile_text_stays_in_comments_and_strings(strange_texts):
                 ), line
 
 
-def test_each_declared_name_is_announced_to_the_rules(subject):
-    """`identifiers` has every name that the files declare, so that no clash goes
-    unnoticed.
-    """
-    announced = {one.text for one in backends.get("rust").identifiers(subject.icd)}
-    declared = re.compile(
-        r"^(?:pub )?(?:mod|enum|struct) (\w+)|^    pub (?:const )?fn\s(\w+)|^    pub (\w+):|^    pub const (\w+):"
-        r"|^    ([A-Z]\w*)(?:\(|,$)", re.MULTILINE,
-    )  # fmt: skip
-    ours = {"raw", "name", "write_to", "id", "length", "support"}
-    for file, text in harness.texts(subject.icd).items():
-        if (
-            file.startswith("src/")
-            and file.count("/") > 1
-            and not file.startswith(("src/support/", "src/wire/"))
-        ):
-            names = {name for match in declared.findall(text) for name in match if name}
-            assert names - announced - ours == set(), file
-
-
 def test_what_clashes_in_rust_is_announced_in_one_scope(tmp_path):
     path = odd.write_clashing(tmp_path)
     seen: dict[tuple[str, str], str] = {}
