@@ -1,8 +1,7 @@
-"""Values that are derived from fields."""
+"""Derived values in Python: read-only attributes, dictionaries and columns."""
 
 from __future__ import annotations
 
-import math
 import struct
 from random import Random
 
@@ -12,22 +11,6 @@ import pytest
 @pytest.fixture(scope="module")
 def derived(odd):
     return odd.module("odd").Derived
-
-
-def test_a_derived_value_follows_the_fields(derived):
-    message = derived(lon=123456789, lon_hp=-55, scale=-2, c_n0=4000, wide=2.0, most=5)
-    assert message.longitude_deg == message.lon_deg + message.lon_hp_deg == 12.345678845
-    assert message.power_v == message.c_n0_v * (1 / 100.0)
-    assert message.mixed == message.longitude_deg / 2.0 + message.low_v * 0.25 - 2 / 3
-    message.lon_hp_deg = 1e-9
-    assert message.longitude_deg == 12.345678901
-
-
-def test_it_may_be_infinite_or_no_number(derived):
-    message = derived(most=3, lon=1, wide=1.0)
-    assert message.mixed == math.inf
-    message.lon = message.lon_hp = 0
-    assert struct.pack(">d", message.mixed).hex() == "7ff8000000000000"
 
 
 def test_it_is_not_set(derived):

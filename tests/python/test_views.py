@@ -1,4 +1,4 @@
-"""Fields that read bits of others."""
+"""Overlay fields in Python: read-only attributes, dictionaries and columns."""
 
 from __future__ import annotations
 
@@ -8,30 +8,6 @@ import pytest
 @pytest.fixture(scope="module")
 def views(odd):
     return odd.module("odd").Views
-
-
-def test_a_view_says_what_its_bits_hold_and_follows_the_fields_that_have_them(
-    odd, views
-):
-    message = views.from_bytes(bytes.fromhex("0dff 0000c03f 8000000000ff"))
-    assert (message.narrow, message.rest, message.across, message.across_v) == (
-        1,
-        -513,
-        223,
-        111.5,
-    )
-    assert (message.property, message.real, message.within) == (True, 1.5, 3)
-    message.narrow, message.word, message.octets = (
-        0b11100,
-        0,
-        b"\x20" + bytes(4) + b"\x40",
-    )
-    assert (message.property, message.real, message.within) == (
-        False,
-        0.0,
-        (0x20 << 34 & (1 << 40) - 1) | 0x40 >> 6,
-    )
-    assert message.top is odd.module("odd").Signed(-1)
 
 
 def test_a_view_is_not_set(views):

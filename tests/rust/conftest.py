@@ -49,9 +49,3 @@ def stories(tmp_path_factory) -> Subject:
 def subject(request) -> Subject:
     """One after the other."""
     return request.getfixturevalue(request.param)
-
-
-@pytest.fixture(scope="session")
-def testee(subject) -> list[str]:
-    """The command that answers requests about the crate."""
-    return harness.build_testee(subject.icd)
