@@ -27,6 +27,7 @@ _LINKS = (
     "tests/conformance/test_hostile.py",
 )
 _MESSAGES = (
+    "tests/every_language",
     "tests/conformance/test_languages.py",
     "tests/conformance/test_special_words.py",
 )
@@ -34,13 +35,32 @@ _MESSAGES = (
 # The longest path that begins the path of a file decides.
 COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/": ("tests/icd", "tests/values", "tests/cli/test_commands.py"),
-    "codegen/icdgen/backends/": ("tests/generation", "tests/describe"),
+    "codegen/icdgen/backends/": (
+        "tests/generation",
+        "tests/describe",
+        "tests/test_symbols.py",
+    ),
     "codegen/icdgen/backends/assurance/": ("tests/assurance",),
-    "codegen/icdgen/backends/c/": ("tests/c", *_MESSAGES, *_LINKS),
+    "codegen/icdgen/backends/c/": (
+        "tests/c",
+        "tests/test_symbols.py",
+        *_MESSAGES,
+        *_LINKS,
+    ),
     "codegen/icdgen/backends/c_selftest/": ("tests/c/test_cmake.py", "tests/features"),
     "codegen/icdgen/backends/html/": ("tests/site",),
-    "codegen/icdgen/backends/python/": ("tests/python", *_MESSAGES, *_LINKS),
-    "codegen/icdgen/backends/rust/": ("tests/rust", *_MESSAGES, *_LINKS),
+    "codegen/icdgen/backends/python/": (
+        "tests/python",
+        "tests/test_symbols.py",
+        *_MESSAGES,
+        *_LINKS,
+    ),
+    "codegen/icdgen/backends/rust/": (
+        "tests/rust",
+        "tests/test_symbols.py",
+        *_MESSAGES,
+        *_LINKS,
+    ),
     "codegen/icdgen/backends/tables/": ("tests/show", "tests/features"),
     "codegen/icdgen/backends/vectors.py": ("tests/vectors",),
     "codegen/icdgen/backends/xtce/": ("tests/xtce",),
@@ -91,7 +111,13 @@ COVERING: dict[str, tuple[str, ...]] = {
     "icd/": ("tests/icd/test_shipped.py", "tests/vectors", "tests/conformance"),
     "runtime/c/": ("tests/c", "tests/runtime", *_MESSAGES, *_LINKS, "tests/hostile"),
     "runtime/c-selftest/": ("tests/c/test_cmake.py", "tests/features"),
-    "runtime/python/": ("tests/python", "tests/protocol", "tests/sim", *_LINKS),
+    "runtime/python/": (
+        "tests/python",
+        "tests/protocol",
+        *_MESSAGES,
+        *_LINKS,
+        "tests/sim",
+    ),
     "runtime/rust/": ("tests/rust", "tests/runtime", *_MESSAGES, *_LINKS),
     "scripts/": ("tests/cli/test_readme.py", "tests/test_house.py"),
     "templates/assurance/": ("tests/assurance",),
