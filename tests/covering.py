@@ -21,6 +21,7 @@ ROOT = Path(__file__).parent.parent
 MOST_IMPORTING = 12
 
 _LINKS = (
+    "tests/conformance/test_wire.py",
     "tests/conformance/test_links.py",
     "tests/conformance/test_protocol.py",
     "tests/conformance/test_outcomes.py",
