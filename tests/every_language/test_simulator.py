@@ -39,7 +39,14 @@ NO_FILE = {
 }
 
 
-@pytest.fixture(scope="module", params=["c", "python", "rust"])
+LANGUAGES = [
+    pytest.param("c", marks=pytest.mark.needs("gcc")),
+    "python",
+    pytest.param("rust", marks=pytest.mark.needs("rustc")),
+]
+
+
+@pytest.fixture(scope="module", params=LANGUAGES)
 def language(request) -> str:
     return request.param
 

@@ -9,9 +9,17 @@ from tests.every_language.stories import STORIES
 from tests.rust.tools import toolchains
 
 RUST = {f"rust {name}": name for name in toolchains()}
+LANGUAGES = [
+    *(
+        pytest.param(one, marks=pytest.mark.needs(one))
+        for one in ("gcc", "clang", "g++")
+    ),
+    *(pytest.param(one, marks=pytest.mark.needs("rustc")) for one in RUST),
+    "python",
+]
 
 
-@pytest.fixture(scope="module", params=["gcc", "clang", "g++", *RUST, "python"])
+@pytest.fixture(scope="module", params=LANGUAGES)
 def run(request, tmp_path_factory) -> programs.Run:
     """Checks the claims of a story in one language."""
     name, folder = request.param, tmp_path_factory.mktemp("stories")
