@@ -21,7 +21,7 @@ ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "codegen")]
 
 from icdgen.diff import inputs, report, reports  # noqa: E402
-from icdgen.diff.inputs.side import Side  # noqa: E402
+from icdgen.diff.inputs.side import ComparisonSide  # noqa: E402
 from tests.diff.edits import EDITS  # noqa: E402
 from tests.diff.release.make import make  # noqa: E402
 
@@ -36,13 +36,13 @@ def median(runs: int, work: Callable[[], object]) -> float:
     return statistics.median(times) * 1e3
 
 
-def edited(side: Side) -> Side:
+def edited(side: ComparisonSide) -> ComparisonSide:
     """Return the ICDs after 400 edits of all kinds."""
     rng, icd = random.Random(1), side.icd
     for number in range(400):
         result = EDITS[list(EDITS)[number % len(EDITS)]](icd, rng)
         icd = result.icd if result is not None else icd
-    return Side("edited", icd)
+    return ComparisonSide("edited", icd)
 
 
 def say(what: str, runs: int, work: Callable[[], object]) -> None:
@@ -65,13 +65,13 @@ def main() -> None:
         }
         say("load both", max(runs // 4, 3), lambda: inputs.sides([older, "icd"], []))
         for name, (first, second) in pairs.items():
-            number = len(report.make(first, second).changes)
+            number = len(report.make_report(first, second).changes)
             say(
                 f"compare {name} ({number} changes)",
                 runs,
-                partial(report.make, first, second),
+                partial(report.make_report, first, second),
             )
-        comparison = report.make(old, new)
+        comparison = report.make_report(old, new)
         for form in reports.FORMATS:
             say(
                 f"report of an older release as {form}",

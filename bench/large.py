@@ -30,7 +30,7 @@ ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "codegen")]
 
 from icdgen.diff import report  # noqa: E402
-from icdgen.diff.inputs.side import Side  # noqa: E402
+from icdgen.diff.inputs.side import ComparisonSide  # noqa: E402
 from icdgen.loading import load  # noqa: E402
 from icdgen.vectors.make import make  # noqa: E402
 from icdgen.vectors.write import text  # noqa: E402
@@ -106,8 +106,8 @@ def command_seconds(*words: object) -> float:
     return end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime
 
 
-def _compare(sides: list[Side], results: list[report.Report]) -> None:
-    results.append(report.make(*sides))
+def _compare(sides: list[ComparisonSide], results: list[report.DiffReport]) -> None:
+    results.append(report.make_report(*sides))
 
 
 def main() -> None:
@@ -143,10 +143,11 @@ def main() -> None:
             if not (options.diff or options.vectors or everything):
                 continue
             sides = [
-                Side(folder.name, load([folder], check=False).icd) for folder in folders
+                ComparisonSide(folder.name, load([folder], check=False).icd)
+                for folder in folders
             ]
             if options.diff or everything:
-                results: list[report.Report] = []
+                results: list[report.DiffReport] = []
                 spent = min(
                     seconds(partial(_compare, sides, results))
                     for _ in range(options.runs)

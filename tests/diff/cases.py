@@ -13,10 +13,10 @@ FOLDER = Path(__file__).parent / "rules"
 CASES = sorted(path for path in FOLDER.iterdir() if path.is_dir())
 
 
-def compared(case: Path) -> report.Report:
+def compared(case: Path) -> report.DiffReport:
     """What `icdgen diff previous current` finds, run in the case's folder."""
     with chdir(case):
-        return report.make(*inputs.sides(["previous", "current"], []))
+        return report.make_report(*inputs.sides(["previous", "current"], []))
 
 
 def printed(case: Path) -> str:

@@ -32,7 +32,8 @@ def changes(tmp_path, *replaced):
     (tmp_path / "new" / "demo.yaml").write_text(new)
     sides = inputs.sides([str(tmp_path / "old"), str(tmp_path / "new")], [])
     return [
-        (change.rule.code, change.message) for change in report.make(*sides).changes
+        (change.rule.code, change.message)
+        for change in report.make_report(*sides).changes
     ]
 
 

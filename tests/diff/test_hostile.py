@@ -11,7 +11,7 @@ import pytest
 from icdgen.diagnostics import Findings
 from icdgen.diff import report, reports
 from icdgen.diff.inputs import shown
-from icdgen.diff.inputs.side import Side, from_paths
+from icdgen.diff.inputs.side import ComparisonSide, from_paths
 from icdgen.loading import load
 from icdgen.show.machine import to_json
 from tests.conftest import ROOT
@@ -46,9 +46,9 @@ def containers(tree: object):
             yield from containers(item)
 
 
-def compared_both_ways(one: Side, other: Side) -> None:
+def compared_both_ways(one: ComparisonSide, other: ComparisonSide) -> None:
     for sides in ((one, other), (other, one)):
-        made = report.make(*sides)
+        made = report.make_report(*sides)
         for form in reports.FORMATS:
             assert isinstance(reports.get(form)(made), str)
 

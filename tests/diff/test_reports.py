@@ -27,9 +27,9 @@ def older(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def release(older) -> report.Report:
+def release(older) -> report.DiffReport:
     with chdir(ROOT):
-        return report.make(*inputs.sides([str(older), "icd"], []))
+        return report.make_report(*inputs.sides([str(older), "icd"], []))
 
 
 @cache

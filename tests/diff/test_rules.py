@@ -13,7 +13,7 @@ import pytest
 from icdgen.diff import rule
 from icdgen.diff.compare import RULES
 from icdgen.diff.layers import LAYERS
-from icdgen.diff.report import make
+from icdgen.diff.report import make_report
 from icdgen.loading import load
 from tests.diff.cases import CASES, compared, printed
 from tests.icd.files import write
@@ -106,5 +106,5 @@ def test_the_report_of_equal_icds_says_so():
     from icdgen.diff import inputs, reports
 
     with chdir(CASES[0]):
-        one = make(*inputs.sides(["current", "current"], []))
+        one = make_report(*inputs.sides(["current", "current"], []))
     assert reports.get("text")(one) == "current -> current\nno change\n"

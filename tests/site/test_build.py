@@ -240,7 +240,7 @@ def test_the_page_of_changes_draws_both_layouts_as_the_diff_does(tmp_path):
     )
     page = make([ROOT / "icd"], str(old)).files["changes.html"]
     whole = html.report(
-        report.make(one_side(str(old), []), one_side(str(ROOT / "icd"), []))
+        report.make_report(one_side(str(old), []), one_side(str(ROOT / "icd"), []))
     )
     drawings = [
         part.partition("</svg>")[0] for part in page.split('<svg class="layouts"')[1:]

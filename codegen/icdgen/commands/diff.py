@@ -24,7 +24,7 @@ from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.diff.accepted import Acceptance
-    from icdgen.diff.report import Report
+    from icdgen.diff.report import DiffReport
 
 _LAYERS = ("wire", "meaning", "source", "text", "additions")
 
@@ -114,7 +114,7 @@ def diff(
     if not (old.is_comparable(unchecked) and new.is_comparable(unchecked)):
         help = "correct them; --unchecked passes over what can be read and only breaks a rule"
         raise UserError("ICDs with errors are not compared", help)
-    comparison_report = report.make(old, new, _acceptances(accepted))
+    comparison_report = report.make_report(old, new, _acceptances(accepted))
     if sources:
         comparison_report.uses = uses.uses(
             comparison_report.comparison, comparison_report.changes, sources
@@ -143,7 +143,7 @@ def _acceptances(path: Path | None) -> list[Acceptance]:
 
 
 def _write(
-    comparison_report: Report, form: str, out: Path | None, everything: bool
+    comparison_report: DiffReport, form: str, out: Path | None, everything: bool
 ) -> None:
     from icdgen import tables
 

@@ -1,6 +1,7 @@
-"""Reader of ``.icdgen-accepted.yaml``: accepted changes with their reasons.
+"""Reader of ``.icdgen-accepted.yaml``: changes that the user accepted, with reasons.
 
-They no longer make `icdgen diff` fail.
+Accepted changes no longer make `icdgen diff` fail. `sort_changes` separates them from
+the other changes and returns the entries that match no change any more.
 """
 
 from __future__ import annotations
@@ -98,14 +99,17 @@ def sort_changes(
     """Return the changes that are not accepted, the accepted ones with the first
     matching entry, and unused entries.
     """
-    covered = [
-        (change, [entry for entry in entries if entry.covers(change)])
-        for change in changes
-    ]
-    used = {id(entry) for _, covering in covered for entry in covering}
-    accepted = [(change, covering[0]) for change, covering in covered if covering]
-    stale = [entry for entry in entries if id(entry) not in used]
-    return [change for change, covering in covered if not covering], accepted, stale
+    remaining: list[Change] = []
+    accepted: list[Accepted] = []
+    used: set[int] = set()
+    for change in changes:
+        matches = [entry for entry in entries if entry.covers(change)]
+        used.update(id(entry) for entry in matches)
+        if matches:
+            accepted.append((change, matches[0]))
+        else:
+            remaining.append(change)
+    return remaining, accepted, [entry for entry in entries if id(entry) not in used]
 
 
 def about_stale(entry: Acceptance) -> Finding:

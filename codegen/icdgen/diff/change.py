@@ -1,4 +1,7 @@
-"""Change between two ICDs."""
+"""Change between two ICDs: the result of a rule, as all reports receive it.
+
+`icdgen.diff.compare` creates the changes from the results of the rules.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from dataclasses import dataclass, field
 
 from icdgen.diagnostics import Place
 from icdgen.diff.pairs import Pair
-from icdgen.diff.rule import Rule
+from icdgen.diff.rule import DiffRule
 from icdgen.diff.where import Where
 
 # Lower limits of the confidence of certain and likely matches
@@ -21,7 +24,7 @@ class Change:
     names are equal.
     """
 
-    rule: Rule
+    rule: DiffRule
     message: str
     where: Where
     was: str
@@ -69,13 +72,9 @@ class Change:
         """Confidence of the match as a word; empty for a match by name."""
         if self.sure >= 1:
             return ""
-        return (
-            "certain"
-            if self.sure >= CERTAIN
-            else "likely"
-            if self.sure >= LIKELY
-            else "uncertain"
-        )
+        if self.sure >= CERTAIN:
+            return "certain"
+        return "likely" if self.sure >= LIKELY else "uncertain"
 
     @property
     def notes(self) -> list[str]:

@@ -1,4 +1,8 @@
-"""Comparison of two sets of ICDs with all changes between them."""
+"""Comparison of two sets of ICDs with all changes between them.
+
+`compare` matches the objects of both sides and runs each rule on the pairs for which
+the rule is registered. The import of the modules of ``changes`` registers their rules.
+"""
 
 from __future__ import annotations
 
@@ -19,15 +23,15 @@ from icdgen.diff.changes import (  # noqa: F401
     structs,
     text,
 )
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
 from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair
-from icdgen.diff.rule import REGISTERED, Check, CheckResult, Rule
+from icdgen.diff.rule import REGISTERED, Check, CheckResult, DiffRule
 from icdgen.icd.model import Icd
 from icdgen.wording import listing, quote
 
-RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
+RULES: dict[str, DiffRule] = dict(sorted(REGISTERED.items()))
 # (kind of pair, presence) -> check -> default code
 _CHECKS: dict[tuple[str, str], dict[Check, str]] = {}
 for _rule in RULES.values():
@@ -44,7 +48,7 @@ class Comparison:
 
     match: Match
     changes: list[Change]
-    context: Context
+    context: ComparisonContext
 
 
 def compare(old: Icd, new: Icd) -> Comparison:
@@ -52,7 +56,7 @@ def compare(old: Icd, new: Icd) -> Comparison:
 
     Order, formatting and spelling of formulas are ignored.
     """
-    context = Context(match(old, new))
+    context = ComparisonContext(match(old, new))
     # The sort is stable: within a layer, changes keep the order of the ICD.
     changes = sorted(
         _merge_struct_changes(_all_changes(context)),
@@ -105,7 +109,7 @@ def _struct_key(change: Change) -> object:
     return change.rule.code, change.old, change.new, sides[-1].at - sides[0].at
 
 
-def _all_changes(context: Context) -> Iterator[Change]:
+def _all_changes(context: ComparisonContext) -> Iterator[Change]:
     # Checks of whole ICDs name the pair of each result themselves.
     for check, code in _CHECKS["icd", "both"].items():
         for finding in check(context):
@@ -114,22 +118,22 @@ def _all_changes(context: Context) -> Iterator[Change]:
     for node in context.match.nodes:
         yield from _run("node", node, context)
         for owner in node.declared:
+            # Additions and removals of a node include its messages and enumerations.
             if not owner.changed or (not node.both and not owner.both):
-                continue  # additions and removals of the node include it
-            of, parts = (
-                ("message", "field")
-                if isinstance(owner, MessagePair)
-                else ("enum", "member")
-            )
-            yield from _run(of, owner, context)
+                continue
+            is_message = isinstance(owner, MessagePair)
+            yield from _run("message" if is_message else "enum", owner, context)
             for part in owner.parts if owner.both else ():
                 if part.changed:
-                    yield from _run(parts, part, context)
+                    yield from _run("field" if is_message else "member", part, context)
 
 
-def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
+def _run(of: str, pair: Pair, context: ComparisonContext) -> Iterator[Change]:
     # Rules are registered for pairs with both sides, or with one side only.
-    when = "both" if pair.both else "gone" if pair.after is None else "come"
+    if pair.both:
+        when = "both"
+    else:
+        when = "gone" if pair.after is None else "come"
     checks = _CHECKS.get((of, when), {})
     results = [
         (result.code or code, result)
@@ -140,7 +144,7 @@ def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
         yield _change(RULES[code], pair, result)
 
 
-def _change(rule: Rule, pair: Pair, result: CheckResult) -> Change:
+def _change(rule: DiffRule, pair: Pair, result: CheckResult) -> Change:
     old, new = result.places or pair.places(result.keys)
     return Change(
         rule=rule,
@@ -172,11 +176,17 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
     decisions = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)
-        affected_keys = [
-            name for entry in (before, after) if entry for name, _ in entry.held
-        ]
-        if before != after and any(name in keys for name in affected_keys):
-            decisions.append(
-                f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}"
-            )
+        # `held` of an erratum lists the keys that it corrects, with their values.
+        affected_keys: set[str] = set()
+        for entry in (before, after):
+            if entry is not None:
+                affected_keys.update(name for name, _ in entry.held)
+        if before == after or affected_keys.isdisjoint(keys):
+            continue
+        if before is None:
+            decisions.append(f"{key} is new")
+        elif after is None:
+            decisions.append(f"{key} is gone")
+        else:
+            decisions.append(f"{key} says otherwise")
     return tuple(decisions)

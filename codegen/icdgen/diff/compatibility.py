@@ -1,4 +1,9 @@
-"""Compatibility of old and new software: ground stations, telecommands and log files."""
+"""Compatibility of old and new software: ground stations, telecommands and log files.
+
+`directions` answers three questions from a comparison, each for every frame of the old
+ICD: can an old ground station read new telemetry, can old telecommands still be sent,
+and can old programs read new logs. The report shows the frames that are not compatible.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +26,7 @@ from icdgen.wording import quote
 YES, PARTLY, NO = "yes", "partly", "no"
 
 
-class Frame(NamedTuple):
+class IncompatibleFrame(NamedTuple):
     """Frame that is not fully compatible."""
 
     node: str
@@ -31,7 +36,7 @@ class Frame(NamedTuple):
     reasons: tuple[str, ...]
 
 
-class Direction(NamedTuple):
+class DirectionCompatibility(NamedTuple):
     """Compatibility in one direction.
 
     ``frames`` are the frames that are not fully compatible. ``general``: reasons that
@@ -41,12 +46,12 @@ class Direction(NamedTuple):
     key: str
     question: str
     verdict: str
-    frames: tuple[Frame, ...]
+    frames: tuple[IncompatibleFrame, ...]
     total: int
     general: tuple[str, ...]
 
     @property
-    def worst_first(self) -> list[Frame]:
+    def worst_first(self) -> list[IncompatibleFrame]:
         """Frames, incompatible ones first."""
         return sorted(self.frames, key=lambda frame: frame.verdict != NO)
 
@@ -54,24 +59,50 @@ class Direction(NamedTuple):
 Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
 
 
-def directions(comparison: Comparison) -> tuple[Direction, ...]:
+def directions(comparison: Comparison) -> tuple[DirectionCompatibility, ...]:
     """Return the compatibility of telemetry, telecommands and log files."""
-    (telemetry_facts, log_facts), (telecommand_facts, _) = (
-        _facts(comparison, direction) for direction in ("telemetry", "telecommand")
+    telemetry_facts, log_facts = _facts(comparison, "telemetry")
+    telecommand_facts, _ = _facts(comparison, "telecommand")
+    old_reads_new = _frames(
+        comparison,
+        "telemetry_id",
+        lambda pair: _read_compatibility(pair, pair.new, pair.old),
+    )
+    new_obeys_old = _frames(comparison, "telecommand_id", _telecommand_compatibility)
+    new_reads_old_logs = _frames(
+        comparison,
+        "telemetry_id",
+        lambda pair: _read_compatibility(pair, pair.old, pair.new),
+        logged=True,
     )
     return (
-        _answer("telemetry", "Can an old ground station read the new device's telemetry?",
-                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.new, pair.old)), telemetry_facts),
-        _answer("telecommands", "Can old telecommands still be sent?",
-                _frames(comparison, "telecommand_id", _new_obeys_old), telecommand_facts),
-        _answer("logs", "Can new software read old log files?",
-                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.old, pair.new), logged=True), log_facts),
-    )  # fmt: skip
+        _answer(
+            "telemetry",
+            "Can an old ground station read the new device's telemetry?",
+            old_reads_new,
+            telemetry_facts,
+        ),
+        _answer(
+            "telecommands",
+            "Can old telecommands still be sent?",
+            new_obeys_old,
+            telecommand_facts,
+        ),
+        _answer(
+            "logs",
+            "Can new software read old log files?",
+            new_reads_old_logs,
+            log_facts,
+        ),
+    )
 
 
 def _answer(
-    key: str, question: str, frames: list[Frame | None], general: tuple[str, ...]
-) -> Direction:
+    key: str,
+    question: str,
+    frames: list[IncompatibleFrame | None],
+    general: tuple[str, ...],
+) -> DirectionCompatibility:
     affected = tuple(frame for frame in frames if frame is not None)
     if (
         affected
@@ -81,7 +112,9 @@ def _answer(
         verdict = NO
     else:
         verdict = PARTLY if affected or general else YES
-    return Direction(key, question, verdict, affected, len(frames), general)
+    return DirectionCompatibility(
+        key, question, verdict, affected, len(frames), general
+    )
 
 
 def _facts(
@@ -94,15 +127,13 @@ def _facts(
     logs: list[str] = []
     for change in comparison.changes:
         if change.code in ("DIF120", "DIF121", "DIF134") and change.breaks:
-            fact = change.where.section
+            fact = change.where.section  # "protocol.link.framing.escape"
             if isinstance(change.pair, NodePair) and not _is_of_all(
                 comparison, change.pair, fact, direction
             ):
                 continue
-            steps = fact.split(".")
-            (logs if any("log" in step for step in steps[1:2]) else wires).append(
-                change.message
-            )
+            is_of_log = any("log" in step for step in fact.split(".")[1:2])
+            (logs if is_of_log else wires).append(change.message)
         elif change.code == "DIF116" and change.breaks:
             wires.append(change.message)
         elif change.code in ("DIF122", "DIF123"):
@@ -126,7 +157,7 @@ def _is_of_all(
 
 def _frames(
     comparison: Comparison, key: str, judge: Judge, logged: bool = False
-) -> list[Frame | None]:
+) -> list[IncompatibleFrame | None]:
     """Return an entry for each frame of the old ICD; None for fully compatible frames.
 
     A frame of a shared ICD counts once.
@@ -149,8 +180,9 @@ def _frames(
         for number, message in old:
             if wanted and number not in wanted:
                 continue
-            now = _counterpart(comparison, message, new.get(number, []))
-            verdict, reasons = _verdict(comparison, key, message, now, judge)
+            verdict, reasons = _verdict(
+                comparison, key, message, new.get(number, []), judge
+            )
             if verdict != NO and key.removesuffix("_id") in changed_formats:
                 verdict, reasons = NO, ("its packet format is another",)
             # Nodes that include the same ICD share its messages.
@@ -160,28 +192,29 @@ def _frames(
             results.append(
                 None
                 if verdict == YES
-                else Frame(node.old.name, message.name, number, verdict, reasons)
+                else IncompatibleFrame(
+                    node.old.name, message.name, number, verdict, reasons
+                )
             )
     return results
 
 
-def _counterpart(
-    comparison: Comparison, old: Message, candidates: list[Message]
-) -> Message | None:
-    """Return the counterpart of the old message among the messages of an id,
-    otherwise the only message of this id.
-    """
-    after = comparison.match.messages[id(old)].after
-    return next(
-        (message for message in candidates if message is after),
-        candidates[0] if len(candidates) == 1 else None,
-    )
-
-
 def _verdict(
-    comparison: Comparison, key: str, old: Message, new: Message | None, judge: Judge
+    comparison: Comparison,
+    key: str,
+    old: Message,
+    candidates: list[Message],
+    judge: Judge,
 ) -> tuple[str, tuple[str, ...]]:
+    """Return the compatibility of a message of the old ICD, with reasons.
+
+    ``candidates``: messages of the new ICD that have its id.
+    """
     pair = comparison.match.messages[id(old)]
+    # Multiplexed messages share an id: the counterpart is one of them.
+    new = next((message for message in candidates if message is pair.after), None)
+    if new is None and len(candidates) == 1:
+        new = candidates[0]
     if new is None:
         after = getattr(pair.after, key, None)
         return NO, (f"its id is {after} now" if after is not None else "it is gone",)
@@ -193,7 +226,7 @@ def _verdict(
     return judge(pair)
 
 
-def _read(
+def _read_compatibility(
     pair: MessagePair, sent: Message, reader: Message
 ) -> tuple[str, tuple[str, ...]]:
     """Return the compatibility of frames with the layout ``sent`` for software with the
@@ -220,13 +253,9 @@ def _read(
     ]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = (
-        NO
-        if len(absent) + len(wrong)
-        == sum(not line.is_read_only for line in lines(reader.layout))
-        else PARTLY
-    )
-    return verdict, tuple(reasons)
+    # Without any field that is read correctly, the frame is of no use to the reader.
+    expected = sum(not line.is_read_only for line in lines(reader.layout))
+    return NO if len(absent) + len(wrong) == expected else PARTLY, tuple(reasons)
 
 
 def _lines_by_reason(items: Iterable[tuple[str, str]]) -> list[str]:
@@ -277,7 +306,8 @@ def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str,
     return (PARTLY if fitting else NO), (text,)
 
 
-def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
+def _telecommand_compatibility(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
+    """Return whether the new device obeys telecommands that old software sends."""
     old, new = pair.old, pair.new
     lengths, length_reasons = _lengths(old, new, "are sent")
     if lengths == NO:
@@ -289,9 +319,9 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
         *length_reasons,
         *_lines_by_reason((part.any.name, why) for part, why, _ in results if why),
     ]
-    return (
-        NO if any(refused for *_, refused in results) else PARTLY if reasons else YES
-    ), tuple(reasons)
+    if any(is_refused for *_, is_refused in results):
+        return NO, tuple(reasons)
+    return PARTLY if reasons else YES, tuple(reasons)
 
 
 def _disobeyed(pair: FieldPair) -> tuple[str, bool]:

@@ -1,4 +1,7 @@
-"""Data of a comparison that several rules of the diff need, computed once."""
+"""Data of a comparison that several rules of the diff need, computed once.
+
+Every rule receives the `ComparisonContext` as its last argument.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.packet_formats import DIRECTIONS
 
 
-class Context:
+class ComparisonContext:
     """Pair of ICDs with cached results."""
 
     def __init__(self, match: Match) -> None:
@@ -47,12 +50,13 @@ class Context:
         enumeration.
         """
         users: dict[int, list[str]] = {}
-        for message in (m for node in self.match.new.nodes for m in node.messages):
-            for field in lines(message.layout):
-                if field.enum is not None:
-                    users.setdefault(id(field.enum), []).append(
-                        f"{message.name}: {field.name}"
-                    )
+        for node in self.match.new.nodes:
+            for message in node.messages:
+                for field in lines(message.layout):
+                    if field.enum is not None:
+                        users.setdefault(id(field.enum), []).append(
+                            f"{message.name}: {field.name}"
+                        )
         return users
 
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
@@ -110,14 +114,16 @@ class Context:
         """Return the messages of one side that the node does not use on the other side,
         although they are still declared.
         """
-        messages, other = (
+        used_messages = [
             icd.messages_of(side_of_node) for icd, side_of_node in self.sides(node)
-        )
-        if side:
-            messages, other = other, messages
-        used = {id(self.pair(m)) for m in other}
-        pairs = ((m, self.pair(m)) for m in messages)
-        return [m for m, pair in pairs if pair.both and id(pair) not in used]
+        ]
+        used_on_other_side = {id(self.pair(m)) for m in used_messages[1 - side]}
+        return [
+            message
+            for message in used_messages[side]
+            if self.pair(message).both
+            and id(self.pair(message)) not in used_on_other_side
+        ]
 
 
 def free_before(pair: FieldPair) -> bool:

@@ -1,5 +1,8 @@
-"""Protocol section as single facts: differences, their places, and their effect on the
-packet format.
+"""Differences of the protocol section between two nodes.
+
+`facts` compares the YAML trees key by key and yields one entry for each differing value
+with its path, such as ``protocol.link.framing.escape``. `packet_formats_differ` tells
+whether such differences change the bytes around the data of a message.
 """
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ AROUND = re.compile(r"protocol\.link\.(framing|header|trailer|packets|checksums)
 RESPONSES = re.compile(r"protocol\.link\.(commands|requests)\b.*")
 
 
-class Fact(NamedTuple):
+class FactDifference(NamedTuple):
     """Fact that differs; ``old`` or ``new`` has the value None if it is not declared."""
 
     path: str  # "protocol.link.framing.escape"
@@ -40,7 +43,7 @@ class Fact(NamedTuple):
     is_word: bool
 
 
-def facts(old: Node, new: Node) -> Iterator[Fact]:
+def facts(old: Node, new: Node) -> Iterator[FactDifference]:
     """Yield all facts that differ, in the order of the old node, then of the new node."""
     before, after = (
         _Side(node.protocol, node.source.get("protocol")) for node in (old, new)
@@ -69,7 +72,9 @@ class _Side(NamedTuple):
         return _Side(value[step], None, self.place)
 
 
-def _compare(path: str, before: _Side, after: _Side, is_word: bool) -> Iterator[Fact]:
+def _compare(
+    path: str, before: _Side, after: _Side, is_word: bool
+) -> Iterator[FactDifference]:
     old, new = before.value, after.value
     # True equals 1 in Python, but not in YAML.
     if old == new and type(old) is type(new):
@@ -97,7 +102,7 @@ def _compare(path: str, before: _Side, after: _Side, is_word: bool) -> Iterator[
                 is_word,
             )
     else:
-        yield Fact(path, old, new, (before.place, after.place), is_word)
+        yield FactDifference(path, old, new, (before.place, after.place), is_word)
 
 
 def _row_names(rows: list[Any]) -> dict[str, int]:
@@ -108,15 +113,13 @@ def _row_names(rows: list[Any]) -> dict[str, int]:
     index_by_name: dict[str, int] = {}
     occurrences: Counter[str] = Counter()
     for index, row in enumerate(rows):
-        key = (
-            next((str(row[k]) for k in NAMES if k in row), str(index))
-            if isinstance(row, dict)
-            else str(index)
-        )
-        occurrences[key] += 1
-        index_by_name[f"{key}#{occurrences[key]}" if occurrences[key] > 1 else key] = (
-            index
-        )
+        name = str(index)
+        if isinstance(row, dict):
+            name = next((str(row[key]) for key in NAMES if key in row), name)
+        occurrences[name] += 1
+        if occurrences[name] > 1:
+            name = f"{name}#{occurrences[name]}"
+        index_by_name[name] = index
     return index_by_name
 
 
@@ -132,7 +135,8 @@ def shown(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(shown(item) for item in value)}]"
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {shown(item)}' for key, item in value.items() if key not in WORDS)}}}"
+        entries = [f"{k}: {shown(item)}" for k, item in value.items() if k not in WORDS]
+        return f"{{{', '.join(entries)}}}"
     return str(value)
 
 
@@ -156,19 +160,16 @@ def _form(icd: Icd, node: Node, direction: str) -> object:
     """
     stream = protocol.of(icd, node).stream
     assert stream is not None
+    # `PacketField.values` has the value in telecommands first, then in telemetry.
     place = int(direction == "telemetry")
     packets = []
     for packet in stream.packets_of(direction):
-        # `values` of a constant belong to one direction; defaults of other roles do not
-        # change the format.
-        fields = [
-            (
-                replace(field, values=(field.values[place],) * 2)
-                if field.role == "constant"
-                else replace(field, values=(0, 0))
-            )
-            for field in packet.fields
-        ]
-        named = replace(packet, name="", directions=(), fields=tuple(fields))
-        packets.append(astuple(named))
+        fields = []
+        for field in packet.fields:
+            # Only the constant of this direction counts; defaults of other roles do not
+            # change the format.
+            value = field.values[place] if field.role == "constant" else 0
+            fields.append(replace(field, values=(value, value)))
+        unnamed = replace(packet, name="", directions=(), fields=tuple(fields))
+        packets.append(astuple(unnamed))
     return stream.delimited_by, stream.escaping, packets

@@ -1,5 +1,8 @@
 """Names and types in generated code, for each language, and their differences between
 two ICDs.
+
+The rules of the layer ``source`` and the search for uses in the user's sources need
+them. The names come from the same naming policies that the code generators use.
 """
 
 from __future__ import annotations
@@ -109,21 +112,16 @@ def symbols_in(
     ``owner``.
     """
     for language, policy in POLICIES.items():
-        identifiers: Iterable[Identifier] = ()
+        identifiers: list[Identifier] = []
         if isinstance(owner, EnumDescription) and isinstance(declared, EnumDescription):
-            members = (member for member in declared.members if member.part is part)
-            identifiers = (
-                identifier
-                for member in members
-                for identifier in policy.member(owner, member)
-            )
+            for member in declared.members:
+                if member.part is part:
+                    identifiers += policy.member(owner, member)
         elif isinstance(owner, Composite) and isinstance(declared, Composite):
-            identifiers = policy.fields(owner, (declared.member_for[id(part)],))
-        yield from (
-            (language, identifier)
-            for identifier in identifiers
-            if identifier.part is part
-        )
+            identifiers += policy.fields(owner, (declared.member_for[id(part)],))
+        for identifier in identifiers:
+            if identifier.part is part:
+                yield language, identifier
 
 
 def _names(symbols: Iterable[Symbol], type_in_rust: str = "") -> tuple[Name, ...]:
@@ -250,11 +248,8 @@ class Generated:
         # With --unchecked, an ICD may contain fields that backends reject.
         if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
-        before, after = (
-            self.before.field(pair.owner.old, pair.old),
-            self.after.field(pair.owner.new, pair.new),
-        )
-        after = copy(after)
+        before = self.before.field(pair.owner.old, pair.old)
+        after = copy(self.after.field(pair.owner.new, pair.new))
         enum = (
             None if after.enum is None else self._match.enums.get(id(after.enum.model))
         )
@@ -262,11 +257,12 @@ class Generated:
             after.enum = self.before.description.enum(enum.old)
         if self._is_of_renamed_node(pair.owner):
             after.message = before.message
-        types = (
-            (language, type_of(language, before), type_of(language, after))
-            for language in POLICIES
-        )
-        return [(language, old, new) for language, old, new in types if old != new]
+        changes = []
+        for language in POLICIES:
+            old, new = type_of(language, before), type_of(language, after)
+            if old != new:
+                changes.append((language, old, new))
+        return changes
 
 
 def _declaration(part: Line | Member) -> ModelPart:

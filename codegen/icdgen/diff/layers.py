@@ -1,4 +1,6 @@
-"""Layers of changes, in descending order of severity."""
+"""Layers of changes, in descending order of severity: the first digit of a code of the
+diff (DIF1xx to DIF4xx) is the position of its layer.
+"""
 
 from __future__ import annotations
 

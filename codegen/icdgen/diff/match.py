@@ -1,7 +1,9 @@
 """Matching of the objects of two ICDs: first by name, then the remaining objects by ids
 and layout.
 
-The matching is symmetric: swapped ICDs result in the same pairs.
+In: two ICDs. Out: a `Match` with a pair for each node, message, field, enumeration and
+member; an object without counterpart has None on the other side. The matching is
+symmetric: swapped ICDs result in the same pairs.
 """
 
 from __future__ import annotations
@@ -33,13 +35,13 @@ SAME_ENUM = 0.5
 SAME_FIELD = 0.6
 
 
-class _Named(Protocol):
+class _HasName(Protocol):
     @property
     def name(self) -> str: ...
 
 
 Thing = TypeVar("Thing")
-Named = TypeVar("Named", bound=_Named)
+Named = TypeVar("Named", bound=_HasName)
 Declared = TypeVar("Declared", Enum, Message)
 Paired = TypeVar("Paired", EnumPair, MessagePair)
 Two = tuple[Thing, Thing, float]  # old, new, and confidence of the match
@@ -90,7 +92,7 @@ def _side_by_side(
     """Return pairs of equal names, then ``likely`` pairs of the remaining objects, then
     objects of one side only.
     """
-    # Without a rest on one side, no renaming is possible.
+    # If one side has no remaining object, no renaming is possible.
     pairs, remaining = _by_name(old, new)
     if all(remaining):
         pairs += likely(pairs, *remaining)
@@ -167,18 +169,19 @@ def _best_pairs(
 def _renamed_nodes(
     pairs: list[Two[Node]], old: list[Node], new: list[Node]
 ) -> list[Two[Node]]:
-    return _best_pairs(old, new, _node_score, SAME_NODE, _node_keys)
+    """Return pairs of nodes with different names and common messages."""
 
+    def keys(node: Node) -> frozenset[object]:
+        return frozenset((m.name, m.kind, m.ids) for m in node.messages)
 
-def _node_keys(node: Node) -> frozenset[object]:
-    return frozenset((m.name, m.kind, m.ids) for m in node.messages)
+    def score(old_node: Node, new_node: Node) -> float:
+        old_keys, new_keys = keys(old_node), keys(new_node)
+        if not old_keys and not new_keys:
+            return 0.0
+        alike = likeness(old_node.name, new_node.name)
+        return 0.9 * overlap(old_keys, new_keys) + 0.1 * alike
 
-
-def _node_score(old: Node, new: Node) -> float:
-    keys = _node_keys(old), _node_keys(new)
-    return (
-        0.9 * overlap(*keys) + 0.1 * likeness(old.name, new.name) if any(keys) else 0.0
-    )
+    return _best_pairs(old, new, score, SAME_NODE, keys)
 
 
 @dataclass(eq=False)
@@ -271,12 +274,11 @@ def _name(left: _Unmatched[Any]) -> Iterable[object]:
 
 
 def _moved_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
-    return (
-        1.0
-        # Many ICDs have an enumeration `Mode`, so the name alone proves nothing.
-        if old.thing.name == new.thing.name and overlap(old.members, new.members) >= 0.3
-        else 0.0
+    # Many ICDs have an enumeration `Mode`, so the name alone proves nothing.
+    is_same = (
+        old.thing.name == new.thing.name and overlap(old.members, new.members) >= 0.3
     )
+    return 1.0 if is_same else 0.0
 
 
 def _member_keys(left: _Unmatched[Enum]) -> Iterable[object]:
@@ -330,13 +332,10 @@ def _rank(message: Message) -> object:
 
 
 def _moved_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> float:
-    same = left.thing.name == right.thing.name and left.thing.kind == right.thing.kind
-    return (
-        1.0
-        if same
-        and (left.thing.ids == right.thing.ids or _layouts_alike(left, right) > 0.5)
-        else 0.0
-    )
+    old, new = left.thing, right.thing
+    if old.name != new.name or old.kind != new.kind:
+        return 0.0
+    return 1.0 if old.ids == new.ids or _layouts_alike(left, right) > 0.5 else 0.0
 
 
 def _message_keys(left: _Unmatched[Message]) -> Iterable[object]:
@@ -357,7 +356,9 @@ def _message_keys(left: _Unmatched[Message]) -> Iterable[object]:
 def _renamed_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> float:
     """Return the score of two messages with different names, and perhaps different ids."""
     old, new = left.thing, right.thing
-    if left.home is not right.home or not _same_direction(old, new):
+    # A configuration message is a telecommand and telemetry at once.
+    is_same_direction = old.kind == new.kind or CONFIGURATION in (old.kind, new.kind)
+    if left.home is not right.home or not is_same_direction:
         return 0.0
     same_id = any(
         a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True)
@@ -376,10 +377,6 @@ def _renamed_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> f
     ):
         return 0.0  # too few fields for a match by layout alone
     return layout + 0.15 * alike
-
-
-def _same_direction(old: Message, new: Message) -> bool:
-    return old.kind == new.kind or CONFIGURATION in (old.kind, new.kind)
 
 
 def _ids(message: Message) -> tuple[int | None, int | None]:
@@ -431,12 +428,8 @@ def _place(field: Line) -> tuple[int, str]:
 def _renamed_fields(
     pair: MessagePair, pairs_by_name: list[Two[Line]], old: list[Line], new: list[Line]
 ) -> list[Two[Line]]:
-    spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
-                            ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
-    spans = {
-        id(f): span
-        for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)
-    }
+    spans = {id(line): position(pair.old_node, line) for line in old}
+    spans.update((id(line), position(pair.new_node, line)) for line in new)
     shifts = _Shifts(pairs_by_name)
 
     def sense(line: Line) -> object:
@@ -448,10 +441,8 @@ def _renamed_fields(
         return spans[id(line)], (line.bits, sense(line))
 
     def score(old_line: Line, new_line: Line) -> float:
-        same_kind, same_span = (
-            kind(old_line) == kind(new_line),
-            spans[id(old_line)] == spans[id(new_line)],
-        )
+        same_kind = kind(old_line) == kind(new_line)
+        same_span = spans[id(old_line)] == spans[id(new_line)]
         # A field that changed both position and size has no evidence left but its name.
         if not same_span and (old_line.bits != new_line.bits or not same_kind):
             return 0.0
@@ -497,19 +488,14 @@ def _in_order(result: Match) -> None:
     """Sort the pairs in the order of the new ICD; removed objects come last, in their
     old order.
     """
-    nodes = (*result.old.nodes, *result.new.nodes)
-    rows = (
-        declarations for node in nodes for declarations in (node.messages, node.enums)
-    )
-    places = {
-        id(thing): number
-        for declarations in rows
-        for number, thing in enumerate(declarations)
-    }
+    places: dict[int, int] = {}
+    for node in (*result.old.nodes, *result.new.nodes):
+        for declarations in (node.messages, node.enums):
+            places.update((id(thing), i) for i, thing in enumerate(declarations))
 
     def rank(pair: DeclaredPair) -> tuple[bool, int]:
         return pair.after is None, places[id(pair.any)]
 
-    for node in result.nodes:
-        node.messages.sort(key=rank)
-        node.enums.sort(key=rank)
+    for pair_of_nodes in result.nodes:
+        pair_of_nodes.messages.sort(key=rank)
+        pair_of_nodes.enums.sort(key=rank)

@@ -1,4 +1,8 @@
-"""Moved fields: shifted by an insertion before them, moved as a block, or moved alone."""
+"""Moved fields: shifted by an insertion before them, moved as a block, or moved alone.
+
+`moves` groups the moved fields of a message, so that an inserted field is reported as
+one change and not as one for each field behind it.
+"""
 
 from __future__ import annotations
 

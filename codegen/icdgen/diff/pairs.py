@@ -1,6 +1,8 @@
-"""Pairs of old and new objects.
+"""Pairs of old and new objects: the data structures that `icdgen.diff.match` fills and
+that the rules read.
 
-An object that exists in one ICD only has None on the other side.
+An object that exists in one ICD only has None on the other side. This module also
+defines when two fields occupy the same bits (`FieldPair.same_bits`).
 """
 
 from __future__ import annotations
@@ -183,7 +185,10 @@ class MessagePair(_DeclaredPair[Message, FieldPair]):
     @cached_property
     def changed(self) -> bool:
         return (
-            self.before != self.after or self.reordered or self.has_another_vocabulary
+            self.before != self.after
+            # The byte and bit order of the node decide where the fields are.
+            or orders(self.old_node) != orders(self.new_node)
+            or self.has_another_vocabulary
         )
 
     def where(self) -> Where:
@@ -201,11 +206,6 @@ class MessagePair(_DeclaredPair[Message, FieldPair]):
     @property
     def gained(self) -> list[FieldPair]:
         return [pair for pair in self.parts if pair.before is None]
-
-    @property
-    def reordered(self) -> bool:
-        """Whether byte or bit order differs."""
-        return orders(self.old_node) != orders(self.new_node)
 
 
 @dataclass(eq=False)

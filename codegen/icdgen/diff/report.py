@@ -1,4 +1,8 @@
-"""Content of a report on a comparison."""
+"""Content of a report on a comparison, before it is written in a format.
+
+`make_report` is the entry of the package: it compares two sides and evaluates the
+result. The formats are in ``reports``.
+"""
 
 from __future__ import annotations
 
@@ -9,32 +13,32 @@ from dataclasses import dataclass, replace
 from icdgen.diff.accepted import Acceptance, sort_changes
 from icdgen.diff.change import Change
 from icdgen.diff.compare import Comparison, compare
-from icdgen.diff.compatibility import Direction, directions
-from icdgen.diff.inputs.side import Side
+from icdgen.diff.compatibility import DirectionCompatibility, directions
+from icdgen.diff.inputs.side import ComparisonSide
 from icdgen.diff.layers import LAYERS
-from icdgen.diff.uses import Use
-from icdgen.diff.version import Step, step
+from icdgen.diff.uses import NameUse
+from icdgen.diff.version import VersionStep, step
 
 ADDITIONS = "additions"
 
 
 @dataclass
-class Report:
+class DiffReport:
     """Report on a comparison.
 
     ``changes`` contains the changes that are not accepted. Places refer to files as the
     user named them.
     """
 
-    old: Side
-    new: Side
+    old: ComparisonSide
+    new: ComparisonSide
     comparison: Comparison
     changes: list[Change]
     accepted: list[tuple[Change, Acceptance]]
     stale: list[Acceptance]
-    directions: tuple[Direction, ...]
-    step: Step
-    uses: Sequence[Use] | None = None  # None: not requested
+    directions: tuple[DirectionCompatibility, ...]
+    step: VersionStep
+    uses: Sequence[NameUse] | None = None  # None: not requested
 
     def of_layer(self, layer: str) -> list[Change]:
         return [change for change in self.changes if change.layer == layer]
@@ -58,7 +62,7 @@ class Report:
         ]
 
 
-def _placed(change: Change, old: Side, new: Side) -> Change:
+def _placed(change: Change, old: ComparisonSide, new: ComparisonSide) -> Change:
     """Return the change with places in files as the user named them."""
     places = old.place(change.old), new.place(change.new)
     return (
@@ -68,12 +72,14 @@ def _placed(change: Change, old: Side, new: Side) -> Change:
     )
 
 
-def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report:
+def make_report(
+    old: ComparisonSide, new: ComparisonSide, acceptances: Sequence[Acceptance] = ()
+) -> DiffReport:
     """Return the report on two sides."""
     comparison = compare(old.icd, new.icd)
     comparison.changes = [_placed(change, old, new) for change in comparison.changes]
     sorted_changes = sort_changes(comparison.changes, acceptances)
-    return Report(
+    return DiffReport(
         old,
         new,
         comparison,

@@ -1,4 +1,8 @@
-"""Rules of the diff and their registration by the modules of ``changes``."""
+"""Rules of the diff and their registration by the modules of ``changes``.
+
+A rule is a function with the decorator `rule`: it receives a pair and the context, and
+yields a `CheckResult` for each change. ``changes/<theme>.md`` documents the rules.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +41,7 @@ PAGES = Path(__file__).parent / "changes"
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class DiffRule:
     """Rule of the diff: a kind of change.
 
     The first digit of its code is the layer: 1 wire, 2 meaning, 3 source, 4 text.
@@ -65,7 +69,7 @@ class Rule:
         return self.page.title
 
 
-REGISTERED: dict[str, Rule] = {}
+REGISTERED: dict[str, DiffRule] = {}
 
 
 def rule(
@@ -86,7 +90,7 @@ def rule(
         if code in REGISTERED:
             raise ValueError(f"two rules are called {code}")
         theme = check.__module__.rpartition(".")[2]
-        REGISTERED[code] = Rule(
+        REGISTERED[code] = DiffRule(
             code, LAYERS[int(code[3]) - 1], of, theme, check, severity, addition, when
         )
         return check

@@ -1,4 +1,8 @@
-"""Similarity of names in spelling and in meaning."""
+"""Similarity of names in spelling and in meaning.
+
+The matching uses `likeness` and `overlap` as scores; the rules use `same_sense` and
+`extends` to separate a corrected spelling from another meaning.
+"""
 
 from __future__ import annotations
 
@@ -44,20 +48,15 @@ def other_senses(old: Enum, new: Enum) -> list[int]:
     """Return the values whose names have different meanings; for ranges, their first
     and last value.
     """
-    ends = sorted(
-        {
-            value
-            for enum in (old, new)
-            for member in enum.members
-            for value in (member.value, member.last)
-        }
-    )
-    named = ((value, old.member_of(value), new.member_of(value)) for value in ends)
-    return [
-        value
-        for value, was, now in named
-        if was and now and not same_sense(was.name, now.name)
-    ]
+    ends: set[int] = set()
+    for member in (*old.members, *new.members):
+        ends |= {member.value, member.last}
+    values = []
+    for value in sorted(ends):
+        was, now = old.member_of(value), new.member_of(value)
+        if was and now and not same_sense(was.name, now.name):
+            values.append(value)
+    return values
 
 
 @lru_cache(maxsize=1 << 18)

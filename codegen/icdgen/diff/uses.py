@@ -1,4 +1,8 @@
-"""Uses of changed names in the user's sources."""
+"""Uses of changed names in the user's sources, for ``icdgen diff --uses``.
+
+`uses` splits C, Python and Rust sources into tokens, without a parser for the language,
+and compares the identifiers with the old generated names of the changes.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,6 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
-from itertools import chain
 from pathlib import Path
 
 from icdgen.diff.change import Change
@@ -45,7 +48,7 @@ _INNER = re.compile(_NAME)
 _LEXERS = {"c": _C_LIKE, "rust": _C_LIKE, "python": _PYTHON}
 
 
-class Use(NamedTuple):
+class NameUse(NamedTuple):
     """Use of a generated name in a source of the user, with the changes of that name."""
 
     file: str
@@ -72,13 +75,13 @@ _ChangesByName = dict[str, dict[str, list[Change]]]
 
 def uses(
     comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]
-) -> list[Use]:
+) -> list[NameUse]:
     """Return all uses of changed names, by file and line.
 
     Comments and strings are ignored. Raises `UserError`.
     """
     changed_names = _changed_names(comparison, changes)
-    results: list[Use] = []
+    results: list[NameUse] = []
     for path in dict.fromkeys(file for top in paths for file in _sources(top)):
         language = SUFFIXES[path.suffix.lower()]
         if changed_names[language]:
@@ -139,7 +142,9 @@ def _sources(top: Path) -> Iterator[Path]:
         )
 
 
-def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterator[Use]:
+def _in_file(
+    path: Path, language: str, changed_names: _ChangesByName
+) -> Iterator[NameUse]:
     try:
         with open(path, "rb") as file:
             text = file.read(_MOST).decode("utf-8", "replace")
@@ -154,22 +159,20 @@ def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterat
     mentioned = {name for name, _ in tokens}
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
     for name, start in tokens:
-        touched = changed_names.get(name, {}).items()
-        rows = [
-            changes
-            for stem, changes in touched
-            if not stem or _mentions(language, mentioned, stem)
-        ]
-        if rows:
+        changes: list[Change] = []
+        for stem, changes_of_name in changed_names.get(name, {}).items():
+            if not stem or _mentions(language, mentioned, stem):
+                changes += changes_of_name
+        if changes:
             number = bisect_right(starts, start)
             line = text[starts[number - 1] :].split("\n", 1)[0].rstrip("\r")
-            yield Use(
+            yield NameUse(
                 str(path),
                 number,
                 start - starts[number - 1] + 1,
                 name,
                 line,
-                tuple(dict.fromkeys(chain(*rows))),
+                tuple(dict.fromkeys(changes)),
             )
 
 

@@ -1,4 +1,4 @@
-"""Semantic version step of the generated packages."""
+"""Semantic version step of the generated packages that a set of changes requires."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from icdgen.wording import count, listing
 MAJOR, MINOR, PATCH, NONE = "major", "minor", "patch", "none"
 
 
-class Step(NamedTuple):
+class VersionStep(NamedTuple):
     """Version step with its reason.
 
     ``step``: ``major``, ``minor``, ``patch`` or ``none``. ``deciding``: codes of the
@@ -24,7 +24,7 @@ class Step(NamedTuple):
     deciding: tuple[str, ...] = ()
 
 
-def step(changes: list[Change]) -> Step:
+def step(changes: list[Change]) -> VersionStep:
     """Return the step of Semantic Versioning. Accepted changes count too."""
     breaking = [change for change in changes if change.breaks]
     additions = [change for change in changes if change.addition]
@@ -36,19 +36,20 @@ def step(changes: list[Change]) -> Step:
             for layer in LAYERS
             if counts[layer]
         ]
-        return Step(
+        return VersionStep(
             MAJOR,
             f"{listing(counts_by_layer)}, the first: {breaking[0].message}",
             _codes(breaking),
         )
     if additions:
-        reason = f"nothing breaks, {count(len(additions), 'addition')}, the first: {additions[0].message}"
-        return Step(MINOR, reason, _codes(additions))
+        number = count(len(additions), "addition")
+        reason = f"nothing breaks, {number}, the first: {additions[0].message}"
+        return VersionStep(MINOR, reason, _codes(additions))
     if changes:
-        return Step(
+        return VersionStep(
             PATCH, f"{count(len(changes), 'change')} of words only", _codes(changes)
         )
-    return Step(NONE, "nothing changed")
+    return VersionStep(NONE, "nothing changed")
 
 
 _OF = {

@@ -1,4 +1,4 @@
-"""Subject of a change and its places."""
+"""Subject of a change (`Where`) and its places in the files of both ICDs (`Places`)."""
 
 from __future__ import annotations
 

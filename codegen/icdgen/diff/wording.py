@@ -1,4 +1,4 @@
-"""Phrases that messages of changes share."""
+"""Phrases that messages of changes share: names, sizes, numbers, formulas and types."""
 
 from __future__ import annotations
 
@@ -65,18 +65,24 @@ def formula(scale: Scale | Curve | None) -> str:
 
 
 def _polynomial(curve: Curve) -> str:
+    """Return a polynomial with the highest power first, without terms of 0."""
     text = ""
     for power, factor in reversed(list(enumerate(curve.coefficients))):
-        raw = "" if power == 0 else "raw" if power == 1 else f"raw^{power}"
-        if factor or (not power and not text):
-            sign = ("-" if factor < 0 else "+") if text else "-" * (factor < 0)
-            size = (
-                f"{abs(factor):g}"
-                if float(f"{factor:g}") == factor
-                else repr(abs(factor))
-            )
-            term = raw if raw and size == "1" else "*".join(filter(None, (size, raw)))
-            text += f" {sign} {term}" if text else f"{sign}{term}"
+        # A polynomial whose factors are all 0 is written as `0`.
+        if not factor and (power or text):
+            continue
+        size = f"{abs(factor):g}"
+        if float(size) != abs(factor):
+            size = repr(abs(factor))
+        if power == 0:
+            term = size
+        else:
+            raw = "raw" if power == 1 else f"raw^{power}"
+            term = raw if size == "1" else f"{size}*{raw}"
+        if text:
+            text += f" {'-' if factor < 0 else '+'} {term}"
+        else:
+            text = f"-{term}" if factor < 0 else term
     return text
 
 
@@ -84,21 +90,15 @@ def type_of(field: Line) -> str:
     """Return the type of a field: ``16-bit int``, ``4-bit enum Mode``, ``4-bit signed
     enum Mode``, ``6 elements, 16-bit int``.
     """
-    return (
-        f"{count(field.count, 'element')}, {_type_of(field)}"
-        if field.count
-        else _type_of(field)
-    )
-
-
-def _type_of(field: Line) -> str:
     if field.type == "enum":
-        return f"{field.bits}-bit {'signed ' if field.is_signed else ''}enum {field.enum.name if field.enum else '?'}"
-    return (
-        "bool"
-        if field.type == "bool" and field.bits == 1
-        else f"{field.bits}-bit {field.type}"
-    )
+        name = field.enum.name if field.enum else "?"
+        sign = "signed " if field.is_signed else ""
+        text = f"{field.bits}-bit {sign}enum {name}"
+    elif field.type == "bool" and field.bits == 1:
+        text = "bool"
+    else:
+        text = f"{field.bits}-bit {field.type}"
+    return f"{count(field.count, 'element')}, {text}" if field.count else text
 
 
 def read_as(field: Line) -> str:

@@ -16,7 +16,7 @@ from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
 if TYPE_CHECKING:
-    from icdgen.diff.inputs.side import Side
+    from icdgen.diff.inputs.side import ComparisonSide
 
 
 @dataclass
@@ -63,7 +63,7 @@ def make(
     return site
 
 
-def _older(site: Site, previous: str, icds: list[Path]) -> Side:
+def _older(site: Site, previous: str, icds: list[Path]) -> ComparisonSide:
     """Load the older release; if it has errors, the site has its findings and is not
     rendered.
     """

@@ -16,7 +16,7 @@ from icdgen.backends.packages import Packages
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
-    from icdgen.diff.inputs.side import Side
+    from icdgen.diff.inputs.side import ComparisonSide
     from icdgen.render import Renderer
 
 shipped.provide_runtime()  # computes the transmitted bytes that pages show
@@ -34,7 +34,7 @@ class HtmlBackend:
     # Pages contain names of these languages, so loading computes them.
     named_in = ("c", "python", "rust")
 
-    def __init__(self, previous: Side | None = None) -> None:
+    def __init__(self, previous: ComparisonSide | None = None) -> None:
         self.previous = previous
         self.packages = Packages()
 

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from icdgen.backends.html.relations import Relations
 from icdgen.diff import report
-from icdgen.diff.inputs.side import Side
+from icdgen.diff.inputs.side import ComparisonSide
 from icdgen.diff.reports import html
 from icdgen.diff.reports.groups import groups
 from icdgen.icd.model import Enum, Message, Node
 
 
-def values(relations: Relations, previous: Side) -> dict[str, object]:
+def values(relations: Relations, previous: ComparisonSide) -> dict[str, object]:
     """Return the values of the page."""
-    comparison_report = report.make(previous, Side("this release", relations.icd))
+    comparison_report = report.make_report(
+        previous, ComparisonSide("this release", relations.icd)
+    )
     # `after` is the object of this release: pages exist only for this one.
     sections = [
         (group, _url(relations, group.owner.after))

@@ -33,7 +33,7 @@ from icdgen.icd.model import Icd
 from icdgen.show.machine import to_json
 
 if TYPE_CHECKING:
-    from icdgen.diff.inputs.side import Side
+    from icdgen.diff.inputs.side import ComparisonSide
     from icdgen.render import Renderer
 
 # Static files that the pages load.
@@ -66,7 +66,10 @@ _LOADED = (
 
 
 def files(
-    icd: Icd, render: Renderer, packages: Packages, previous: Side | None = None
+    icd: Icd,
+    render: Renderer,
+    packages: Packages,
+    previous: ComparisonSide | None = None,
 ) -> Iterator[tuple[PurePosixPath, str]]:
     """Yield path and text of each file.
 

@@ -1,10 +1,14 @@
-"""Rules about enumerations: names of the values of a field."""
+"""Rules about enumerations: names of the values of a field.
+
+Each function yields the changes of one pair of fields or members (see
+`icdgen.diff.rule`); ``enumerations.md`` explains the rules to users.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import other_senses, same_sense
@@ -14,7 +18,7 @@ from icdgen.wording import quote
 
 
 @rule("DIF204", "field")
-def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def other_enumeration(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old.enum, pair.new.enum
     # A renamed enumeration is no other enumeration (`same_enum`).
     if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(
@@ -47,14 +51,14 @@ def _differences(old: Enum, new: Enum) -> tuple[str, ...]:
     return (*lines, *([f"Without a name now: {some(removed)}."] if removed else []))
 
 
-def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:
+def _used(owner: EnumPair, ctx: ComparisonContext) -> tuple[str, ...]:
     """Return a detail that lists the fields with values of the enumeration."""
     users = ctx.users.get(id(owner.new), ())
     return (f"Used by {some(users)}.",) if users else ()
 
 
 @rule("DIF205", "member")
-def other_sense(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
+def other_sense(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if (
         old.values == new.values
@@ -66,7 +70,7 @@ def other_sense(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF206", "member")
-def renumbered(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
+def renumbered(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.values != new.values:
         text = f"{quote(new.name)} of {quote(pair.owner.new.name)} is {new.values}, was {old.values}"
@@ -76,7 +80,7 @@ def renumbered(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF207", "member", severity="warning", when="gone")
-def member_removed(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
+def member_removed(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"{pair.old.values} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
     yield CheckResult(
         text,
@@ -88,7 +92,7 @@ def member_removed(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF208", "member", severity="note", when="come", addition=True)
-def member_added(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
+def member_added(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"{pair.new.values} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
     yield CheckResult(
         text,

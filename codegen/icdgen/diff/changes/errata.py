@@ -1,10 +1,14 @@
-"""Rules about errata: decisions on faults of the manual."""
+"""Rules about errata: decisions on faults of the manual.
+
+They report the added, removed and changed errata of a node. The effects of an erratum
+on fields are reported by the rules for fields.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.erratum import Erratum
@@ -25,7 +29,7 @@ _PARTS = (
 @rule("DIF403", "node", severity="note")
 @rule("DIF404", "node", severity="note")
 @rule("DIF405", "node", severity="note")
-def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def erratum_differs(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     for _, old, new in differing(
         pair.old.errata, pair.new.errata, lambda entry: entry.id
     ):
@@ -49,16 +53,12 @@ def _differences(old: Erratum, new: Erratum) -> tuple[str, str, str]:
     """Return the description of a changed entry, its old text and its new text."""
     parts = [part for part in _PARTS if getattr(old, part) != getattr(new, part)]
     was, now = _kind(old), _kind(new)
-    # Then the first differing attribute shows the change best.
+    # Entries of the same kind: the first differing attribute shows the change best.
     if was == now:
-        was, now = (
-            str(getattr(entry, parts[0])) if parts else "" for entry in (old, new)
-        )
-    return (
-        f"says otherwise ({listing(parts) if parts else 'what it changes'})",
-        was,
-        now,
-    )
+        was = str(getattr(old, parts[0])) if parts else ""
+        now = str(getattr(new, parts[0])) if parts else ""
+    what = listing(parts) if parts else "what it changes"
+    return f"says otherwise ({what})", was, now
 
 
 def _kind(entry: Erratum) -> str:
@@ -70,11 +70,7 @@ def _kind(entry: Erratum) -> str:
 
 
 def _plain(value: object) -> str:
-    text = (
-        "(absent)"
-        if value is None
-        else str(value).lower()
-        if isinstance(value, bool)
-        else str(value)
-    )
+    text = "(absent)" if value is None else str(value)
+    if isinstance(value, bool):
+        text = text.lower()  # as in YAML
     return text if len(text) <= 40 else text[:37] + "..."

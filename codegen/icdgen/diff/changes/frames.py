@@ -1,11 +1,15 @@
-"""Rules about messages: additions, removals, ids, kinds and lengths."""
+"""Rules about messages: additions, removals, ids, kinds and lengths.
+
+``frames.md`` explains the rules to users; ``layout`` has the rules about the fields of
+a message.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from icdgen.describe.numbers import length_text
-from icdgen.diff.context import Context, by_id
+from icdgen.diff.context import ComparisonContext, by_id
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.wording import ids, some
@@ -21,13 +25,13 @@ def _summary(message: Message) -> str:
 
 
 @rule("DIF101", "message", when="gone")
-def removed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def removed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"{quote(pair.old.name)} is gone: {pair.old.kind} {ids(pair.old.ids)} is no longer spoken"
     yield CheckResult(text, ("name",), _summary(pair.old), "")
 
 
 @rule("DIF102", "message", when="come", severity="note", addition=True)
-def added(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def added(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     yield CheckResult(
         f"{quote(pair.new.name)} is new: {_summary(pair.new)}",
         ("name",),
@@ -37,7 +41,7 @@ def added(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF103", "message")
-def id_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def id_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     for kind, key in DIRECTIONS.items():
         before, after = getattr(old, key), getattr(new, key)
@@ -49,7 +53,7 @@ def id_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF104", "icd")
-def id_taken_over(ctx: Context) -> Iterator[CheckResult]:
+def id_taken_over(ctx: ComparisonContext) -> Iterator[CheckResult]:
     reported = set()
     for node in ctx.match.nodes:
         if not node.both:
@@ -85,7 +89,7 @@ _ID = ("id", "set_id", "get_id")
 
 
 def _exchanged(
-    ctx: Context, before: list[Message], after: list[Message]
+    ctx: ComparisonContext, before: list[Message], after: list[Message]
 ) -> tuple[Message | None, Message | None]:
     """Return a message that lost the id and a message that gained it, of equal length
     if possible.
@@ -109,7 +113,7 @@ def _exchanged(
 
 
 @rule("DIF105", "message")
-def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def kind_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.kind == new.kind:
         return
@@ -129,7 +133,7 @@ def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF106", "message")
-def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def length_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     # Rule DIF119 reports changes of the variable part itself.
     if old.layout.sequence or new.layout.sequence:
@@ -163,7 +167,9 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF119", "message")
-def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def open_end_changed(
+    pair: MessagePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     was, now = _variable_parts(old), _variable_parts(new)
     if was == now:
@@ -204,7 +210,7 @@ def _variable_part(part: VariablePart) -> str:
 
 @rule("DIF125", "message")
 @rule("DIF126", "message", severity="note")
-def end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def end_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.may_end_early == new.may_end_early:
         return
@@ -231,20 +237,22 @@ def end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF130", "node", when="gone")
-def node_removed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def node_removed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"node `{pair.old.name}` is gone, with {count(len(pair.old.messages), 'message')}"
     yield CheckResult(text, ("name",), pair.old.name, "")
 
 
 @rule("DIF131", "node", when="come", severity="note", addition=True)
-def node_added(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def node_added(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"node `{pair.new.name}` is new, with {count(len(pair.new.messages), 'message')}"
     yield CheckResult(text, ("name",), "", pair.new.name)
 
 
 @rule("DIF132", "node")
 @rule("DIF133", "node", severity="note", addition=True)
-def used_messages_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def used_messages_changed(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     details = ("They are still there, and declared or included elsewhere.",)
     less, more = (
         [m.name for m in ctx.messages_not_used(pair, side)] for side in (0, 1)

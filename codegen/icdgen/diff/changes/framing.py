@@ -1,12 +1,15 @@
 """Rules about the protocol section and the log mask: framing, checksums, addresses,
 logs.
+
+`icdgen.diff.facts` compares the protocol sections. The rules here choose the code of
+each difference, and rule DIF216 in ``sense`` reports responses.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.facts import AROUND, PART, RESPONSES, facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import CheckResult, rule
@@ -24,11 +27,9 @@ def _short(text: str) -> str:
 @rule("DIF121", "node", severity="warning")
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
-def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    changed_packet_formats, have_packet_formats = (
-        ctx.changed_packet_formats(pair),
-        ctx.have_packet_formats(pair),
-    )
+def fact_differs(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
+    changed_packet_formats = ctx.changed_packet_formats(pair)
+    have_packet_formats = ctx.have_packet_formats(pair)
     for fact in facts(pair.old, pair.new):
         if RESPONSES.fullmatch(fact.path) and not fact.is_word:
             continue  # DIF216
@@ -44,13 +45,9 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
             code, what, keys = "DIF413", "says otherwise", ()
         else:
             was, now = _short(was), _short(now)
-            gone = (
-                "DIF134"
-                if PART.fullmatch(fact.path)
-                else "DIF120"
-                if is_around
-                else "DIF121"
-            )
+            gone = "DIF120" if is_around else "DIF121"
+            if PART.fullmatch(fact.path):
+                gone = "DIF134"
             if fact.new is None:
                 code, what = gone, f"is no longer stated; it was {was}"
             elif fact.old is None:
@@ -72,7 +69,7 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 @rule("DIF122", "node")
 @rule("DIF123", "node")
 @rule("DIF124", "node", severity="note", addition=True)
-def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def mask_bit_differs(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     for bit, old, new in differing(
         pair.old.loggable, pair.new.loggable, lambda row: row.bit
     ):
@@ -99,8 +96,6 @@ def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 def _frame(row: Loggable | None) -> str:
-    return (
-        ""
-        if row is None
-        else f"telemetry {row.id}" + (f" {quote(row.name)}" if row.name else "")
-    )
+    if row is None:
+        return ""
+    return f"telemetry {row.id}" + (f" {quote(row.name)}" if row.name else "")

@@ -1,11 +1,14 @@
-"""Rules about fields: their bits and the interpretation of these bits."""
+"""Rules about fields: their bits and the interpretation of these bits.
+
+Rules about the meaning of the values (scale, unit, limits) are in ``numbers``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from icdgen.describe.comments import condition_text
-from icdgen.diff.context import Context, free_before
+from icdgen.diff.context import ComparisonContext, free_before
 from icdgen.diff.moves import Move
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import CheckResult, rule
@@ -20,7 +23,8 @@ from icdgen.wording import count, listing, quote
 @rule("DIF107", "message")
 @rule("DIF108", "message")
 @rule("DIF109", "message")
-def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def fields_moved(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
+    details: tuple[str, ...]
     for move in ctx.moves(pair).moves:
         first, last = move.fields[0], move.fields[-1]
         if move.is_shift:
@@ -33,18 +37,13 @@ def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         else:
             code, text = "DIF109", f"{_fields(move)} moved as a block: they {_by(move)}"
         causes = move.gained + move.lost + move.resized
-        details = (
-            ()
-            if first is last
-            else (f"From {quote(first.new.name)} to {quote(last.new.name)}.",)
-        )
-        where = (
-            causes[0].where()
-            if causes
-            else first.where()
-            if first is last
-            else pair.where()
-        )
+        if first is last:
+            details, where = (), first.where()
+        else:
+            details = (f"From {quote(first.new.name)} to {quote(last.new.name)}.",)
+            where = pair.where()
+        if causes:
+            where = causes[0].where()
         was, now = f"bit {first.old.at}", f"bit {first.new.at}"
         yield CheckResult(
             text,
@@ -63,10 +62,10 @@ def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
     old, new = first.places(("at",))
     for cause in causes:
         before, after = cause.places(("at", "bits"))
-        old, new = (
-            (before if cause.before is not None else old),
-            (after if cause.after is not None else new),
-        )
+        if cause.before is not None:
+            old = before
+        if cause.after is not None:
+            new = after
     return old, new
 
 
@@ -107,7 +106,7 @@ def _cause(move: Move) -> str:
 
 
 @rule("DIF110", "field")
-def width_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def width_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     # The width of variable-length bytes is their maximum, which DIF119 reports.
     if old.bits != new.bits and not (new.is_bytes and pair.is_open):
@@ -116,7 +115,7 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF118", "field")
-def count_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def count_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     before, after = old.own_count, new.own_count
     # See DIF119; of structs DIF127
@@ -130,7 +129,7 @@ def count_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF128", "field")
-def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def condition_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     was, now = (
         _needs(line, message)
         for line, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new))
@@ -155,7 +154,8 @@ def _conditions(field: Line) -> set[tuple[str, frozenset[int]]]:
 def _needs(field: Line, message: Message) -> str:
     if not field.conditions:
         return "always there"
-    return f"there if {' and '.join(condition_text(condition, message) for condition in field.conditions)}"
+    conditions = [condition_text(condition, message) for condition in field.conditions]
+    return f"there if {' and '.join(conditions)}"
 
 
 def _an_array(elements: int) -> str:
@@ -163,7 +163,7 @@ def _an_array(elements: int) -> str:
 
 
 @rule("DIF111", "field")
-def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def read_otherwise(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if kind(old) == kind(new):
         return
@@ -180,7 +180,7 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF112", "node")
-def order_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def order_changed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if orders(pair.old) == orders(pair.new):
         return
     fields, messages = [], set()
@@ -209,7 +209,7 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF117", "field")
-def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def own_order_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new, nodes = pair.old, pair.new, (pair.owner.old_node, pair.owner.new_node)
     if pair.same_bits or (old.at, old.bits, old.count) != (new.at, new.bits, new.count):
         return
@@ -228,7 +228,7 @@ def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF116", "node")
-def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def id_width_changed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     was, now = pair.old.id_bits, pair.new.id_bits
     if was != now:
         text = f"ids of `{pair.new.name}` have {now} bits, had {was}"
@@ -246,14 +246,14 @@ def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF113", "field", when="gone")
-def field_removed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def field_removed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if not pair.old.is_read_only and not ctx.is_reported_for_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
         yield CheckResult(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
 @rule("DIF114", "field", when="come", severity="note", addition=True)
-def field_added(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def field_added(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if not pair.new.is_read_only and not ctx.is_reported_for_message(pair):
         where = (
             "bits that were reserved"

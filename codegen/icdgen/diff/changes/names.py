@@ -1,11 +1,14 @@
-"""Rules about names and types in generated code of each language."""
+"""Rules about names and types in generated code of each language.
+
+`icdgen.diff.generated` computes the names; ``structs`` has the rules about structs.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from icdgen.backends import TITLES
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.generated import Name, is_renamed, may_rename
 from icdgen.diff.pairs import (
     EnumPair,
@@ -39,7 +42,7 @@ def _either(old: Name | None, new: Name | None) -> Name:
     return name
 
 
-def lines(renamed: Renamed) -> tuple[str, ...]:
+def renamed_lines(renamed: Renamed) -> tuple[str, ...]:
     """Return one line per language: ``C: `a` -> `b` and 3 more``.
 
     If all names were added or all removed, only the names.
@@ -50,9 +53,12 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     for old, new in sorted(
         renamed, key=lambda names: not _either(*names).text.endswith("_t")
     ):
-        text = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
             text = f"`{_either(old, new).text}`"
+        else:
+            was = f"`{old.text}`" if old else "(new)"
+            now = f"`{new.text}`" if new else "(gone)"
+            text = f"{was} -> {now}"
         rows = rows_by_language.setdefault(_either(old, new).language, [])
         if text not in rows:
             rows.append(text)
@@ -63,7 +69,7 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     return tuple(result)
 
 
-def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
+def _renamed(pair: IdentifiedPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     # DIF310 reports names that change because of another node.
     if not is_renamed(pair) or pair.is_of_another_node:
         return
@@ -76,7 +82,9 @@ def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
         else:
             was, now = old.identifier or old.name, new.identifier or new.name
             text = f"{_WHAT[type(pair)]} {quote(new.name)} has other identifiers, from {quote(now)}, were from {quote(was)}"
-        yield CheckResult(text, ("name", "identifier"), was, now, lines(renamed))
+        yield CheckResult(
+            text, ("name", "identifier"), was, now, renamed_lines(renamed)
+        )
 
 
 for _code, _of in (
@@ -89,7 +97,7 @@ for _code, _of in (
 
 
 @rule("DIF305", "node")
-def node_renamed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def node_renamed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old.name, pair.new.name
     if old != new:
         text = f"node `{new}` was called `{old}`: every generated name of it changes"
@@ -98,26 +106,23 @@ def node_renamed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF306", "message", "field", "enum", "member", "node", when="gone")
-def names_gone(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
+def names_gone(pair: Pair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
     removed_names: Renamed = [(name, None) for name in ctx.generated.old(pair)]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
     yield CheckResult(
-        text, ("name", "identifier"), pair.old.name, "", lines(removed_names)
+        text, ("name", "identifier"), pair.old.name, "", renamed_lines(removed_names)
     )
 
 
 @rule("DIF307", "field")
-def retyped(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def retyped(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
-    same = (old.type, old.bits, old.count, not old.conditions) == (
-        new.type,
-        new.bits,
-        new.count,
-        not new.conditions,
+    was, now = (
+        (side.type, side.bits, side.count, not side.conditions) for side in (old, new)
     )
-    if same and ctx.match.same_enum(old.enum, new.enum):
+    if was == now and ctx.match.same_enum(old.enum, new.enum):
         return
     changed = ctx.generated.retyped(pair)
     if changed:
@@ -136,7 +141,7 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF308", "field")
-def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def accessors_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     is_moved = pair.owner.is_of_another_node or pair.owner.has_another_vocabulary
     if is_moved or is_renamed(pair) or not may_rename(pair):
         return
@@ -149,11 +154,15 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
         text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
         keys = ("unit", "formula", "points", "special", "min", "max", "above", "below")
         severity, addition = (None, None) if was else ("note", True)
-        yield CheckResult(text, keys, was, now, lines(renamed), severity, addition)
+        yield CheckResult(
+            text, keys, was, now, renamed_lines(renamed), severity, addition
+        )
 
 
 @rule("DIF309", "node")
-def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def words_split_otherwise(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     old, new = pair.old.vocabulary, pair.new.vocabulary
     # The order of the vocabulary has no effect.
     if frozenset(old) == frozenset(new):
@@ -170,18 +179,20 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]
         )
         places = pair.old.source.at("vocabulary"), pair.new.source.at("vocabulary")
         yield CheckResult(
-            text, ("vocabulary",), was, now, lines(renamed), places=places
+            text, ("vocabulary",), was, now, renamed_lines(renamed), places=places
         )
 
 
 @rule("DIF310", "message", "enum")
 def declared_elsewhere(
-    pair: MessagePair | EnumPair, ctx: Context
+    pair: MessagePair | EnumPair, ctx: ComparisonContext
 ) -> Iterator[CheckResult]:
     if pair.is_of_another_node:
         old, new = pair.old_node.name, pair.new_node.name
         text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} is declared by `{new}`, was by `{old}`"
-        yield CheckResult(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))
+        yield CheckResult(
+            text, ("name",), old, new, renamed_lines(ctx.generated.renamed(pair))
+        )
 
 
 @rule(
@@ -195,18 +206,18 @@ def declared_elsewhere(
     severity="note",
     addition=True,
 )
-def names_come(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
+def names_come(pair: Pair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
     added_names: Renamed = [(None, name) for name in ctx.generated.new(pair)]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield CheckResult(
-        text, ("name", "identifier"), "", pair.new.name, lines(added_names)
+        text, ("name", "identifier"), "", pair.new.name, renamed_lines(added_names)
     )
 
 
 @rule("DIF312", "field")
-def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def became_a_view(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     was, now = map(_origin, (pair.old, pair.new))
     if was != now:
         is_view = pair.new.is_read_only and pair.new.derived is None

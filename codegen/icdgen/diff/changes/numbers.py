@@ -1,5 +1,7 @@
 """Rules about the meaning of raw values: scale, unit, limits, constants and special
 values.
+
+These changes do not move any bit, so old software reads wrong values without an error.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from functools import lru_cache
 
 from icdgen.describe.bounds import KEYS, bounds_of_limits
 from icdgen.describe.numbers import point_text
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.pairs import FieldPair, differing
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import same_sense
@@ -24,7 +26,7 @@ from icdgen.wording import count, listing, quote
 
 @rule("DIF201", "field")
 @rule("DIF203", "field")
-def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def scale_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if pair.old.derived is not None and pair.new.derived is not None:
         if is_derived_otherwise(pair):
             was, now = pair.old.formula, pair.new.formula
@@ -91,7 +93,7 @@ def _times(old: Scale, new: Scale) -> tuple[str, ...]:
 
 
 @rule("DIF202", "field")
-def unit_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def unit_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = (field.unit_symbol for field in (pair.old, pair.new))
     if old != new:
         text = f"the unit of {quote(pair.new.name)} is {new or 'no longer stated'}, was {old or 'not stated'}"
@@ -100,7 +102,7 @@ def unit_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF209", "field")
-def const_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def const_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old.const, pair.new.const
     if old == new:
         return
@@ -131,7 +133,7 @@ def _specials(field: Line) -> list[Special]:
 
 @rule("DIF210", "field", severity="warning")
 @rule("DIF412", "field", severity="note")
-def special_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def special_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old_specials, new_specials = _specials(pair.old), _specials(pair.new)
     for (named, raw), old, new in differing(
         old_specials, new_specials, lambda special: (special.number, special.value)
@@ -171,7 +173,7 @@ def is_wider(old: Limits | None, new: Limits | None) -> bool:
 
 
 @rule("DIF211", "field", severity="warning")
-def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def limits_changed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old.limits or Limits(), pair.new.limits or Limits()
     if old == new:
         return

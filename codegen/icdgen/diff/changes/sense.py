@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.facts import RESPONSES, facts, shown
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
@@ -24,7 +24,7 @@ _NOT_LEARNT = {
 
 
 @rule("DIF212", "message")
-def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def answer_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = _answer(pair.old), _answer(pair.new)
     if old != new:
         detail = "A program that waits for the acknowledge times out."
@@ -50,7 +50,9 @@ def _answer(message: Message) -> str:
 
 
 @rule("DIF216", "node")
-def general_responses_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def general_responses_changed(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     for fact in facts(pair.old, pair.new):
         if fact.is_word or not RESPONSES.fullmatch(fact.path):
             continue
@@ -98,7 +100,9 @@ def _response_words(section: str, keys: list[str]) -> str:
 
 
 @rule("DIF217", "message")
-def response_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def response_changed(
+    pair: MessagePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     name = quote(pair.new.name)
     if pair.old.response != pair.new.response:
         was, now = (_responses(message) for message in (pair.old, pair.new))
@@ -168,7 +172,7 @@ def _effect_of_response(section: str, keys: list[str], old: object, new: object)
 
 
 @rule("DIF218", "message", severity="warning")
-def period_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def period_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if pair.old.period_ms != pair.new.period_ms:
         was, now = (
             "not stated" if message.period_ms is None else f"{message.period_ms} ms"
@@ -180,7 +184,7 @@ def period_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 @rule("DIF213", "field", "message", severity="warning")
 def name_says_otherwise(
-    pair: FieldPair | MessagePair, ctx: Context
+    pair: FieldPair | MessagePair, ctx: ComparisonContext
 ) -> Iterator[CheckResult]:
     old, new = pair.old.name, pair.new.name
     # Other spellings and more precise names keep the meaning.
@@ -190,7 +194,9 @@ def name_says_otherwise(
 
 
 @rule("DIF215", "node", severity="warning")
-def node_says_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def node_says_otherwise(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     for key in ("node_type", "interface_version"):
         old, new = getattr(pair.old, key), getattr(pair.new, key)
         if old != new:

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from itertools import chain
 
 from icdgen.backends.c.types import declaration
-from icdgen.diff.changes.names import lines
-from icdgen.diff.context import Context
+from icdgen.diff.changes.names import renamed_lines
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.generated import Name, NamesOfIcd, symbols_in
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
@@ -35,7 +35,7 @@ _NOTHING = _Declared({}, {})
 
 @rule("DIF127", "message")
 def structs_repeated_otherwise(
-    pair: MessagePair, ctx: Context
+    pair: MessagePair, ctx: ComparisonContext
 ) -> Iterator[CheckResult]:
     reported = set()
     for part in pair.common:
@@ -80,7 +80,9 @@ def _level_text(times: int, stride: int) -> str:
 
 
 @rule("DIF313", "node")
-def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def struct_declared_otherwise(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     # Computing all names takes long, and most ICDs have no structs.
     if not pair.old.structs and not pair.new.structs:
         return
@@ -88,29 +90,24 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
         {struct.name: struct for struct in node.structs}
         for node in (pair.old, pair.new)
     )
-    was, now = (
-        _declared(ctx.generated.before, pair.old),
-        _declared(ctx.generated.after, pair.new),
-    )
+    was = _declared(ctx.generated.before, pair.old)
+    now = _declared(ctx.generated.after, pair.new)
     for name in dict.fromkeys((*new, *old)):
         before, after = was.get(name, _NOTHING), now.get(name, _NOTHING)
         renamed = list(_renamed(before.names, after.names))
-        common = before.members.keys() & after.members.keys()
         retyped = [
-            (before.members[member], after.members[member])
-            for member in before.members
-            if member in common
+            (declaration_before, after.members[member])
+            for member, declaration_before in before.members.items()
+            if after.members.get(member, declaration_before) != declaration_before
         ]
-        retyped = [(before, after) for before, after in retyped if before != after]
         if not renamed and not retyped:
             continue
-        what = (
-            "is gone"
-            if name not in new
-            else "is new"
-            if name not in old
-            else "has other generated names or types"
-        )
+        if name not in new:
+            what = "is gone"
+        elif name not in old:
+            what = "is new"
+        else:
+            what = "has other generated names or types"
         breaks = retyped or any(old_name for old_name, _ in renamed)
         places = [
             structs[name].source.at("name") if name in structs else None
@@ -122,7 +119,7 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
             name if name in old else "",
             name if name in new else "",
             (
-                *lines(renamed),
+                *renamed_lines(renamed),
                 *(
                     f"C: `{old_declaration}` -> `{new_declaration}`"
                     for old_declaration, new_declaration in retyped
@@ -177,12 +174,12 @@ def _declared(names: NamesOfIcd, node: Node) -> dict[str, _Declared]:
 
 
 @rule("DIF314", "message")
-def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def struct_stands_otherwise(
+    pair: MessagePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     was, now = (list(_uses_of_structs(side)) for side in (pair.old, pair.new))
-    removed, added = (
-        [text for text in was if text not in now],
-        [text for text in now if text not in was],
-    )
+    removed = [text for text in was if text not in now]
+    added = [text for text in now if text not in was]
     if not removed and not added:
         return
     number, what = len(removed or added), "declared otherwise" if removed else "new"

@@ -1,11 +1,14 @@
-"""Rules about text: summaries, references to tables, and spelling."""
+"""Rules about text: summaries, references to tables, and spelling.
+
+No rule here concerns existing software; all of them have the severity "note".
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TypeAlias
 
-from icdgen.diff.context import Context
+from icdgen.diff.context import ComparisonContext
 from icdgen.diff.generated import is_renamed
 from icdgen.diff.pairs import (
     EnumPair,
@@ -30,7 +33,7 @@ Described: TypeAlias = Node | Message | Line | Enum | Member | Struct | LayoutNo
 
 
 @rule("DIF401", "node", "message", "field", "enum", "member", severity="note")
-def summary_changed(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
+def summary_changed(pair: Pair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     yield from _words_changed(pair.old, pair.new, pair.where())
     if isinstance(pair, NodePair):
         structs = {struct.name: struct for struct in pair.old.structs}
@@ -54,7 +57,11 @@ def _words_changed(
     for key in ("summary", "title", "hazard"):
         was, now = getattr(old, key, ""), getattr(new, key, "")
         if was != now:
-            verb = "is new" if not was else "is gone" if not now else "says otherwise"
+            verb = "says otherwise"
+            if not was:
+                verb = "is new"
+            elif not now:
+                verb = "is gone"
             places = place_of(old, (key,)), place_of(new, (key,))
             yield CheckResult(
                 f"the {key} of {quote(new.name)} {verb}",
@@ -73,7 +80,7 @@ def _words_changed(
 
 @rule("DIF402", "message", "enum", "node", severity="note")
 def reference_changed(
-    pair: MessagePair | EnumPair | NodePair, ctx: Context
+    pair: MessagePair | EnumPair | NodePair, ctx: ComparisonContext
 ) -> Iterator[CheckResult]:
     if isinstance(pair, NodePair):
         was, now = (
@@ -97,7 +104,7 @@ def _reference(side: object) -> str:
 
 
 @rule("DIF406", "message", "field", "enum", "member", severity="note")
-def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
+def respelled(pair: IdentifiedPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if pair.is_of_struct or not is_renamed(pair):
         return
@@ -113,7 +120,7 @@ def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF407", "message", severity="note")
-def group_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def group_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     old, new = pair.old.group, pair.new.group
     if old != new:
         yield CheckResult(
@@ -125,7 +132,9 @@ def group_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF408", "message", severity="note")
-def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def parts_said_otherwise(
+    pair: MessagePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     old, new = (
         frozenset((p.message, p.at) for p in side.contains)
         for side in (pair.old, pair.new)
@@ -140,7 +149,9 @@ def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResul
 
 
 @rule("DIF416", "message", severity="note")
-def reserved_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def reserved_said_otherwise(
+    pair: MessagePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     was, now = pair.old.reserved, pair.new.reserved
     if was != now:
         text = f"{quote(pair.new.name)} now declares at its end {now or 'no'} reserved bytes, was with {was or 'none'}"
@@ -148,7 +159,9 @@ def reserved_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckRe
 
 
 @rule("DIF417", "field", severity="note")
-def displayed_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+def displayed_otherwise(
+    pair: FieldPair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     was, now = (
         side.display.words if side.display else "" for side in (pair.old, pair.new)
     )
@@ -159,7 +172,7 @@ def displayed_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF409", "node", severity="note")
-def missing_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def missing_changed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     for key, was, now in differing(
         pair.old.missing, pair.new.missing, lambda entry: (entry.kind, entry.id)
     ):
@@ -170,8 +183,9 @@ def missing_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
             "is no longer missing",
             "is missing for another reason",
         )
-        name = now.name if now else was.name if was else ""
-        text = f"{key[0]} {key[1]} {quote(name)} {verb}"
+        entry = now or was
+        assert entry is not None
+        text = f"{key[0]} {key[1]} {quote(entry.name)} {verb}"
         yield CheckResult(
             text,
             (),
@@ -184,7 +198,9 @@ def missing_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 def _verb(
     was: object, now: object, when_added: str, when_removed: str, when_changed: str
 ) -> str:
-    return when_added if was is None else when_removed if now is None else when_changed
+    if was is None:
+        return when_added
+    return when_removed if now is None else when_changed
 
 
 def _sections(pair: NodePair, key: str) -> Places:
@@ -192,7 +208,7 @@ def _sections(pair: NodePair, key: str) -> Places:
 
 
 @rule("DIF411", "node", severity="note")
-def order_restated(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def order_restated(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if orders(pair.old) == orders(pair.new):
         return
     # Then DIF112 reports the order.
@@ -206,7 +222,9 @@ def order_restated(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 @rule("DIF414", "node", severity="note")
-def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def unit_described_otherwise(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     for symbol, was, now in differing(
         pair.old.units, pair.new.units, lambda unit: unit.symbol
     ):
@@ -228,7 +246,9 @@ def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResu
 
 
 @rule("DIF415", "node", severity="note")
-def mask_bit_named_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+def mask_bit_named_otherwise(
+    pair: NodePair, ctx: ComparisonContext
+) -> Iterator[CheckResult]:
     for bit, was, now in differing(
         pair.old.loggable, pair.new.loggable, lambda row: row.bit
     ):

@@ -1,4 +1,8 @@
-"""Inputs of a comparison: files, folders, git revisions, and output of ``icdgen show``."""
+"""Inputs of a comparison: files, folders, git revisions, and output of ``icdgen show``.
+
+`sides` decides what each argument of ``icdgen diff`` names and loads both sides:
+``git`` extracts revisions, ``side`` loads files, ``shown`` reads JSON.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ import os
 from pathlib import Path
 
 from icdgen.diff.inputs.git import Git, Spec
-from icdgen.diff.inputs.side import Side
+from icdgen.diff.inputs.side import ComparisonSide
 from icdgen.errors import UserError
 
 STDIN = "-"
@@ -15,7 +19,7 @@ Input = Spec | list[Path] | str  # a git revision, paths, or `STDIN`
 
 def sides(
     arguments: list[str], usual: list[Path], unchecked: bool = False
-) -> tuple[Side, Side]:
+) -> tuple[ComparisonSide, ComparisonSide]:
     """Return the loaded old and new side.
 
     ``usual``: default ICDs for an argument that is only a revision. Raises `UserError`.
@@ -24,7 +28,7 @@ def sides(
     return _load(old, unchecked), _load(new, unchecked)
 
 
-def one_side(word: str, usual: list[Path]) -> Side:
+def one_side(word: str, usual: list[Path]) -> ComparisonSide:
     """Return a single loaded side: a file, a folder, a git revision, or output of
     ``icdgen show``.
 
@@ -82,7 +86,7 @@ def _input_of(git: Git, word: str, usual: list[Path]) -> Input:
     )
 
 
-def _load(what: Input, unchecked: bool) -> Side:
+def _load(what: Input, unchecked: bool) -> ComparisonSide:
     from icdgen.diff.inputs import shown, side
 
     if isinstance(what, Spec):

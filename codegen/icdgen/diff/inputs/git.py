@@ -1,4 +1,8 @@
-"""Reader of ICDs in git revisions. It leaves the working tree unchanged."""
+"""Reader of ICDs in git revisions. It leaves the working tree unchanged.
+
+`Git` resolves arguments such as ``v1.2``, ``v1.2:icd/a.yaml`` and ``v1.2..HEAD`` into
+`Spec` objects, which extract their files into a temporary folder.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Reader of the output of ``icdgen show --format json``, into ICDs."""
+"""Reader of the output of ``icdgen show --format json``, into ICDs.
+
+This is the inverse of `icdgen.show.machine`. The ICDs refer to places in the JSON text,
+so that a comparison can point to them.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.diff.inputs.side import Side
+from icdgen.diff.inputs.side import ComparisonSide
 from icdgen.errors import UserError, unreadable
 from icdgen.icd import annex, curve, model, schema, source
 from icdgen.icd.build import derived_node
@@ -47,7 +51,7 @@ def is_shown(path: Path) -> bool:
         return False
 
 
-def from_file(path: Path) -> Side:
+def from_file(path: Path) -> ComparisonSide:
     """Return the ICDs in a file.
 
     Raises `UserError` or `Findings` if it is no valid output.
@@ -60,7 +64,7 @@ def from_file(path: Path) -> Side:
     return from_bytes(data, str(path))
 
 
-def from_stdin() -> Side:
+def from_stdin() -> ComparisonSide:
     """Return the ICDs in standard input.
 
     Raises `UserError` or `Findings` if it is no valid output.
@@ -73,7 +77,7 @@ def from_stdin() -> Side:
     return from_bytes(sys.stdin.buffer.read(_MOST + 1), "standard input")
 
 
-def from_bytes(data: bytes, name: str) -> Side:
+def from_bytes(data: bytes, name: str) -> ComparisonSide:
     """Return the shown ICDs with places in this output."""
     if len(data) > _MOST:
         raise UserError(
@@ -89,8 +93,8 @@ def from_bytes(data: bytes, name: str) -> Side:
                 place = item["includes"].item_at(index)
                 text = f"`{item['name']}` includes `{include}`, which is not shown before it"
                 raise Findings([Finding("ICD004", text, place, _HELP)])
-        nodes.append(_Reader(nodes).node(item))
-    return Side(
+        nodes.append(_ShownNodeReader(nodes).node(item))
+    return ComparisonSide(
         name, model.Icd(tuple(nodes)), texts={name: data.decode("utf-8", "replace")}
     )
 
@@ -152,7 +156,7 @@ def _check(tree: Any, name: str) -> None:
         )
 
 
-class _Reader:
+class _ShownNodeReader:
     """Reader of one node; included nodes are read before it."""
 
     def __init__(self, before: list[model.Node]) -> None:

@@ -1,4 +1,8 @@
-"""Side of a comparison: its ICDs, its label, and the texts that its places refer to."""
+"""Side of a comparison: its ICDs, its label, and the texts that its places refer to.
+
+Files of a git revision are loaded from a temporary folder; the side replaces the path
+of this folder in places and messages by the revision.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +23,7 @@ _READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")
 
 
 @dataclass
-class Side:
+class ComparisonSide:
     """Side of a comparison.
 
     ``label``: name as given by the user. ``folder``: temporary folder of the files;
@@ -55,12 +59,12 @@ class Side:
         )
 
 
-def from_paths(paths: list[Path], unchecked: bool = False) -> Side:
+def from_paths(paths: list[Path], unchecked: bool = False) -> ComparisonSide:
     """Return the side of ICD files and folders."""
     return _side(", ".join(map(str, paths)), load(paths, check=not unchecked))
 
 
-def from_git(spec: Spec, unchecked: bool = False) -> Side:
+def from_git(spec: Spec, unchecked: bool = False) -> ComparisonSide:
     """Return the side of the ICDs of a git revision.
 
     Raises `UserError`.
@@ -79,21 +83,19 @@ def from_git(spec: Spec, unchecked: bool = False) -> Side:
             )
         loaded = load(paths, check=not unchecked)
     side = _side(spec.label, loaded)
+    # From here on, the side shows the revision in place of the temporary folder.
     side.folder, side.prefix = folder + os.sep, f"{spec.revision}:"
-    side.findings = [_with_user_places(side, finding) for finding in side.findings]
+    side.findings = [
+        finding._replace(
+            place=side.place(finding.place) or finding.place,
+            message=finding.message.replace(side.folder, side.prefix),
+            help=finding.help.replace(side.folder, side.prefix),
+        )
+        for finding in side.findings
+    ]
     side.texts = {side.name(file): text for file, text in side.texts.items()}
     return side
 
 
-def _side(label: str, loaded: Loaded) -> Side:
-    return Side(label, loaded.icd, loaded.findings, loaded.texts)
-
-
-def _with_user_places(side: Side, finding: Finding) -> Finding:
-    message, help = (
-        text.replace(side.folder, side.prefix)
-        for text in (finding.message, finding.help)
-    )
-    return finding._replace(
-        place=side.place(finding.place) or finding.place, message=message, help=help
-    )
+def _side(label: str, loaded: Loaded) -> ComparisonSide:
+    return ComparisonSide(label, loaded.icd, loaded.findings, loaded.texts)

@@ -1,4 +1,8 @@
-"""Drawing of the old and new bit layout of a frame, as rectangles for an SVG."""
+"""Drawing of the old and new bit layout of a frame, as rectangles for an SVG.
+
+`draw` returns coordinates in pixels; the template ``templates/html/layouts.html.j2``
+writes the SVG.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +29,7 @@ ROW_HEIGHT = NEW_Y + HEIGHT + 10
 WIDTH = LEFT + BITS * CELL + 1
 
 
-class Box(NamedTuple):
+class FieldBox(NamedTuple):
     """Part of a field within a row, or the frame behind the fields."""
 
     x: float
@@ -37,7 +41,7 @@ class Box(NamedTuple):
     key: str  # the same for the field's boxes in old and new
 
 
-class Link(NamedTuple):
+class FieldLink(NamedTuple):
     """Connection between the positions of a field in the old and in the new frame."""
 
     points: str
@@ -46,12 +50,12 @@ class Link(NamedTuple):
 
 
 @dataclass
-class Row:
+class BitRow:
     """Row with ``BITS`` bits of both frames."""
 
-    frames: list[Box] = field(default_factory=list)
-    boxes: list[Box] = field(default_factory=list)
-    links: list[Link] = field(default_factory=list)
+    frames: list[FieldBox] = field(default_factory=list)
+    boxes: list[FieldBox] = field(default_factory=list)
+    links: list[FieldLink] = field(default_factory=list)
     ticks: list[tuple[int, int]] = field(default_factory=list)  # x, byte
 
     @property
@@ -63,13 +67,13 @@ class Row:
         ) != ends.get(NEW_Y)
 
 
-class Drawing(NamedTuple):
+class FrameDrawing(NamedTuple):
     """Drawing of two layouts.
 
     ``parts``: rows, and texts in place of unchanged rows.
     """
 
-    parts: list[Row | str]
+    parts: list[BitRow | str]
     title: str
     width: int = WIDTH
     height: int = ROW_HEIGHT
@@ -78,7 +82,7 @@ class Drawing(NamedTuple):
     middle: int = HEIGHT
 
 
-def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
+def draw(pair: MessagePair, changes: list[Change]) -> FrameDrawing | None:
     """Return the layouts of a message; None if no bit changed its position or meaning.
 
     The frame is empty on a side without the message.
@@ -87,18 +91,17 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
         message.length * 8 if message is not None else 0
         for message in (pair.before, pair.after)
     )
-    rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
+    rows = [BitRow() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
     # A link connects both boxes only where they are in the same row.
     for number, part in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
         kind, key = _kind(part, changes), f"f{number}"
-        before = (
-            _boxes(rows, part.old, OLD_Y, kind, key) if part.before is not None else {}
-        )
-        after = (
-            _boxes(rows, part.new, NEW_Y, kind, key) if part.after is not None else {}
-        )
+        before, after = {}, {}
+        if part.before is not None:
+            before = _boxes(rows, part.old, OLD_Y, kind, key)
+        if part.after is not None:
+            after = _boxes(rows, part.new, NEW_Y, kind, key)
         for index in before.keys() & after.keys():
             if kind != "same" or before[index].x != after[index].x:
                 rows[index].links.append(_link(before[index], after[index]))
@@ -109,7 +112,7 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
         ]
     if not any(row.is_new for row in rows):
         return None
-    return Drawing(_folded(rows), f"Bit layouts of {pair.any.name}, old above new")
+    return FrameDrawing(_folded(rows), f"Bit layouts of {pair.any.name}, old above new")
 
 
 def _kind(pair: FieldPair, changes: list[Change]) -> str:
@@ -120,24 +123,30 @@ def _kind(pair: FieldPair, changes: list[Change]) -> str:
     if not pair.same_bits:
         return "moved"
     layers = {change.layer for change in changes if change.pair is pair}
-    return "meaning" if MEANING in layers else "name" if SOURCE in layers else "same"
+    if MEANING in layers:
+        return "meaning"
+    return "name" if SOURCE in layers else "same"
 
 
-def _frame(rows: list[Row], size: int, y: int) -> None:
+def _frame(rows: list[BitRow], size: int, y: int) -> None:
     for number, row in enumerate(rows):
         bits = min(BITS, size - number * BITS)
         if bits > 0:
-            row.frames.append(Box(LEFT, y, bits * CELL, "frame", "", "reserved", ""))
+            row.frames.append(
+                FieldBox(LEFT, y, bits * CELL, "frame", "", "reserved", "")
+            )
 
 
-def _boxes(rows: list[Row], line: Line, y: int, kind: str, key: str) -> dict[int, Box]:
+def _boxes(
+    rows: list[BitRow], line: Line, y: int, kind: str, key: str
+) -> dict[int, FieldBox]:
     """Return the boxes of a field by row; a field can reach into several rows."""
     boxes_by_row = {}
     end = line.at + line.width
     for number in range(line.at // BITS, min(-(-end // BITS), len(rows))):
         start = max(line.at, number * BITS)
         width = (min(end, (number + 1) * BITS) - start) * CELL
-        box = Box(
+        box = FieldBox(
             LEFT + start % BITS * CELL,
             y,
             width,
@@ -167,7 +176,7 @@ def _title(line: Line) -> str:
     return ", ".join(words)
 
 
-def _link(old: Box, new: Box) -> Link:
+def _link(old: FieldBox, new: FieldBox) -> FieldLink:
     """Return the quadrilateral that connects a field with the same field of the other
     release.
     """
@@ -178,11 +187,12 @@ def _link(old: Box, new: Box) -> Link:
         (new.x + new.width, bottom),
         (new.x, bottom),
     )
-    return Link(" ".join(f"{x:g},{y}" for x, y in corners), new.kind, new.key)
+    return FieldLink(" ".join(f"{x:g},{y}" for x, y in corners), new.kind, new.key)
 
 
-def _folded(rows: list[Row]) -> list[Row | str]:
-    parts: list[Row | str] = []
+def _folded(rows: list[BitRow]) -> list[BitRow | str]:
+    """Return the rows with two or more unchanged rows in sequence replaced by a text."""
+    parts: list[BitRow | str] = []
     for is_new, group in groupby(
         enumerate(rows), key=lambda numbered_row: numbered_row[1].is_new
     ):

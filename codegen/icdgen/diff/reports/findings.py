@@ -1,4 +1,4 @@
-"""Changes as findings, for the formats of services."""
+"""Changes as findings, for the formats of services (GitHub and SARIF)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.diagnostics import Finding, Place
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.change import Change
-from icdgen.diff.report import Report
+from icdgen.diff.report import DiffReport
 
 
 def of_change(change: Change) -> Finding:
@@ -24,7 +24,7 @@ def of_change(change: Change) -> Finding:
     )
 
 
-def of_report(report: Report) -> Iterator[Finding]:
+def of_report(report: DiffReport) -> Iterator[Finding]:
     """Yield findings about changes, unused entries of accepted changes, and uses in the
     user's sources.
     """

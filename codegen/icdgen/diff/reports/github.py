@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from icdgen import reports
-from icdgen.diff.report import Report
+from icdgen.diff.report import DiffReport
 from icdgen.diff.reports.findings import of_report
 
 
 def report(
-    report: Report,
+    report: DiffReport,
     colour: bool = False,
     width: int | None = None,
     everything: bool = False,

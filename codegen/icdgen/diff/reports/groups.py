@@ -1,4 +1,6 @@
-"""Changes grouped by their subject, in the order of the report."""
+"""Changes grouped by the message, enumeration or node that they concern, in the order
+of the report.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ from icdgen.diff.wording import ids
 from icdgen.frozen import NamedTuple
 
 
-class Group(NamedTuple):
+class ChangeGroup(NamedTuple):
     """Changes of one message, enumeration or node."""
 
     title: str  # "ADCS State"
@@ -26,9 +28,9 @@ class Group(NamedTuple):
         return sorted({change.layer for change in self.changes}, key=LAYERS.index)
 
 
-def groups(changes: Iterable[Change]) -> list[Group]:
+def groups(changes: Iterable[Change]) -> list[ChangeGroup]:
     """Return the groups in the order of their first changes."""
-    groups_by_owner: dict[int, Group] = {}
+    groups_by_owner: dict[int, ChangeGroup] = {}
     for change in changes:
         pair = change.pair
         # Fields are listed with their message, members with their enumeration.
@@ -38,7 +40,7 @@ def groups(changes: Iterable[Change]) -> list[Group]:
             about = "enumeration" if isinstance(owner, EnumPair) else "node"
             if isinstance(owner, MessagePair):
                 about = f"{owner.any.kind} {ids(owner.any.ids)}"
-            group = groups_by_owner[id(owner)] = Group(
+            group = groups_by_owner[id(owner)] = ChangeGroup(
                 owner.any.name, about, owner.where().node, owner, []
             )
         group.changes.append(change)

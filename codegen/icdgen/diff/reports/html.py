@@ -1,4 +1,8 @@
-"""Report as one self-contained HTML page: changes, compatibility, and both bit layouts."""
+"""Report as one self-contained HTML page: changes, compatibility, and both bit layouts.
+
+The page is ``templates/diff/page.html.j2``; the site of an ICD shows the same content
+with the variables of `shared`.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +12,9 @@ from icdgen import __version__, shipped
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.layers import ABOUT, TEXT
 from icdgen.diff.pairs import MessagePair
-from icdgen.diff.report import Report
-from icdgen.diff.reports.drawing import Drawing, draw
-from icdgen.diff.reports.groups import Group, groups
+from icdgen.diff.report import DiffReport
+from icdgen.diff.reports.drawing import FrameDrawing, draw
+from icdgen.diff.reports.groups import ChangeGroup, groups
 from icdgen.reports.excerpt import printable
 
 _CODE = re.compile(r"`([^`]*)`")
@@ -27,7 +31,7 @@ LEGEND = (
 
 
 def report(
-    report: Report,
+    report: DiffReport,
     colour: bool = False,
     width: int | None = None,
     everything: bool = False,
@@ -57,7 +61,7 @@ def report(
     )
 
 
-def shared(report: Report) -> dict[str, object]:
+def shared(report: DiffReport) -> dict[str, object]:
     """Return the template variables that this page and the page of the site share."""
     return {
         "report": report,
@@ -77,7 +81,7 @@ def coded(text: str) -> list[tuple[str, bool]]:
     ]
 
 
-def layouts(group: Group) -> Drawing | None:
+def layouts(group: ChangeGroup) -> FrameDrawing | None:
     """Return both layouts of a message, if any of its bits changed position or meaning;
     None otherwise.
     """

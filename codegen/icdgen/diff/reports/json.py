@@ -11,16 +11,16 @@ from pathlib import Path
 from icdgen.diagnostics import Place
 from icdgen.diff.accepted import Acceptance
 from icdgen.diff.change import Change
-from icdgen.diff.compatibility import Direction
+from icdgen.diff.compatibility import DirectionCompatibility
 from icdgen.diff.generated import Name
-from icdgen.diff.report import Report
+from icdgen.diff.report import DiffReport
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
 
 
 def report(
-    report: Report,
+    report: DiffReport,
     colour: bool = False,
     width: int | None = None,
     everything: bool = False,
@@ -29,7 +29,7 @@ def report(
     return json.dumps(document(report), indent=1) + "\n"
 
 
-def document(report: Report) -> dict[str, object]:
+def document(report: DiffReport) -> dict[str, object]:
     """Return the report as a tree for `json.dumps`."""
     reasons = {id(change): entry.reason for change, entry in report.accepted}
     generated = report.comparison.context.generated
@@ -58,7 +58,7 @@ def document(report: Report) -> dict[str, object]:
     return result
 
 
-def _direction(direction: Direction) -> dict[str, object]:
+def _direction(direction: DirectionCompatibility) -> dict[str, object]:
     return {
         "key": direction.key,
         "question": direction.question,
@@ -72,6 +72,10 @@ def _direction(direction: Direction) -> dict[str, object]:
 def _change(
     change: Change, reason: str | None, names: tuple[Name, ...]
 ) -> dict[str, object]:
+    names_by_language = {
+        language: [name.text for name in group]
+        for language, group in groupby(names, lambda name: name.language)
+    }
     row: dict[str, object] = {
         "code": change.code,
         "layer": change.layer,
@@ -88,10 +92,7 @@ def _change(
         # Three digits are enough to compare matches.
         "sure": round(change.sure, 3),
         "errata": change.errata,
-        "generated": {
-            language: [n.text for n in group]
-            for language, group in groupby(names, lambda name: name.language)
-        },
+        "generated": names_by_language,
     }
     return row if reason is None else row | {"accepted": reason}
 

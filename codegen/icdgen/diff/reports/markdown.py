@@ -1,4 +1,7 @@
-"""Report as Markdown for a pull request."""
+"""Report as Markdown for a pull request.
+
+Names come from the ICDs, so every text passes `escaped`.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,9 @@ import re
 from collections.abc import Iterator
 
 from icdgen.diff.accepted import about_stale
-from icdgen.diff.compatibility import Direction
+from icdgen.diff.compatibility import DirectionCompatibility
 from icdgen.diff.layers import ABOUT, LAYERS, TEXT
-from icdgen.diff.report import Report
+from icdgen.diff.report import DiffReport
 from icdgen.diff.reports.groups import groups
 from icdgen.reports.excerpt import shown
 from icdgen.wording import count
@@ -18,7 +21,7 @@ _CODE = re.compile(r"`([^`]*)`")
 
 
 def report(
-    report: Report,
+    report: DiffReport,
     colour: bool = False,
     width: int | None = None,
     everything: bool = False,
@@ -56,7 +59,7 @@ def escaped(text: str) -> str:
     return "".join(parts)
 
 
-def _summary(report: Report) -> Iterator[str]:
+def _summary(report: DiffReport) -> Iterator[str]:
     yield f"Version of the generated packages: **{report.step.step}** – {escaped(report.step.reason)}."
     yield ""
     yield "| layer | changes | additions | |"
@@ -72,7 +75,7 @@ def _summary(report: Report) -> Iterator[str]:
         yield from _direction(direction)
 
 
-def _direction(direction: Direction) -> Iterator[str]:
+def _direction(direction: DirectionCompatibility) -> Iterator[str]:
     if direction.frames or direction.general:
         yield ""
         yield f"<details><summary>{direction.question} <b>{direction.verdict}</b></summary>"
@@ -85,7 +88,7 @@ def _direction(direction: Direction) -> Iterator[str]:
         yield "</details>"
 
 
-def _layer(report: Report, layer: str) -> Iterator[str]:
+def _layer(report: DiffReport, layer: str) -> Iterator[str]:
     changes = report.of_layer(layer)
     if not changes:
         return
@@ -109,7 +112,7 @@ def _layer(report: Report, layer: str) -> Iterator[str]:
         yield ""
 
 
-def _uses_and_accepted(report: Report) -> Iterator[str]:
+def _uses_and_accepted(report: DiffReport) -> Iterator[str]:
     if report.uses is not None:
         yield f"### Uses in your sources: {len(report.uses)}"
         yield ""

@@ -10,13 +10,13 @@ from typing import Any
 from icdgen.diff import rule
 from icdgen.diff.change import Change
 from icdgen.diff.compare import RULES
-from icdgen.diff.report import Report
+from icdgen.diff.report import DiffReport
 from icdgen.diff.reports.findings import of_change, of_report
 from icdgen.reports import sarif
 
 
 def report(
-    report: Report,
+    report: DiffReport,
     colour: bool = False,
     width: int | None = None,
     everything: bool = False,

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.change import Change
-from icdgen.diff.compatibility import Direction
+from icdgen.diff.compatibility import DirectionCompatibility
 from icdgen.diff.layers import ABOUT, LAYERS, TEXT
-from icdgen.diff.report import Report
+from icdgen.diff.report import DiffReport
 from icdgen.diff.reports.groups import groups
 from icdgen.reports.excerpt import printable, shown
 from icdgen.wording import count
@@ -28,7 +28,7 @@ Paint = Callable[[str, str], str]
 
 
 def report(
-    report: Report,
+    report: DiffReport,
     colour: bool = False,
     width: int | None = None,
     everything: bool = False,
@@ -63,7 +63,7 @@ def report(
     return "\n".join([*lines, ""])
 
 
-def _summary(report: Report, paint: Paint) -> Iterator[str]:
+def _summary(report: DiffReport, paint: Paint) -> Iterator[str]:
     for layer, number in report.counts().items():
         additions = report.additions(layer)
         extra = f" ({count(additions, 'addition')})" if additions else ""
@@ -72,7 +72,7 @@ def _summary(report: Report, paint: Paint) -> Iterator[str]:
 
 
 def _direction(
-    direction: Direction, paint: Paint, width: int | None, everything: bool
+    direction: DirectionCompatibility, paint: Paint, width: int | None, everything: bool
 ) -> Iterator[str]:
     good = direction.total - len(direction.frames)
     verdict = paint(direction.verdict, direction.verdict)
@@ -93,7 +93,7 @@ def _direction(
 
 
 def _layer(
-    report: Report, layer: str, paint: Paint, width: int | None, everything: bool
+    report: DiffReport, layer: str, paint: Paint, width: int | None, everything: bool
 ) -> Iterator[str]:
     changes = report.of_layer(layer)
     if not changes:
@@ -138,7 +138,7 @@ def _wrapped(text: str, width: int | None, indent: str) -> list[str]:
     )
 
 
-def _uses(report: Report, paint: Paint) -> Iterator[str]:
+def _uses(report: DiffReport, paint: Paint) -> Iterator[str]:
     if report.uses is None:
         return
     yield ""
@@ -154,7 +154,7 @@ def _uses(report: Report, paint: Paint) -> Iterator[str]:
                 yield f"{_INDENT}  {shown(message)}"
 
 
-def _accepted(report: Report, paint: Paint) -> Iterator[str]:
+def _accepted(report: DiffReport, paint: Paint) -> Iterator[str]:
     if report.accepted:
         yield ""
         yield paint("head", f"accepted: {count(len(report.accepted), 'change')}")
@@ -163,7 +163,7 @@ def _accepted(report: Report, paint: Paint) -> Iterator[str]:
             yield f"{_INDENT}{shown(entry.reason)} ({printable(str(entry.place))})"
 
 
-def _stale(report: Report, paint: Paint) -> Iterator[str]:
+def _stale(report: DiffReport, paint: Paint) -> Iterator[str]:
     for entry in report.stale:
         finding = about_stale(entry)
         yield ""
