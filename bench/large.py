@@ -32,8 +32,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "codegen")]
 from icdgen.diff import report  # noqa: E402
 from icdgen.diff.inputs.side import ComparisonSide  # noqa: E402
 from icdgen.loading import load  # noqa: E402
-from icdgen.vectors.make import make  # noqa: E402
-from icdgen.vectors.write import text  # noqa: E402
+from icdgen.vectors.make import make_vectors  # noqa: E402
+from icdgen.vectors.write import vector_file_text  # noqa: E402
 
 PER_MESSAGE = 40
 PER_NODE = 250  # messages: an id is a byte
@@ -46,17 +46,17 @@ def write(folder: Path, fields: int, newer: bool, every: str | None = None) -> P
     messages = fields // PER_MESSAGE
     for node in range((messages + PER_NODE - 1) // PER_NODE):
         here = range(node * PER_NODE, min(messages, (node + 1) * PER_NODE))
-        text = _HEAD % f"node{node}" + "".join(
+        vector_file_text = _HEAD % f"node{node}" + "".join(
             _message(number, node, newer) for number in here
         )
         if newer:
-            text = text.replace(
+            vector_file_text = vector_file_text.replace(
                 *{
                     "factor": ("raw*0.01", "raw*0.03"),
                     "name": ("Sensor Data", "Reading"),
                 }.get(every, ("", ""))
             )
-        (folder / f"node{node}.yaml").write_text(text, encoding="utf-8")
+        (folder / f"node{node}.yaml").write_text(vector_file_text, encoding="utf-8")
     return folder
 
 
@@ -159,7 +159,9 @@ def main() -> None:
             if options.vectors or everything:
                 icd = sides[0].icd
                 spent = seconds(
-                    lambda icd=icd: [text(make(icd, node)) for node in icd.nodes]
+                    lambda icd=icd: [
+                        vector_file_text(make_vectors(icd, node)) for node in icd.nodes
+                    ]
                 )
                 print(
                     f"vectors, {fields} fields: {spent:.2f} s, {spent / fields * 1e3:.2f} ms a field",

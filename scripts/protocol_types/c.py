@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 from icdgen.backends.c.facts import TYPES, has_presence_flag
 from icdgen.backends.c.text import comment
-from icdgen.protocol.declared import BYTE, U16, Fact, Kind, facts_of
+from icdgen.protocol.declared import BYTE, U16, FactKind, ProtocolFact, facts_of
 
 _TYPES = {
-    Kind.TIME: "uint32_t ", Kind.FLAG: "bool ", Kind.BUSES: "uint8_t ", Kind.SPAN: "icd_part_t ",
+    FactKind.TIME: "uint32_t ", FactKind.FLAG: "bool ", FactKind.BUSES: "uint8_t ", FactKind.SPAN: "icd_part_t ",
 }  # fmt: skip
 _MEMBER = re.compile(
     r"(?:    /\*\*(?:(?!\*/).|\n)*\*/\n)?    [\w ]+[ *](\w+)(?:\[\w+\])?(?:, \w+)*;.*\n"
@@ -43,19 +43,19 @@ def written(text: str) -> str:
     return text
 
 
-def _members(fact: Fact) -> Iterator[tuple[str, str]]:
+def _members(fact: ProtocolFact) -> Iterator[tuple[str, str]]:
     """Yield names and types of the members of a fact, each type with a trailing space."""
     if has_presence_flag(fact):
         yield f"has_{fact.name}", "bool "
     yield fact.name, _type(fact)
 
 
-def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
+def _declared(fact: ProtocolFact) -> Iterator[tuple[str, str]]:
     for name, type in _members(fact):
         about = fact.meaning
         if name.startswith("has_"):
             about = f"whether `{fact.name}` is known"
-        elif fact.kind is Kind.BUSES:
+        elif fact.kind is FactKind.BUSES:
             about += "; bit n: on bus n of icd_bus_t"
         elif fact.is_optional and not has_presence_flag(fact):
             about += (
@@ -66,7 +66,7 @@ def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
         yield f"{type}{name}", about
 
 
-def _type(fact: Fact) -> str:
+def _type(fact: ProtocolFact) -> str:
     if fact.kind in _TYPES:
         return _TYPES[fact.kind]
     if fact.is_optional and fact.least == 0 and not has_presence_flag(fact):

@@ -6,11 +6,11 @@ import ast
 import textwrap
 
 from icdgen.link_calls import type_name
-from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.declared import FactKind, ProtocolFact, facts_of
 from icdgen.protocol.sections import SECTIONS, Settings
 
 _TYPES = {
-    Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
+    FactKind.FLAG: "bool", FactKind.BUSES: "tuple[str, ...]", FactKind.SPAN: "tuple[int, int]",
 }  # fmt: skip
 
 
@@ -67,9 +67,9 @@ def _with_facts(text: str, part: type) -> str:
     return "\n".join([*lines[:begin], "", *member_lines, *lines[end:]]) + "\n"
 
 
-def _member(fact: Fact, part: type) -> str:
+def _member(fact: ProtocolFact, part: type) -> str:
     kind = _TYPES.get(fact.kind, "int")
-    if part is Settings and fact.kind is Kind.TIME:
+    if part is Settings and fact.kind is FactKind.TIME:
         kind = "Number"  # users can set it, also to fractions
     if part is Settings:
         return f"    {fact.name}: {kind} = {fact.default}"
@@ -78,7 +78,7 @@ def _member(fact: Fact, part: type) -> str:
     return f"    {fact.name}: {kind}" + (" = ()" if fact.default == () else "")
 
 
-def _about(fact: Fact) -> list[str]:
+def _about(fact: ProtocolFact) -> list[str]:
     """Return the docstring of a member."""
     meaning = fact.meaning[0].upper() + fact.meaning[1:]
     first, *following = textwrap.wrap(f'"""{meaning}."""', 84)

@@ -6,11 +6,11 @@ import re
 
 from icdgen.backends.rust.facts import member_name, type_name
 from icdgen.backends.rust.text import doc
-from icdgen.protocol.declared import BYTE, Fact, Kind, facts_of
+from icdgen.protocol.declared import BYTE, FactKind, ProtocolFact, facts_of
 from icdgen.protocol.sections import SECTIONS
 
 _TYPES = {
-    Kind.SIZE: "usize", Kind.TIME: "u32", Kind.FLAG: "bool", Kind.BUSES: "PerBus<bool>", Kind.SPAN: "Span",
+    FactKind.SIZE: "usize", FactKind.TIME: "u32", FactKind.FLAG: "bool", FactKind.BUSES: "PerBus<bool>", FactKind.SPAN: "Span",
 }  # fmt: skip
 _FIELD = re.compile(r"(?:    ///.*\n)*    pub (\w+): .*,\n")
 
@@ -39,12 +39,12 @@ def written(text: str) -> str:
     return text
 
 
-def _field(fact: Fact) -> str:
+def _field(fact: ProtocolFact) -> str:
     # The name of a time contains its unit.
     about = doc([f"{fact.about[0].upper()}{fact.about[1:]}."], "    ", "///")
     return f"{about}\n    pub {member_name(fact)}: {_type(fact)},\n"
 
 
-def _type(fact: Fact) -> str:
+def _type(fact: ProtocolFact) -> str:
     name = _TYPES.get(fact.kind) or ("u8" if fact.holds <= BYTE else "u32")
     return f"Option<{name}>" if fact.is_optional else name

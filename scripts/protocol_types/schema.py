@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.declared import FactKind, ProtocolFact, facts_of
 from icdgen.protocol.sections import SECTIONS
 
 Schema = dict[str, Any]
@@ -17,7 +17,7 @@ def written(text: str) -> str:
     schema = json.loads(text)
     for part, path in SECTIONS.items():
         for fact in facts_of(part):
-            if fact.key and fact.kind is not Kind.BUSES:
+            if fact.key and fact.kind is not FactKind.BUSES:
                 *sections, key = f"{path}.{fact.key}".split(".")
                 _put(
                     _section(schema["$defs"]["protocol"], sections), key, fragment(fact)
@@ -44,10 +44,10 @@ def _put(section: Schema, key: str, fragment: Schema) -> None:
     properties.update(last)
 
 
-def fragment(fact: Fact) -> Schema:
+def fragment(fact: ProtocolFact) -> Schema:
     """Return the schema of the key of a fact."""
     about = fact.key_about or fact.about
-    if fact.kind is Kind.OCTET:
+    if fact.kind is FactKind.OCTET:
         return {"$ref": "#/$defs/byte", "description": about}
     if fact.listed:
         entry = {"enum": sorted(fact.words, key=lambda word: word != fact.listed)}
@@ -58,14 +58,14 @@ def fragment(fact: Fact) -> Schema:
             "uniqueItems": True,
             "description": about,
         }
-    if fact.kind is Kind.FLAG:
+    if fact.kind is FactKind.FLAG:
         plain = fact.words[0] is False
         return (
             {"type": "boolean", "description": about}
             if plain
             else {"enum": [*fact.words], "description": about}
         )
-    if fact.kind is Kind.TIME:
+    if fact.kind is FactKind.TIME:
         about += ", in milliseconds"
     limits = {"minimum": fact.least} | (
         {} if fact.most is None else {"maximum": fact.most}

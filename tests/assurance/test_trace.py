@@ -19,8 +19,8 @@ from icdgen.icd.model import Icd
 from icdgen.icd.places import places_in
 from icdgen.loading import load
 from icdgen.render import Renderer
-from icdgen.vectors.make import make
-from icdgen.vectors.write import text
+from icdgen.vectors.make import make_vectors
+from icdgen.vectors.write import vector_file_text
 from tests.assurance.failing import Judge, Vectors
 from tests.conformance.icds import SHIPPED
 from tests.conformance.random_icds import written
@@ -42,7 +42,10 @@ class Pack:
             for path, made in backend.files(self.icd, Renderer.of(backend))
         }
         self.vectors = Vectors(
-            {node.name: text(make(self.icd, node)) for node in self.icd.nodes}
+            {
+                node.name: vector_file_text(make_vectors(self.icd, node))
+                for node in self.icd.nodes
+            }
         )
         self.trace, self.changes = self.table("trace.csv"), self.table("changes.csv")
 
@@ -62,13 +65,16 @@ class Pack:
             if node.name not in needed:
                 Path(node.file.replace(str(self.folder), str(folder), 1)).unlink()
         path = folder / change["file"]
-        text = path.read_text("utf-8")
+        vector_file_text = path.read_text("utf-8")
         before = (
-            sum(len(one) + 1 for one in text.split("\n")[: int(change["line"]) - 1])
+            sum(
+                len(one) + 1
+                for one in vector_file_text.split("\n")[: int(change["line"]) - 1]
+            )
             + int(change["column"])
             - 1
         )
-        rest = text[before:]
+        rest = vector_file_text[before:]
         if rest.startswith("["):  # an id as the numbers that are sent, or points
             end = next(
                 end
@@ -86,7 +92,7 @@ class Pack:
             if change["kind"] == "formula"
             else change["changed to"]
         )
-        path.write_text(text[:before] + now + rest[end:], "utf-8")
+        path.write_text(vector_file_text[:before] + now + rest[end:], "utf-8")
         return load([folder], check=False).icd
 
     def fields(self, message: str, node: str, icd: Icd | None = None) -> list[str]:
@@ -126,21 +132,29 @@ def structs(layout: Layout) -> Iterator[Layout]:
             yield from structs(place.struct)
 
 
-def _value(text: str) -> str:
+def _value(vector_file_text: str) -> str:
     """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts
     without quotes.
     """
-    text = text.strip()
-    if text[:1] == "'":
-        return text[1:-1] if len(text) > 1 and text[-1] == "'" else ""
+    vector_file_text = vector_file_text.strip()
+    if vector_file_text[:1] == "'":
+        return (
+            vector_file_text[1:-1]
+            if len(vector_file_text) > 1 and vector_file_text[-1] == "'"
+            else ""
+        )
     try:
         if (
-            text[:1] == '"'
+            vector_file_text[:1] == '"'
         ):  # names in formulas of derived values have what must be escaped
-            return str(json.loads(text))
-        return str(int(text, 0) if text.lower().startswith("0x") else text)
+            return str(json.loads(vector_file_text))
+        return str(
+            int(vector_file_text, 0)
+            if vector_file_text.lower().startswith("0x")
+            else vector_file_text
+        )
     except ValueError:
-        return "" if text[:1] == '"' else text
+        return "" if vector_file_text[:1] == '"' else vector_file_text
 
 
 def noticed(cell: str) -> dict[str, set[int]]:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from icdgen.icd.model import Icd
 from icdgen.loading import load
-from icdgen.vectors.make import make
-from icdgen.vectors.write import text
+from icdgen.vectors.make import make_vectors
+from icdgen.vectors.write import vector_file_text
 from tests.conformance import ROOT
 
 SHIPPED = ROOT / "icd"
@@ -49,7 +49,10 @@ def read(*paths: Path) -> Icd:
 
 def vectors_of(icd: Icd) -> dict[str, dict]:
     """The content of each node's vector file, made now."""
-    return {node.name: json.loads(text(make(icd, node))) for node in icd.nodes}
+    return {
+        node.name: json.loads(vector_file_text(make_vectors(icd, node)))
+        for node in icd.nodes
+    }
 
 
 def read_vectors(folder: Path) -> dict[str, dict]:

@@ -31,7 +31,7 @@ from icdgen.protocol.exchange import Exchange, Response
 from icdgen.protocol.packet_formats import Stream, StreamRow
 from icdgen.runtime_objects import reference
 from icdgen.runtime_objects.links import link_of
-from icdgen.vectors.wire.asking import Sample, wire_place
+from icdgen.vectors.wire.asking import StreamSample, wire_place
 from tests.conformance.build import BuildError, build
 from tests.conformance.compare import difference
 from tests.conformance.driver import Testee
@@ -86,7 +86,7 @@ class Script:
 
     def __init__(self, link: Link[Any], form: Stream, source: random.Random) -> None:
         self.form, self.source = form, source
-        self.sample = Sample(link, form, source)
+        self.sample = StreamSample(link, form, source)
         self.begun: list[tuple[StreamRow, Row]] = []
         self.now = source.choice((0, 0, 1000, HALF - 300))
 

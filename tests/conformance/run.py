@@ -20,7 +20,7 @@ from icdgen import codec
 from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import Icd
 from icdgen.vectors import patterns
-from icdgen.vectors.make import frame_row
+from icdgen.vectors.make import frame_vector
 from icdgen.vectors.write import raw_json
 from tests.conformance import robust
 from tests.conformance.build import BuildError, build
@@ -145,7 +145,7 @@ def _random(
                     for one in field.conditions
                 }
                 frame = codec.frame_of(frame, values)
-            row = frame_row(node, message, "random frame", frame)
+            row = frame_vector(node, message, "random frame", frame)
             vector = {
                 "why": "random frame", "bytes": row.frame.hex(), "encoded": row.encoded.hex(),
                 "raw": [raw_json(f, row.raw.get(f.name)) for f in fields],

@@ -27,7 +27,7 @@ VECTORS = COMMITTED / "protocol.json"
 
 def vectors_of(icd: Icd) -> dict:
     """The content of the protocol's vector file, made now."""
-    return json.loads(protocol.text(icd) or '{"nodes": []}')
+    return json.loads(protocol.protocol_vectors_text(icd) or '{"nodes": []}')
 
 
 def batches(files: dict) -> Iterator[Batch]:

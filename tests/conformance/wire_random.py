@@ -15,10 +15,10 @@ from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.icd.model import Icd
 from icdgen.procedures.actions import Listing
-from icdgen.procedures.blocks import Reading
+from icdgen.procedures.blocks import BlockReading
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
-from icdgen.vectors.wire.recording import RecordedDevice, Report, record
+from icdgen.vectors.wire.recording import ClientReport, RecordedDevice, record
 from tests import links
 
 MOST_PACKET_GAP_MS = 700
@@ -245,7 +245,7 @@ def _played(
     loss = source.choice([0, 0, 0.1, 0.5])
     device = RecordedDevice(known, request.get("bus", "uart"), source, loss)
     run = device.counterpart.runs[request["name"]]
-    if isinstance(run, Reading):
+    if isinstance(run, BlockReading):
         inputs = request.get("inputs", {})
         key = tuple(inputs.get(name, 0) for name in run.effect.names)
         content = source.randbytes(source.choice([0, 5, 60, 90]))
@@ -256,7 +256,7 @@ def _played(
         run.entries += run.entries[-1:] * source.choice([0, 0, 0, 9])
     odd = source.choice([0, 0.02, 0.2])
 
-    def respond(now: int, asked: Request) -> list[Report]:
+    def respond(now: int, asked: Request) -> list[ClientReport]:
         reports = device.respond(now, asked)
         changed = [
             _changed(report, asked, source) if source.random() < odd else report
@@ -271,16 +271,18 @@ def _played(
     return script[: source.choice([10, 60, 150])]
 
 
-def _changed(report: Report, asked: Request, source: random.Random) -> Report:
+def _changed(
+    report: ClientReport, asked: Request, source: random.Random
+) -> ClientReport:
     """Another event in the place of one."""
     data = bytes.fromhex(report.event.get("bytes", ""))
     if report.event["event"] == "arrived":
         data = source.choice([data[:-1], source.randbytes(len(data)), data + b"\0"])
-        return Report({**report.event, "bytes": data.hex()})
+        return ClientReport({**report.event, "bytes": data.hex()})
     outcomes = ["refused", "timeout", "busy", "damaged", "sent", "done", "done"]
     event: dict = {"event": source.choice(outcomes)}
     if event["event"] == "done":
         event["bytes"] = source.choice(
             [bytes(len(data)), source.randbytes(len(data))]
         ).hex()
-    return Report(event)
+    return ClientReport(event)

@@ -26,8 +26,8 @@ from icdgen.sim.computer import Computer
 from icdgen.sim.control import fields_of, raw_value_of
 from icdgen.sim.faults import Faults
 from icdgen.sim.framed_line import FramedLine
-from icdgen.sim.settings import Settings
-from icdgen.sim.storage import Storage
+from icdgen.sim.settings import SimulationSettings
+from icdgen.sim.storage import DeviceStorage
 
 Frames = dict[str, list[bytes]]
 
@@ -90,7 +90,7 @@ def simulator(
     the example.
     """
     line = FramedLine(
-        Computer(icd, node, Settings(strict=True), Storage()),
+        Computer(icd, node, SimulationSettings(strict=True), DeviceStorage()),
         Faults(Random(0), [], 0),
         {},
     )

@@ -34,12 +34,12 @@ from icdgen.recognize import recognize
 from icdgen.show import machine, people
 from icdgen.sim.control import fields_of, raw_value_of
 from icdgen.sim.program import Program
-from icdgen.sim.settings import Settings
-from icdgen.sim.storage import Storage
+from icdgen.sim.settings import SimulationSettings
+from icdgen.sim.storage import DeviceStorage
 from icdgen.values import text as values_text
 from icdgen.values.encode import encode
 from icdgen.values.frame import frame
-from icdgen.vectors.make import make
+from icdgen.vectors.make import make_vectors
 from tests import links
 from tests.conformance.build import renderer
 from tests.features import framed
@@ -160,7 +160,7 @@ def icd_of(content: str, folder: Path) -> Icd:
 def frames_of(icd: Icd) -> dict[str, list[bytes]]:
     """Some frames of each message, those of the golden vectors, spread over them."""
     found = {}
-    for one in make(icd, icd.nodes[-1]).messages:
+    for one in make_vectors(icd, icd.nodes[-1]).messages:
         frames = [row.frame for row in one.rows]
         found[one.message.name] = _some(frames, FRAMES)
     return found
@@ -308,7 +308,7 @@ def _simulator(subject: Subject) -> object:
     node = icd.node(name)
     if subject.has_framed_link:
         return framed.simulator(icd, node, subject.frames, subject.words)
-    program = Program(icd, node, Storage(), Settings(strict=True), 0)
+    program = Program(icd, node, DeviceStorage(), SimulationSettings(strict=True), 0)
     said: list[object] = []
     for message, data in subject.messages():
         if message.telecommand_id is not None:

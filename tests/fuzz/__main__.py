@@ -17,7 +17,7 @@ from pathlib import Path
 from icdgen.describe import describe
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.vectors import protocol
-from icdgen.vectors.make import make
+from icdgen.vectors.make import make_vectors
 from tests.conformance import odd
 from tests.conformance.build import BuildError, cache_folder, execute, generated
 from tests.conformance.icds import icd_of
@@ -89,7 +89,7 @@ def seeds(icd: Icd) -> Iterator[bytes]:
     names = [node.name for node in icd.nodes]
     for node in icd.nodes:
         ways = routes(icd, node)
-        for vectors in make(icd, node).messages:
+        for vectors in make_vectors(icd, node).messages:
             for flag, found in ways.items():
                 ids = sorted({id for id, _ in found})
                 numbers = {
@@ -149,7 +149,7 @@ def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
     protocol layer.
     """
     for index, node in enumerate(
-        json.loads(protocol.text(icd) or '{"nodes": []}')["nodes"]
+        json.loads(protocol.protocol_vectors_text(icd) or '{"nodes": []}')["nodes"]
     ):
         for case in node["cases"]:
             request, head = case["request"], bytes((index, 0, 3, 128))

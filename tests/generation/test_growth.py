@@ -16,7 +16,7 @@ from icdgen.loading import load
 from icdgen.render import Renderer
 from icdgen.show.machine import to_json
 from icdgen.show.people import to_text
-from icdgen.site import make
+from icdgen.site import make_site
 
 ICD = """\
 icdgen: 1
@@ -80,7 +80,7 @@ COMMANDS = {
         lang: lambda path, lang=lang: generate(lang, path)
         for lang in ("c", "python", "rust")
     },
-    "site": lambda path: make([path]),
+    "site": lambda path: make_site([path]),
 }
 
 

@@ -19,7 +19,7 @@ def files(**named: str):
     ]
 
 
-def generate(out, **named: str) -> write.Plan:
+def generate(out, **named: str) -> write.WritePlan:
     plan = write.plan(out, "c", files(**named))
     write.apply(plan)
     return plan

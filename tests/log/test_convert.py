@@ -248,7 +248,7 @@ def test_golden_vectors_have_times_that_a_log_can_hold(tmp_path):
     (tmp_path / "odd.yaml").write_text(ODD)  # seconds of three bytes
     loaded = load([tmp_path / "odd.yaml"])
     assert loaded.icd is not None and loaded.ok
-    (node,) = json.loads(protocol.text(loaded.icd) or "")["nodes"]
+    (node,) = json.loads(protocol.protocol_vectors_text(loaded.icd) or "")["nodes"]
     asked = [
         case["request"]
         for case in node["cases"]

@@ -23,7 +23,7 @@ from icdgen.logfile.recording import Recording
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from icdgen.values.frame import frame
-from icdgen.vectors.make import make
+from icdgen.vectors.make import make_vectors
 from tests.conftest import ROOT
 from tests.features.framed import recorded
 from tests.log.test_command import icdgen
@@ -304,7 +304,7 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     node = icd.nodes[0]
     frames = [
         (one.message, row.frame)
-        for one in make(icd, node).messages
+        for one in make_vectors(icd, node).messages
         for row in one.rows
         if _is_sent(icd, one, row)
     ]
@@ -435,7 +435,7 @@ def test_a_packet_that_carries_no_message_gives_no_column(tmp_path, direction):
     node = icd.nodes[0]
     frames = {
         one.message.name: [row.frame for row in one.rows[:2]]
-        for one in make(icd, node).messages
+        for one in make_vectors(icd, node).messages
     }
     (tmp_path / "sent").write_bytes(recorded(icd, node, frames)[direction])
     options = (tmp_path / "sent", "--icd", file, "--direction", direction)
@@ -453,7 +453,7 @@ def test_every_delimiter(name, tmp_path):
     node = icd.nodes[0]
     frames = {
         one.message.name: [row.frame for row in one.rows[:5]]
-        for one in make(icd, node).messages
+        for one in make_vectors(icd, node).messages
     }
     sent = recorded(icd, node, frames)["telemetry"]
     (tmp_path / "sent").write_bytes(sent)

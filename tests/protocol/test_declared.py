@@ -9,7 +9,15 @@ from dataclasses import dataclass, fields
 import pytest
 
 from icdgen.icd import schema
-from icdgen.protocol.declared import Kind, facts_of, flag, number, octets, read, time
+from icdgen.protocol.declared import (
+    FactKind,
+    facts_of,
+    flag,
+    number,
+    octets,
+    read_part,
+    time,
+)
 from icdgen.protocol.sections import SECTIONS
 from scripts.protocol_facts import ROOT, out_of_date
 
@@ -39,7 +47,7 @@ def test_schema_and_runtimes_are_what_is_declared():
 
 
 def test_what_an_icd_leaves_out_has_the_declared_default():
-    assert read(Book, {"pages": 3}) == Book(
+    assert read_part(Book, {"pages": 3}) == Book(
         pages=3, sheets=6, lent=5, back=False, bound=False
     )
 
@@ -52,13 +60,13 @@ def test_what_an_icd_says_is_read_in_the_unit_of_the_fact():
         "order": "back",
         "in": ["paper", "leather"],
     }
-    assert read(Book, given) == Book(
+    assert read_part(Book, given) == Book(
         pages=3, sheets=4, lent=2000, back=True, bound=True
     )
 
 
 def test_without_a_key_that_has_no_default_the_part_is_not_described():
-    assert read(Book, {"lent_ms": 2}) is None
+    assert read_part(Book, {"lent_ms": 2}) is None
 
 
 def test_a_part_has_its_facts_in_the_order_in_which_they_are_declared():
@@ -77,7 +85,7 @@ def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
             if key == "*"
             else section["properties"][key]
         )
-    if fact.kind is Kind.OCTET:
+    if fact.kind is FactKind.OCTET:
         section = schema._follow(section)
     assert (section["minimum"], section["maximum"]) == (fact.least, fact.most)
 

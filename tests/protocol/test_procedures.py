@@ -20,7 +20,7 @@ from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from icdgen.runtime_objects.procedures import procedure_of
-from icdgen.vectors.wire.recording import RecordedDevice, Report, record
+from icdgen.vectors.wire.recording import ClientReport, RecordedDevice, record
 from tests import links
 from tests.conftest import ROOT
 
@@ -146,7 +146,7 @@ def test_packets_that_do_not_belong_to_the_block_change_nothing(link, known):
     }
 
     def respond(now, request):
-        return [Report(strange), *device.respond(now, request)]
+        return [ClientReport(strange), *device.respond(now, request)]
 
     _, procedure = record(link, download(100), respond)
     assert (procedure.result, procedure.data) == ("done", content)

@@ -18,7 +18,7 @@ from icdgen.protocol import facts
 from icdgen.recognize import recognize
 from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
-from icdgen.vectors.make import make as golden
+from icdgen.vectors.make import make_vectors
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
 
@@ -89,7 +89,7 @@ def packets(icd: Icd) -> list[tuple[str, bytes]]:
     for node in icd.nodes:
         known = facts.of(icd, node)
         link = link_of(icd, known)
-        for message in golden(icd, node).messages:
+        for message in make_vectors(icd, node).messages:
             for row in message.rows[:: max(1, len(message.rows) // MOST_ROWS)][
                 :MOST_ROWS
             ]:

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from icdgen.recognize import read, recognize
+from icdgen.recognize import read_pasted, recognize
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
 from tests.recognize.ways import BARE, DATA, WHOLE
 
@@ -127,7 +127,7 @@ def test_a_checksum_is_checked_and_taken_off(shipped):
     ],
 )
 def test_what_can_be_hexadecimal_is(text, data):
-    assert read(text).data.hex() == data
+    assert read_pasted(text).data.hex() == data
 
 
 @pytest.mark.parametrize(
@@ -143,7 +143,7 @@ def test_what_can_be_hexadecimal_is(text, data):
 )
 def test_what_only_looks_like_bytes_is_refused(text):
     with pytest.raises(BadHex):
-        read(text)
+        read_pasted(text)
 
 
 def test_json_names_the_direction(shipped):

@@ -21,7 +21,7 @@ from icdgen_runtime.wire import (
 
 from icdgen.errors import UserError
 from icdgen.icd.model import buses_of
-from icdgen.link.ports import Can, PortError, Serial, open_port
+from icdgen.link.ports import CanBus, PortError, Serial, open_port
 from icdgen.link.session import session
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
@@ -41,7 +41,10 @@ def test_a_serial_port_by_pyserial():
 
 
 def test_a_can_bus_by_python_can():
-    one, other = Can("virtual", "icdgen", 500_000), Can("virtual", "icdgen", 500_000)
+    one, other = (
+        CanBus("virtual", "icdgen", 500_000),
+        CanBus("virtual", "icdgen", 500_000),
+    )
     try:
         packet = CanPacket(0x1234567, b"\x01\x02")
         one.send(packet)
@@ -64,7 +67,7 @@ def test_a_request_over_can_that_nobody_answers_ends():
 
 
 def test_a_request_over_can_is_answered_by_the_node_of_the_icd():
-    link, other = cubeacp(), Can("virtual", "talking", 500_000)
+    link, other = cubeacp(), CanBus("virtual", "talking", 500_000)
     node, ours = link.can.node_address, 0x2A
     frame = bytes(range(link.frames[128]))
     with session(link, open_port("can://virtual/talking", {}), address=ours) as client:
@@ -77,7 +80,7 @@ def test_a_request_over_can_is_answered_by_the_node_of_the_icd():
 
 
 def test_what_cannot_be_asked_is_an_error_with_a_remedy_and_closes_the_port():
-    link, port = cubeacp(), Can("virtual", "closed", 500_000)
+    link, port = cubeacp(), CanBus("virtual", "closed", 500_000)
     with pytest.raises(UserError) as error, session(link, port) as client:
         client.start(Request("telecommand", 1, bytes(100)))
     assert "100" in str(error.value) and error.value.help

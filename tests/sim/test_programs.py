@@ -8,8 +8,8 @@ from icdgen.procedures.run import steps_of
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Poll, Send
 from icdgen.sim.computer import Computer
-from icdgen.sim.settings import Settings
-from icdgen.sim.storage import Storage
+from icdgen.sim.settings import SimulationSettings
+from icdgen.sim.storage import DeviceStorage
 from tests import links
 from tests.sim.device import ICD
 
@@ -34,7 +34,10 @@ _, FINALIZED = (
 @pytest.fixture
 def device():
     return Computer(
-        ICD, ICD.node("bootloader"), Settings(boot_ms=10**9, busy_ms=10), Storage()
+        ICD,
+        ICD.node("bootloader"),
+        SimulationSettings(boot_ms=10**9, busy_ms=10),
+        DeviceStorage(),
     )
 
 
@@ -83,7 +86,7 @@ def test_a_block_beyond_the_end_of_the_destination_is_not_committed(device):
 
 
 def test_a_program_that_takes_no_uploads_refuses_their_telecommands():
-    running = Computer(ICD, ICD.node("cubeacp"), Settings(), Storage())
+    running = Computer(ICD, ICD.node("cubeacp"), SimulationSettings(), DeviceStorage())
     assert code(running, 0, INITIATE, 3, 0) == REASONS["unknown_id"]
     outcome = running.take(0, bytes([PACKET, 0, 0]) + bytes(20), "uart")
     assert (outcome.code, outcome.acknowledge) == (REASONS["unknown_id"], False)

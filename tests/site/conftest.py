@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from icdgen.loading import load
-from icdgen.site import make, write
-from icdgen.site.serve import HOST, Source, handler
+from icdgen.site import make_site, write
+from icdgen.site.serve import HOST, SiteSource, handler
 from tests.conftest import ROOT
 from tests.site import hostile, pages
 
@@ -52,7 +52,7 @@ def shipped():
 def strange(tmp_path_factory) -> Path:
     """A folder with the site of ICDs that try to break it."""
     folder = tmp_path_factory.mktemp("strange")
-    made = make([hostile.write(folder / "icd")])
+    made = make_site([hostile.write(folder / "icd")])
     assert made.ok, made.findings
     write(made, folder / "site")
     return folder / "site"
@@ -61,7 +61,7 @@ def strange(tmp_path_factory) -> Path:
 @pytest.fixture(scope="session")
 def served() -> Iterator[str]:
     """Address of a server of the shipped site."""
-    server = ThreadingHTTPServer((HOST, 0), handler(Source([ROOT / "icd"])))
+    server = ThreadingHTTPServer((HOST, 0), handler(SiteSource([ROOT / "icd"])))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
     yield f"http://127.0.0.1:{server.server_port}/"

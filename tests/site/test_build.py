@@ -15,7 +15,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from icdgen.site import make
+from icdgen.site import make_site
 from tests.conformance.icds import COMMITTED
 from tests.conftest import DEMO, ROOT
 from tests.site.conftest import program, tool
@@ -100,7 +100,7 @@ def test_the_site_is_small_and_has_a_page_for_everything(site, shipped):
 
 
 def test_the_site_is_the_same_each_time():
-    first, second = make([ROOT / "icd"]).files, make([ROOT / "icd"]).files
+    first, second = make_site([ROOT / "icd"]).files, make_site([ROOT / "icd"]).files
     assert first == second and len(first) > 200
 
 
@@ -180,14 +180,14 @@ def test_everything_stands_in_one_json_and_in_llms_txt(site, shipped):
 
 
 def test_a_field_keeps_its_link_when_everything_around_it_changes(tmp_path, demo):
-    before = make([demo]).files["demo/estimated_roll.html"]
+    before = make_site([demo]).files["demo/estimated_roll.html"]
     text = (
         demo.read_text("utf-8")
         .replace("id: 146", "id: 150")
         .replace("at: 0,  bits: 16", "at: 8, bits: 16")
     )
     demo.write_text(text.replace("at: 16, bits: 4", "at: 0, bits: 4"), "utf-8")
-    after = make([demo]).files["demo/estimated_roll.html"]
+    after = make_site([demo]).files["demo/estimated_roll.html"]
     assert (
         "field-roll_angle" in Page(before).ids and "field-roll_angle" in Page(after).ids
     )
@@ -238,7 +238,7 @@ def test_the_page_of_changes_draws_both_layouts_as_the_diff_does(tmp_path):
             "at: 0,  bits: 15, name: X Magnetorquer Command",
         )
     )
-    page = make([ROOT / "icd"], str(old)).files["changes.html"]
+    page = make_site([ROOT / "icd"], str(old)).files["changes.html"]
     whole = html.report(
         report.make_report(one_side(str(old), []), one_side(str(ROOT / "icd"), []))
     )
@@ -264,5 +264,5 @@ def test_a_message_that_is_gone_stands_on_the_page_of_changes_without_a_link(tmp
         (tmp_path / side / "demo.yaml").write_text(
             DEMO.rstrip("\n") + "\n" + more, "utf-8"
         )
-    made = make([tmp_path / "new"], str(tmp_path / "old"))
+    made = make_site([tmp_path / "new"], str(tmp_path / "old"))
     assert made.ok and "<h3><del>Old Mode</del>" in made.files["changes.html"]

@@ -15,14 +15,14 @@ from http.server import ThreadingHTTPServer
 
 import pytest
 
-from icdgen.site.serve import HOST, Source, handler
+from icdgen.site.serve import HOST, SiteSource, handler
 from tests.cli.conftest import icdgen  # noqa: F401
 
 
 @pytest.fixture
 def ask(demo):
     """``ask("/demo/", Host=...)`` -> status, body."""
-    server = ThreadingHTTPServer((HOST, 0), handler(Source([demo])))
+    server = ThreadingHTTPServer((HOST, 0), handler(SiteSource([demo])))
     threading.Thread(target=server.serve_forever, daemon=True).start()
 
     def get(path: str, **headers: str) -> tuple[int, str]:
@@ -124,7 +124,7 @@ def test_the_server_answers_to_this_machine_and_gives_nothing_else_away(ask):
 
 def test_a_browser_that_resets_its_connection_is_no_news(demo, capsys):
     reset = struct.pack("ii", 1, 0)  # closing sends a reset instead of an end
-    server = ThreadingHTTPServer((HOST, 0), handler(Source([demo])))
+    server = ThreadingHTTPServer((HOST, 0), handler(SiteSource([demo])))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
         for sent in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"):

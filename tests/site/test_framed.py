@@ -18,8 +18,8 @@ from icdgen.loading import load
 from icdgen.recognize import recognize
 from icdgen.recognize.framed import sync_of
 from icdgen.recognize.reading import endpoint_of
-from icdgen.site import make, write
-from icdgen.vectors.make import make as golden
+from icdgen.site import make_site, write
+from icdgen.vectors.make import make_vectors
 from tests.conftest import ROOT
 from tests.features.framed import recorded
 from tests.features.outputs import icd_of as motor_of
@@ -43,7 +43,7 @@ def traffic(icd, count: int) -> list[str]:
     source, device = random.Random(7), icd.nodes[0]
     frames = {
         one.message.name: [row.frame for row in one.rows]
-        for one in golden(icd, device).messages
+        for one in make_vectors(icd, device).messages
     }
     found = []
     for _ in range(count):
@@ -226,7 +226,7 @@ def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
     hostile = "</script><img src=x>"
     content = (LINKS / "mavlink2.yaml").read_text().replace("x25", f'"{hostile}"')
     file.write_text(format_text(content, "odd.yaml"))
-    made = make([file])
+    made = make_site([file])
     assert made.ok, made.findings
     write(made, tmp_path / "site")
     text = (tmp_path / "site" / "autopilot" / "protocol.html").read_text("utf-8")
@@ -249,7 +249,7 @@ def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
 
 
 def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
-    write(make([LINKS / "ubx.yaml"]), tmp_path / "ubx")
+    write(make_site([LINKS / "ubx.yaml"]), tmp_path / "ubx")
     page = (tmp_path / "ubx" / "receiver" / "end_of_epoch.html").read_text()
     assert '<span class="id"><b>01 61</b></span>' in page
     overview = (tmp_path / "ubx" / "receiver" / "index.html").read_text()
@@ -260,7 +260,7 @@ def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
 
 
 def test_other_ids_are_written_as_number_and_in_hexadecimal(tmp_path):
-    write(make([LINKS / "mavlink1.yaml"]), tmp_path / "mavlink")
+    write(make_site([LINKS / "mavlink1.yaml"]), tmp_path / "mavlink")
     pages = [page.read_text() for page in (tmp_path / "mavlink").rglob("*.html")]
     assert any(
         '<span class="id"><b>11</b> <code>0x0B</code></span>' in page for page in pages

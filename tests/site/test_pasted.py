@@ -12,7 +12,7 @@ from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
 from icdgen.errors import UserError
 from icdgen.protocol.facts import of
-from icdgen.recognize import read, recognize
+from icdgen.recognize import read_pasted, recognize
 from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import BadHex
 from icdgen.values.find import find_message
@@ -59,7 +59,7 @@ def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
 
     def expected(text: str) -> object:
         try:
-            found = read(text)
+            found = read_pasted(text)
         except BadHex:
             return None
         return [

@@ -17,9 +17,9 @@ import pytest
 import icdgen
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
-from icdgen.vectors.make import make
+from icdgen.vectors.make import make_vectors
 from icdgen.vectors.settings import settings
-from icdgen.vectors.write import decimal, text
+from icdgen.vectors.write import decimal, vector_file_text
 from tests.conformance import odd
 from tests.conformance.icds import icd_of, vectors_of
 
@@ -57,8 +57,8 @@ def test_files_follow_the_published_schema(icd, odd_icd, files):
 
 
 def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
-    texts = [text(make(icd, node)) for node in icd.nodes]
-    assert texts == [text(make(icd, node)) for node in icd.nodes]
+    texts = [vector_file_text(make_vectors(icd, node)) for node in icd.nodes]
+    assert texts == [vector_file_text(make_vectors(icd, node)) for node in icd.nodes]
     assert sum(map(len, texts)) < 2_000_000
 
 
@@ -229,7 +229,7 @@ def test_ties_are_found_for_every_formula_that_has_them(odd_icd):
 
 
 def test_exact_decimals():
-    assert [decimal(Fraction(text)) for text in ("-12.34", "0", "5", "1/3", "-7/30", "1/1024")] == [
+    assert [decimal(Fraction(vector_file_text)) for vector_file_text in ("-12.34", "0", "5", "1/3", "-7/30", "1/1024")] == [
         "-12.34", "0", "5", "1/3", "-7/30", "0.0009765625",
     ]  # fmt: skip
     assert decimal(Fraction(1, 10**7)) == "0.0000001"

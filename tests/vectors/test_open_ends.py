@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.loading import load
-from icdgen.vectors.make import make
+from icdgen.vectors.make import make_vectors
 
 ICD = """\
 icdgen: 1
@@ -34,7 +34,7 @@ def test_frames_are_refused_for_the_highest_bit_of_a_count_alone(
 ):
     (tmp_path / "demo.yaml").write_text(ICD + parts, encoding="utf-8")
     icd = load([tmp_path / "demo.yaml"]).icd
-    (message,) = make(icd, icd.node("demo")).messages
+    (message,) = make_vectors(icd, icd.node("demo")).messages
     frames = {row.frame for row in message.rows}
     for byte in counters:
         told = [frame for frame in message.miscounted if frame[byte] & 0x80]

@@ -101,13 +101,13 @@ def test_every_end_of_a_procedure_is_shown(files):
 
 
 def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
-    text = protocol.text(icd)
-    assert text == protocol.text(icd)
+    text = protocol.protocol_vectors_text(icd)
+    assert text == protocol.protocol_vectors_text(icd)
     assert len(text) < 2_000_000
 
 
 def test_there_is_no_file_without_a_protocol(tmp_path):
-    assert protocol.text(icd_of([odd.write(tmp_path)])) is None
+    assert protocol.protocol_vectors_text(icd_of([odd.write(tmp_path)])) is None
 
 
 def test_a_node_that_would_take_the_files_name_is_found(tmp_path):
@@ -171,7 +171,7 @@ def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_
     )
     (tmp_path / "demo.yaml").write_text(text, encoding="utf-8")
     bare = icd_of([tmp_path / "demo.yaml"])
-    protocol.text(bare)
+    protocol.protocol_vectors_text(bare)
     for node in files["nodes"]:
         for case in node["cases"]:
             answer = reference.answer(bare, {**case["request"], "node": "demo"})

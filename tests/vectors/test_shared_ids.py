@@ -13,7 +13,7 @@ from icdgen import codec
 from icdgen.frame_bits import constant_bytes
 from icdgen.icd.model import Icd
 from icdgen.icd.variants import common_length, ids_of
-from icdgen.vectors.make import make
+from icdgen.vectors.make import make_vectors
 from tests.conformance import odd
 from tests.conformance.icds import icd_of
 from tests.conformance.random_icds import written
@@ -51,7 +51,7 @@ def hold(icd: Icd, source: random.Random) -> int:
     """
     compared = 0
     for node in icd.nodes:
-        rows = make(icd, node).shared
+        rows = make_vectors(icd, node).shared
         for direction, known in zip(
             ("telecommand", "telemetry"), ids_of(icd, node), strict=True
         ):
@@ -89,7 +89,7 @@ def test_so_they_do_in_random_icds(trees):
 
 
 def test_every_message_of_a_shared_id_has_a_frame_and_so_has_none_of_them(apart):
-    rows = make(apart, apart.node("apart")).shared
+    rows = make_vectors(apart, apart.node("apart")).shared
     found = {(row.id, row.message) for row in rows}
     for direction in ids_of(apart, apart.node("apart")):
         for id, group in direction.items():

@@ -26,12 +26,15 @@ class VectorsBackend:
         has a protocol.
         """
         from icdgen.vectors import protocol
-        from icdgen.vectors.make import make
-        from icdgen.vectors.write import text
+        from icdgen.vectors.make import make_vectors
+        from icdgen.vectors.write import vector_file_text
 
         for node in icd.nodes:
-            yield PurePosixPath(f"{node.name}.json"), text(make(icd, node))
-        protocol_text = protocol.text(icd)
+            yield (
+                PurePosixPath(f"{node.name}.json"),
+                vector_file_text(make_vectors(icd, node)),
+            )
+        protocol_text = protocol.protocol_vectors_text(icd)
         if protocol_text:
             yield PurePosixPath(f"{FILE}.json"), protocol_text
 

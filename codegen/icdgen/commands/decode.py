@@ -24,7 +24,7 @@ from icdgen.errors import UserError, unreadable
 
 if TYPE_CHECKING:
     from icdgen.icd.model import Icd, Message
-    from icdgen.recognize import Reading
+    from icdgen.recognize import FrameReading
 
 # Digits of a 32-bit id, and of a byte in hexadecimal or decimal notation
 _LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)
@@ -187,13 +187,13 @@ def _is_id(words: list[str]) -> bool:
 
 
 def _is_frame(words: list[str]) -> bool:
-    from icdgen.recognize import read
+    from icdgen.recognize import read_pasted
     from icdgen.values.errors import BadHex
 
     if words[0] == "-" or words[0].startswith("@") or _is_file(words[0]):
         return True
     try:
-        read(" ".join(words))
+        read_pasted(" ".join(words))
     except BadHex:
         return False
     return True
@@ -255,7 +255,7 @@ def _frames_in(file: BinaryIO, name: str) -> str | bytes:
     return data
 
 
-def _print_text(readings: Sequence[Reading]) -> None:
+def _print_text(readings: Sequence[FrameReading]) -> None:
     for number, reading in enumerate(readings):
         if number:
             click.echo("")
@@ -267,12 +267,12 @@ def _print_text(readings: Sequence[Reading]) -> None:
             say("\n\nnote: ".join((reading.title, *reading.remarks)))
 
 
-def _print_json(readings: Sequence[Reading]) -> None:
+def _print_json(readings: Sequence[FrameReading]) -> None:
     objects = [reading.to_json() for reading in readings]
     click.echo(json.dumps(objects if len(objects) > 1 else objects[0], indent=1))
 
 
-def _print_csv(readings: Sequence[Reading]) -> None:
+def _print_csv(readings: Sequence[FrameReading]) -> None:
     """Print one line per field; a frame without fields has one line."""
     out = io.StringIO()
     # RFC 4180 has CRLF, but tools on a pipe expect lines that end with LF.

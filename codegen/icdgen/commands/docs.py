@@ -58,7 +58,7 @@ def docs(
         site.serve(paths, previous, config.templates, packages, port, say)
         return
     with progress.items("documentation", "files") as watch:
-        built_site = site.make(paths, previous, config.templates, packages, watch)
+        built_site = site.make_site(paths, previous, config.templates, packages, watch)
     if built_site.findings:
         print_findings(built_site.findings, built_site.texts, "text", err=True)
     # Findings with errors: the site would be incomplete.

@@ -18,7 +18,7 @@ from icdgen.commands.common import (
     say,
 )
 from icdgen.errors import UserError
-from icdgen.generation.generate import Job, Outcome, remember, run
+from icdgen.generation.generate import GenerationOutcome, Job, remember, run
 
 
 class _Languages(click.Option):
@@ -130,7 +130,7 @@ def generate(
         )
 
 
-def _summary(job: Job, outcome: Outcome) -> str:
+def _summary(job: Job, outcome: GenerationOutcome) -> str:
     written = sum(len(plan.write) for plan in outcome.plans)
     removed = sum(len(plan.remove) for plan in outcome.plans)
     if not written and not removed:
@@ -142,6 +142,6 @@ def _summary(job: Job, outcome: Outcome) -> str:
     return f"{job.out}: {', '.join(parts)} ({', '.join(plan.language for plan in outcome.plans)})"
 
 
-def _current(job: Job, outcome: Outcome) -> str:
+def _current(job: Job, outcome: GenerationOutcome) -> str:
     total = sum(len(plan.files) for plan in outcome.plans)
     return f"{job.out}: all {total} files are current ({', '.join(plan.language for plan in outcome.plans)})"

@@ -75,4 +75,4 @@ def _style(origin: str, icds: tuple[Path, ...]) -> Style:
         # The node may be a shipped one that icdgen.toml does not name.
         loaded = load([*paths, shipped.icds()])
         node = find_node(loaded.icd, origin)
-    return style.of(loaded.icd, node, loaded.texts)
+    return style.style_of(loaded.icd, node, loaded.texts)

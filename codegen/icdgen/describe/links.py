@@ -15,7 +15,7 @@ from icdgen.frozen import NamedTuple, dataclass
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts
-from icdgen.protocol.declared import Fact
+from icdgen.protocol.declared import ProtocolFact
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Crc, Index, Report, TimePart
 
@@ -81,7 +81,7 @@ class Assumptions:
         """
         return self._left.pop((section, key), "")
 
-    def why_fact(self, part: object, fact: Fact) -> str:
+    def why_fact(self, part: object, fact: ProtocolFact) -> str:
         """Return why a declared fact of a part is assumed; empty if it is not."""
         return (
             # An assumption is about a key of the section itself, which is the first

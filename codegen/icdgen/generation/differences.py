@@ -6,12 +6,12 @@ from __future__ import annotations
 
 import difflib
 
-from icdgen.generation.write import Plan
+from icdgen.generation.write import WritePlan
 
 _FILES, _LINES = 5, 12
 
 
-def short_diff(plans: list[Plan]) -> str:
+def short_diff(plans: list[WritePlan]) -> str:
     """Return a unified diff of the first files that differ, and the number of further
     files.
     """

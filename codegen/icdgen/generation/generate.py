@@ -41,13 +41,13 @@ class Job:
 
 
 @dataclass(eq=False, repr=False)
-class Outcome:
+class GenerationOutcome:
     """Result of a run."""
 
     loaded: Loaded
     # The output depends only on `inputs` and on icdgen itself.
     may_be_remembered: bool = True
-    plans: list[write.Plan] = field(default_factory=list)
+    plans: list[write.WritePlan] = field(default_factory=list)
     # Fingerprint of each file that the output depends on.
     inputs: dict[Path, str] = field(default_factory=dict)
 
@@ -57,7 +57,7 @@ class Outcome:
         return any(plan.changes for plan in self.plans)
 
 
-def run(job: Job) -> Outcome:
+def run(job: Job) -> GenerationOutcome:
     """Generate.
 
     Writes nothing if the ICDs have errors or if ``job.check`` is set. Raises
@@ -78,7 +78,7 @@ def run(job: Job) -> Outcome:
     # a cached model lacks.
     plug_ins = [backend for backend in chosen if backend.name not in backends.names()]
     lined = any(getattr(backend, "needs_lines", False) for backend in chosen)
-    outcome = Outcome(
+    outcome = GenerationOutcome(
         load_checked(job.icds, backends.named_in(chosen), plug_ins, lined),
         may_be_remembered=not plug_ins and not lined,
     )
@@ -106,7 +106,7 @@ def run(job: Job) -> Outcome:
     return outcome
 
 
-def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
+def _depfile(outcome: GenerationOutcome) -> tuple[bytes, set[str]]:
     """Return the content of a dependency file in the syntax of Make, and the files that
     it names.
     """
@@ -125,7 +125,7 @@ def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
     }
 
 
-def _write_depfile(path: Path, outcome: Outcome) -> None:
+def _write_depfile(path: Path, outcome: GenerationOutcome) -> None:
     """Write the dependency file.
 
     Raises `UserError` if it is also an input or an output.
@@ -167,7 +167,7 @@ def _escape(path: str) -> str:
     )
 
 
-def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
+def remember(name: str, note: str, job: Job, outcome: GenerationOutcome) -> None:
     """Store a record of the run, with which the same command ends at once if its inputs
     and outputs are unchanged.
 

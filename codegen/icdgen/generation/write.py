@@ -16,7 +16,7 @@ from icdgen.generation import manifest
 
 
 @dataclass(eq=False, repr=False)
-class Plan:
+class WritePlan:
     """Changes in the folder ``out`` after which it has exactly the generated files of a
     language.
     """
@@ -39,13 +39,13 @@ class Plan:
 
 def plan(
     out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | bytes]]
-) -> Plan:
+) -> WritePlan:
     """Compare generated files with a folder.
 
     Raises `UserError` if a file would overwrite a file that icdgen did not write, or if
     two names differ only in case.
     """
-    result = Plan(out, language, {})
+    result = WritePlan(out, language, {})
     folded: dict[str, str] = {}
     for path, content in files:
         name = str(path)
@@ -91,7 +91,7 @@ def plan(
     return result
 
 
-def apply(changes: Plan) -> None:
+def apply(changes: WritePlan) -> None:
     """Write and remove files. Raises `UserError` if the folder cannot be written."""
     out = changes.out
     written = manifest.read(out, changes.language)

@@ -209,7 +209,7 @@ class Serial:
         self.serial.close()
 
 
-class Can:
+class CanBus:
     """A CAN bus, with python-can. It transfers packets."""
 
     def __init__(self, interface: str, channel: str, bit_rate: int) -> None:
@@ -251,7 +251,7 @@ class Can:
         self.bus.shutdown()
 
 
-def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
+def open_port(text: str, protocol: dict[str, Any]) -> Port | CanBus:
     """Open a port.
 
     ``protocol`` is the section of the ICD, with settings such as baud rate.
@@ -266,7 +266,7 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
             "udp://HOST:PORT does",
         )
     if separator:
-        openers: dict[str, Callable[[], Port | Can]] = {
+        openers: dict[str, Callable[[], Port | CanBus]] = {
             "tcp": lambda: Socket("tcp", *address(text)),
             "udp": lambda: Socket(
                 "udp",
@@ -309,14 +309,14 @@ def address(text: str) -> tuple[str, int]:
     return host, port
 
 
-def _can(path: str, section: dict[str, Any]) -> Can:
+def _can(path: str, section: dict[str, Any]) -> CanBus:
     interface, separator, channel = path.partition("/")
     if not separator or not interface or not channel:
         raise PortError(
             f"`can://{path}` is no CAN bus",
             "can://INTERFACE/CHANNEL, as python-can names them",
         )
-    return Can(interface, channel, section.get("bit_rate", 500_000))
+    return CanBus(interface, channel, section.get("bit_rate", 500_000))
 
 
 def _is_pty(path: str) -> bool:

@@ -12,7 +12,7 @@ from icdgen_runtime.wire.link import Link, Settings
 from icdgen_runtime.wire.session import BusSession, Session
 
 from icdgen.errors import UserError
-from icdgen.link.ports import Can, Port
+from icdgen.link.ports import CanBus, Port
 
 OnEvent = Callable[[Event], object]
 
@@ -23,7 +23,7 @@ class CanSession(BusSession):
     def __init__(
         self,
         link: Link,
-        port: Can,
+        port: CanBus,
         crc: bool,
         address: int,
         settings: Settings,
@@ -49,7 +49,7 @@ class CanSession(BusSession):
 @contextmanager
 def session(
     link: Link,
-    port: Port | Can,
+    port: Port | CanBus,
     crc: bool = False,
     address: int = 0,
     settings: Settings | None = None,
@@ -63,7 +63,7 @@ def session(
     a request that the ICD does not allow on this bus.
     """
     try:
-        if isinstance(port, Can):
+        if isinstance(port, CanBus):
             yield CanSession(
                 link, port, crc, address, settings or link.settings, on_event
             )

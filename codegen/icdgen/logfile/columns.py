@@ -19,7 +19,7 @@ TIME = "time"
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class LogColumn:
     """A field of a frame, or a slot of an unassigned bit.
 
     Offsets count from the start of an entry.
@@ -33,7 +33,7 @@ class Column:
     length: int
     byte_order: str
     pieces: tuple[Piece, ...]  # bits of a number in the entry
-    operands: tuple[Column, ...] = ()  # fields from which a value is derived
+    operands: tuple[LogColumn, ...] = ()  # fields from which a value is derived
 
     @property
     def at(self) -> int:
@@ -67,7 +67,7 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class EntryLayout:
     """Layout of the entries of a log with one mask.
 
     ``seconds`` and ``milliseconds`` are offset and size.
@@ -79,10 +79,10 @@ class Plan:
     seconds: tuple[int, int]
     milliseconds: tuple[int, int]
     order: Literal["little", "big"]
-    columns: tuple[Column, ...]
+    columns: tuple[LogColumn, ...]
 
 
-def plan(icd: Icd, facts: Facts, mask: bytes) -> Plan:
+def plan(icd: Icd, facts: Facts, mask: bytes) -> EntryLayout:
     """Return the columns of all frames that the mask selects.
 
     Raise `icdgen.protocol.facts.Unsupported`.
@@ -92,10 +92,10 @@ def plan(icd: Icd, facts: Facts, mask: bytes) -> Plan:
         need(facts.mask, "log_mask").slot_bytes,
     )
     slots = need(facts.mask, "log_mask").selected(mask)
-    columns: list[Column] = []
+    columns: list[LogColumn] = []
     for number, slot in enumerate(slots):
         columns += _columns(icd, facts, slot, form.frames_at + number * slot_bytes)
-    return Plan(
+    return EntryLayout(
         facts.node,
         tuple(slots),
         form.frames_at + len(slots) * slot_bytes,
@@ -106,11 +106,11 @@ def plan(icd: Icd, facts: Facts, mask: bytes) -> Plan:
     )
 
 
-def _columns(icd: Icd, facts: Facts, slot: LogBit, start: int) -> Iterator[Column]:
+def _columns(icd: Icd, facts: Facts, slot: LogBit, start: int) -> Iterator[LogColumn]:
     """Return the columns of a slot, which begins at byte ``start`` of an entry."""
     message = facts.telemetry.get(slot.id) if slot.id is not None else None
     if message is None:
-        yield Column(
+        yield LogColumn(
             f"bit_{slot.bit}",
             slot.name or f"bit {slot.bit}",
             None,
@@ -126,14 +126,14 @@ def _columns(icd: Icd, facts: Facts, slot: LogBit, start: int) -> Iterator[Colum
 
 def columns_of(
     icd: Icd, message: Message, start: int = 0, length: int | None = None
-) -> Iterator[Column]:
+) -> Iterator[LogColumn]:
     """Return the columns of a message that begins at byte ``start``.
 
     ``length`` excludes fields beyond this number of bytes.
     """
     owner, size = icd.node(message.node), message.length if length is None else length
     frame = _snake(message.identifier or message.name, owner.vocabulary)
-    columns: dict[str, Column] = {}
+    columns: dict[str, LogColumn] = {}
     for field in icd.longest_frame(message):
         operand_names = field.derived.fields if field.derived is not None else ()
         # A derived field has no bits of its own: it is left out with its operands, and
@@ -151,7 +151,7 @@ def columns_of(
             p._replace(byte=p.byte + start) for p in frame_bits.pieces(field, owner)
         )
         operands = tuple(columns[operand] for operand in operand_names)
-        columns[field.name] = Column(
+        columns[field.name] = LogColumn(
             name,
             message.name,
             message,
@@ -169,7 +169,7 @@ def _snake(name: str, vocabulary: tuple[str, ...]) -> str:
     return naming.snake(naming.words(name, vocabulary)) or "unnamed"
 
 
-def unique(columns: Iterable[Column]) -> Iterator[Column]:
+def unique(columns: Iterable[LogColumn]) -> Iterator[LogColumn]:
     """Return the columns with unique names. Repeated names get a number."""
     seen: set[str] = {TIME}
     for column in columns:

@@ -22,7 +22,7 @@ from itertools import pairwise, takewhile
 from statistics import median
 from typing import BinaryIO
 
-from icdgen.logfile.columns import Plan
+from icdgen.logfile.columns import EntryLayout
 from icdgen.logfile.strided import numbers_at
 
 MINUTE, DAY, MONTH, YEAR = 60_000, 86_400_000, 30 * 86_400_000, 366 * 86_400_000  # ms
@@ -39,7 +39,7 @@ NEVER = math.inf
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class EntrySpan:
     """Consecutive complete entries from byte ``start`` of the file."""
 
     start: int
@@ -77,7 +77,7 @@ class Integrity:
     ``truncated`` is the length of an incomplete last entry.
     """
 
-    spans: list[Span] = field(default_factory=list)
+    spans: list[EntrySpan] = field(default_factory=list)
     damages: list[Damage] = field(default_factory=list)
     jumps: list[TimeJump] = field(default_factory=list)
     truncated: int = 0
@@ -92,7 +92,9 @@ class LogSurvey:
     ``begin``.
     """
 
-    def __init__(self, file: BinaryIO, size: int, begin: int, plan: Plan) -> None:
+    def __init__(
+        self, file: BinaryIO, size: int, begin: int, plan: EntryLayout
+    ) -> None:
         self.file, self.size, self.begin, self.plan = file, size, begin, plan
         self.entry_bytes = plan.entry_bytes
         self.time_end = max(at + size for at, size in (plan.seconds, plan.milliseconds))
@@ -117,10 +119,10 @@ class LogSurvey:
             self._learn(run)
             broken = self._first_break(run)
             if most is not None and result.entries + (broken - start) // size >= most:
-                result.spans.append(Span(start, most - result.entries))
+                result.spans.append(EntrySpan(start, most - result.entries))
                 return result
             if broken + size > self.size and self._ends_well(broken):
-                result.spans.append(Span(start, (broken - start) // size))
+                result.spans.append(EntrySpan(start, (broken - start) // size))
                 result.truncated = self.size - broken
                 return result
             keep, resume = self._resolve(run, broken)
@@ -130,7 +132,7 @@ class LogSurvey:
                 result.jumps.append(TimeJump(broken, before, after))
                 run = broken
                 continue
-            result.spans.append(Span(start, max(0, keep - start) // size))
+            result.spans.append(EntrySpan(start, max(0, keep - start) // size))
             result.damages.append(self._damage(max(keep, start), resume))
             if resume >= self.size:
                 return result

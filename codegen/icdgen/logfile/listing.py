@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from icdgen.describe.numbers import byte_count
 from icdgen.logfile.recording import Recording, Tally
-from icdgen.logfile.source import Source, time_text
+from icdgen.logfile.source import LogSource, time_text
 from icdgen.tables import Column, clean, render
 
 _NAMES = ("frame", "message")
@@ -47,7 +47,7 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
     return text + "".join(f"\nnote: {note}\n" for note in tally.notes())
 
 
-def to_text(source: Source, width: int | None) -> str:
+def to_text(source: LogSource, width: int | None) -> str:
     """List size, times, mask and frames of a log."""
     plan, entries = source.plan, source.entries
     lines = [f"{source.path}: log of {plan.node.name}, {source.size:,} bytes"]

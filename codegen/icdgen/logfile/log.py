@@ -17,16 +17,16 @@ from icdgen.logfile import listing, parquet, sheet_parquet
 from icdgen.logfile.columns import TIME
 from icdgen.logfile.integrity import Integrity
 from icdgen.logfile.recording import Recording, key
-from icdgen.logfile.rows import Done, Value, rows
+from icdgen.logfile.rows import Done, Value, log_rows
 from icdgen.logfile.sheet import Sheet
-from icdgen.logfile.source import Source, open_source
+from icdgen.logfile.source import LogSource, open_source
 from icdgen.protocol import facts
 
 
 class Log(Protocol):
     """A log as a table.
 
-    Call `prepare` before `names`, `rows` and `to_parquet`, with the same ``head``: the
+    Call `prepare` before `names`, `log_rows` and `to_parquet`, with the same ``head``: the
     maximum number of rows, or None. These methods raise `UserError`.
     """
 
@@ -46,7 +46,7 @@ class Log(Protocol):
     def is_damaged(self, head: int | None) -> bool:
         """Return whether entries are left out because the file is damaged."""
 
-    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+    def log_rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         """Iterate over the rows."""
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
@@ -65,7 +65,7 @@ def open_log(
     return _Entries(_only(open_source(icd, node, path), messages))
 
 
-def _only(source: Source, messages: Sequence[Message]) -> Source:
+def _only(source: LogSource, messages: Sequence[Message]) -> LogSource:
     """Return the log with the columns of these messages.
 
     Raise `icdgen.errors.UserError`.
@@ -94,7 +94,7 @@ def _only(source: Source, messages: Sequence[Message]) -> Source:
 class _Entries:
     """A log file of a device."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: LogSource) -> None:
         self.source = source
 
     @property
@@ -118,8 +118,8 @@ class _Entries:
         # read.
         return self.source.integrity if head is None else self.source.survey(head)
 
-    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
-        return rows(self.source, head, done)
+    def log_rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+        return log_rows(self.source, head, done)
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
         parquet.to_parquet(self.source, path, head, done)
@@ -158,7 +158,7 @@ class _Recorded:
         # Noise on a line is normal; it is counted and does not affect decoded messages.
         return False
 
-    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+    def log_rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return self.sheet.rows(head, done)
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:

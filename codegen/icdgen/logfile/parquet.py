@@ -17,8 +17,8 @@ from icdgen_runtime._derived import column as derived_column
 from icdgen import codec
 from icdgen.errors import UserError
 from icdgen.icd.model import Node
-from icdgen.logfile.columns import TIME, Column, Plan
-from icdgen.logfile.source import Source
+from icdgen.logfile.columns import TIME, EntryLayout, LogColumn
+from icdgen.logfile.source import LogSource
 from icdgen.logfile.strided import numbers_at
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ GROUP = 24 << 20  # approximate bytes of the log in a row group
 
 
 def to_parquet(
-    source: Source, path: Path, head: int | None, done: Callable[[int], None]
+    source: LogSource, path: Path, head: int | None, done: Callable[[int], None]
 ) -> None:
     """Write the file.
 
@@ -74,7 +74,7 @@ def check_installed() -> None:
 
 
 def _groups(
-    source: Source, decoder: Decoder, head: int | None, done: Callable[[int], None]
+    source: LogSource, decoder: Decoder, head: int | None, done: Callable[[int], None]
 ) -> Iterator[pa.Table]:
     """Decode row groups of about `GROUP` bytes."""
     import pyarrow as pa
@@ -104,7 +104,7 @@ def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
 class Decoder:
     """Converter of entries to Arrow record batches."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: EntryLayout) -> None:
         import pyarrow as pa
 
         self.plan = plan
@@ -138,7 +138,7 @@ class Decoder:
 class ColumnReader:
     """Converter of one column of entries to an Arrow array."""
 
-    def __init__(self, column: Column, entry_bytes: int) -> None:
+    def __init__(self, column: LogColumn, entry_bytes: int) -> None:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes

@@ -9,14 +9,14 @@ from functools import lru_cache
 
 from icdgen import codec
 from icdgen.icd import floats
-from icdgen.logfile.columns import Column
-from icdgen.logfile.source import Source, time_text
+from icdgen.logfile.columns import LogColumn
+from icdgen.logfile.source import LogSource, time_text
 
 Value = int | float | str | bool | None  # None: missing
 Done = Callable[[int], None]  # called with the number of bytes read
 
 
-def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
+def log_rows(source: LogSource, head: int | None, done: Done) -> Iterator[list[Value]]:
     """Iterate over time and values of each entry."""
     readers, size = (
         [reader(column) for column in source.plan.columns],
@@ -29,14 +29,14 @@ def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
         done(len(piece))
 
 
-def reader(column: Column) -> Callable[[bytes], Value]:
+def reader(column: LogColumn) -> Callable[[bytes], Value]:
     """Return the function that reads the value of a column from an entry."""
     if column.operands:
         return _derived(column)
     return _READERS.get(column.kind, _integer)(column)
 
 
-def _derived(column: Column) -> Callable[[bytes], float]:
+def _derived(column: LogColumn) -> Callable[[bytes], float]:
     """Return the function that computes a derived value from an entry."""
     assert column.field and column.field.derived
     how, numbers = (
@@ -46,7 +46,7 @@ def _derived(column: Column) -> Callable[[bytes], float]:
     return lambda entry: how.double([number(entry) for number in numbers])
 
 
-def _number(column: Column) -> Callable[[bytes], float]:
+def _number(column: LogColumn) -> Callable[[bytes], float]:
     """Return the function that reads a number from an entry as a double."""
     if column.operands:
         return _derived(column)
@@ -55,7 +55,7 @@ def _number(column: Column) -> Callable[[bytes], float]:
     return lambda entry: codec.value_double(field, raw(entry))
 
 
-def _raw(column: Column) -> Callable[[bytes], int]:
+def _raw(column: LogColumn) -> Callable[[bytes], int]:
     """Return the function that reads a raw integer from an entry."""
     assert column.field
     field, first, last = column.field, column.at, column.at + column.size
@@ -76,7 +76,7 @@ def _raw(column: Column) -> Callable[[bytes], int]:
     return read
 
 
-def _integer(column: Column) -> Callable[[bytes], Value]:
+def _integer(column: LogColumn) -> Callable[[bytes], Value]:
     raw, steps, curve = _raw(column), column.steps, column.curve
     if curve is not None:
         return lambda entry: curve.double(raw(entry))
@@ -86,12 +86,12 @@ def _integer(column: Column) -> Callable[[bytes], Value]:
     return lambda entry: (raw(entry) * a + b) / d
 
 
-def _bool(column: Column) -> Callable[[bytes], Value]:
+def _bool(column: LogColumn) -> Callable[[bytes], Value]:
     raw = _raw(column)
     return lambda entry: bool(raw(entry))
 
 
-def _enum(column: Column) -> Callable[[bytes], Value]:
+def _enum(column: LogColumn) -> Callable[[bytes], Value]:
     assert column.field and column.field.enum
     raw, enum = _raw(column), column.field.enum
     named = lru_cache(maxsize=1024)(
@@ -102,7 +102,7 @@ def _enum(column: Column) -> Callable[[bytes], Value]:
     return lambda entry: named(raw(entry))
 
 
-def _float(column: Column) -> Callable[[bytes], Value]:
+def _float(column: LogColumn) -> Callable[[bytes], Value]:
     assert column.field
     raw, bits, curve = _raw(column), column.field.bits, column.curve
     form, integer_form = ("<f", "<I") if bits == 32 else ("<d", "<Q")
@@ -118,12 +118,14 @@ def _float(column: Column) -> Callable[[bytes], Value]:
     return read
 
 
-def _octets(column: Column, shown: Callable[[bytes], str]) -> Callable[[bytes], Value]:
+def _octets(
+    column: LogColumn, shown: Callable[[bytes], str]
+) -> Callable[[bytes], Value]:
     first, last = column.at, column.at + column.size
     return lambda entry: shown(entry[first:last])
 
 
-_READERS: dict[str, Callable[[Column], Callable[[bytes], Value]]] = {
+_READERS: dict[str, Callable[[LogColumn], Callable[[bytes], Value]]] = {
     "text": lambda column: _octets(column, codec.text), "bool": _bool, "enum": _enum, "float": _float,
     "bytes": lambda column: _octets(column, bytes.hex),
 }  # fmt: skip

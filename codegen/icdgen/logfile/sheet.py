@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 
 from icdgen.frozen import NamedTuple
-from icdgen.logfile.columns import Column, columns_of, unique
+from icdgen.logfile.columns import LogColumn, columns_of, unique
 from icdgen.logfile.recording import Key, ReceivedMessage, Recording, Tally, key
 from icdgen.logfile.rows import Done, Value, reader
 from icdgen.protocol.packet_formats import GIVEN
@@ -17,14 +17,14 @@ from icdgen.protocol.packet_formats import GIVEN
 MESSAGE = "message"  # column with the name of the message
 
 
-class Entry(NamedTuple):
+class SheetColumn(NamedTuple):
     """A column of the table: its index and its field.
 
     ``is_cut``: the number of bytes varies.
     """
 
     place: int
-    column: Column
+    column: LogColumn
     is_cut: bool
 
 
@@ -52,17 +52,17 @@ class Sheet:
             for message in messages
             for column in columns_of(recording.icd, message)
         )
-        self.entries: dict[Key, list[Entry]] = {
+        self.entries: dict[Key, list[SheetColumn]] = {
             key(message): [] for message in messages
         }
         for place, column in enumerate(columns, 1 + len(self.roles)):
             assert column.message and column.field
             # A text ends at its first NUL, so that the zeros behind it do no harm.
             is_cut = column.field.scalar.length is not None and column.kind == "bytes"
-            self.entries[key(column.message)].append(Entry(place, column, is_cut))
+            self.entries[key(column.message)].append(SheetColumn(place, column, is_cut))
 
     @cached_property
-    def columns(self) -> list[Column]:
+    def columns(self) -> list[LogColumn]:
         """Columns of fields, after the name of the message and the frame fields."""
         return [entry.column for entries in self.entries.values() for entry in entries]
 
@@ -95,13 +95,13 @@ class Sheet:
             yield row
 
 
-def end_of_field(received: ReceivedMessage, column: Column) -> int:
+def end_of_field(received: ReceivedMessage, column: LogColumn) -> int:
     """Return the first byte after a variable-length field."""
     assert column.field
     return received.ends[column.field.name]
 
 
-def is_present(received: ReceivedMessage, column: Column) -> bool:
+def is_present(received: ReceivedMessage, column: LogColumn) -> bool:
     """Return whether the message has the field."""
     return received.present is None or (
         column.field is not None and column.field.name in received.present

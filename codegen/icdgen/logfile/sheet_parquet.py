@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from icdgen.logfile.parquet import ColumnReader, check_installed, schema_of, write
 from icdgen.logfile.recording import Key, ReceivedMessage, Tally, key
 from icdgen.logfile.rows import Done
-from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of_field, is_present
+from icdgen.logfile.sheet import MESSAGE, Sheet, SheetColumn, end_of_field, is_present
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -39,7 +39,9 @@ def _batches(
         yield batch
 
 
-def _readers(entries: list[Entry], length: int) -> list[tuple[Entry, ColumnReader]]:
+def _readers(
+    entries: list[SheetColumn], length: int
+) -> list[tuple[SheetColumn, ColumnReader]]:
     """Return a reader for each column of a message of ``length`` bytes."""
     return [(entry, ColumnReader(entry.column, length)) for entry in entries]
 
@@ -98,7 +100,7 @@ class _TableBuilder:
         self,
         batch: list[ReceivedMessage],
         here: list[int],
-        entry: Entry,
+        entry: SheetColumn,
         reader: ColumnReader,
         data: bytes,
     ) -> pa.Array:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
-from icdgen.logfile.columns import Plan, plan
+from icdgen.logfile.columns import EntryLayout, plan
 from icdgen.logfile.integrity import Damage, Integrity, LogSurvey, TimeJump
 from icdgen.protocol import facts
 from icdgen.values.find import find_node
@@ -21,7 +21,7 @@ _PIECE = 1 << 18  # approximate bytes of a read
 
 
 @dataclass(frozen=True)
-class Source:
+class LogSource:
     """A log file and its header.
 
     `icdgen.logfile.integrity` finds its complete entries.
@@ -31,7 +31,7 @@ class Source:
     mask: bytes
     header_bytes: int
     size: int
-    plan: Plan
+    plan: EntryLayout
 
     @cached_property
     def integrity(self) -> Integrity:
@@ -193,7 +193,7 @@ def node_of(icd: Icd, name: str | None) -> Node:
     raise UserError("it is not said whose log it is", f"name the node; nodes: {names}")
 
 
-def open_source(icd: Icd, node: Node, path: Path) -> Source:
+def open_source(icd: Icd, node: Node, path: Path) -> LogSource:
     """Open a log file. Raise `icdgen.errors.UserError`."""
     node_facts = facts.of(icd, node)
     if node_facts.log_file is None or node_facts.mask is None:
@@ -216,7 +216,7 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
     mask = head[
         node_facts.log_file.mask_at : node_facts.log_file.mask_at + node_facts.mask.size
     ]
-    source = Source(path, mask, header, size, plan(icd, node_facts, mask))
+    source = LogSource(path, mask, header, size, plan(icd, node_facts, mask))
     # The header has no magic number: the times of the entries are the only evidence
     # that this is a log.
     # A log without a complete entry has no such evidence, and is accepted.

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from icdgen.procedures.numbers import put_number
-from icdgen.procedures.run import Run, index_of
+from icdgen.procedures.run import ProcedureRun, index_of
 from icdgen.protocol.procedures import Collect, Get, Jump, Poll
 
 
-class Listing(Run):
+class Listing(ProcedureRun):
     """The client reads a list, entry by entry.
 
     A telecommand of the loop advances to the next entry; others return to the first
@@ -49,7 +49,7 @@ class Listing(Run):
         return frame
 
 
-class Action(Run):
+class Action(ProcedureRun):
     """The device does something with an object, or describes it."""
 
     def prepare(self) -> None:

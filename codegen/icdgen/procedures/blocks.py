@@ -15,7 +15,7 @@ from icdgen.procedures.numbers import (
     mark_received,
     put_number,
 )
-from icdgen.procedures.run import Change, Run, is_of, steps_of
+from icdgen.procedures.run import Change, ProcedureRun, is_of, steps_of
 from icdgen.protocol.procedures import (
     BLOCK_IS_EMPTY,
     BLOCK_LENGTH,
@@ -33,14 +33,14 @@ from icdgen.protocol.procedures import (
 LARGEST = 1 << 24  # bytes of an object: a large offset must not exhaust the memory
 
 
-class Packet(NamedTuple):
+class BlockPacket(NamedTuple):
     """Telemetry with a packet of a block."""
 
     message: Message
     data: bytes
 
 
-class BlockRun(Run):
+class BlockRun(ProcedureRun):
     """State of a procedure with blocks."""
 
     def prepare(self) -> None:
@@ -102,7 +102,7 @@ class BlockRun(Run):
         return self.device.checksum(step.algorithm, data)
 
 
-class Reading(BlockRun):
+class BlockReading(BlockRun):
     """The client reads an object in blocks."""
 
     def prepare(self) -> None:
@@ -123,13 +123,13 @@ class Reading(BlockRun):
         if index in self.starts:
             self.waiting, self._last = list(self._missing()), None
 
-    def requested(self) -> Packet:
+    def requested(self) -> BlockPacket:
         """Return the next packet; after the last packet, it is repeated."""
         if self.waiting:
             self._last = self.waiting.pop(0)
         return self.packet(self._last)
 
-    def packet(self, position: int | None) -> Packet:
+    def packet(self, position: int | None) -> BlockPacket:
         """Return the packet at a position; None: only fill."""
         size, message = self.blocks.packet_bytes, self.receive.message
         frame, at = bytearray(message.length), self.receive.data_at
@@ -139,7 +139,7 @@ class Reading(BlockRun):
             number = self.blocks.first_packet + position
             put_number(self.receive.number, frame, number)
         frame[at : at + size] = part.ljust(size, self.filler)
-        return Packet(message, bytes(frame))
+        return BlockPacket(message, bytes(frame))
 
     def covered(self) -> bytes:
         return self.block.ljust(self._count * self.blocks.packet_bytes, self.filler)
@@ -182,7 +182,7 @@ class Reading(BlockRun):
                 yield position
 
 
-class Writing(BlockRun):
+class BlockWriting(BlockRun):
     """The client writes an object in blocks."""
 
     def prepare(self) -> None:

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 
 from icdgen.icd.model import Message
 from icdgen.procedures.actions import Action, Listing
-from icdgen.procedures.blocks import Packet, Reading, Writing
-from icdgen.procedures.run import Device, Refused, Run
+from icdgen.procedures.blocks import BlockPacket, BlockReading, BlockWriting
+from icdgen.procedures.run import Device, ProcedureRun, Refused
 from icdgen.protocol.procedures import Effect, Procedure
 
-__all__ = ["Counterpart", "Device", "Packet", "Refused"]
+__all__ = ["BlockPacket", "Counterpart", "Device", "Refused"]
 
 
 class Counterpart:
@@ -68,7 +68,7 @@ class Counterpart:
         """Return whether a telecommand has a packet of a block."""
         return any(run.is_packet(message) for run in self.runs.values())
 
-    def packets(self, bus: str) -> Iterator[Packet]:
+    def packets(self, bus: str) -> Iterator[BlockPacket]:
         """Yield the packets that the device sends unasked on a bus, each once."""
         for run in self._reading():
             while bus not in run.receive.requested_on and run.waiting:
@@ -84,12 +84,12 @@ class Counterpart:
                 return run.requested().data
         return None
 
-    def _reading(self) -> list[Reading]:
-        return [run for run in self.runs.values() if isinstance(run, Reading)]
+    def _reading(self) -> list[BlockReading]:
+        return [run for run in self.runs.values() if isinstance(run, BlockReading)]
 
 
-def _class_of(procedure: Procedure) -> type[Run]:
+def _class_of(procedure: Procedure) -> type[ProcedureRun]:
     """Return the class of the state of a procedure."""
     if procedure.blocks:
-        return Writing if procedure.blocks.sends else Reading
+        return BlockWriting if procedure.blocks.sends else BlockReading
     return Listing if procedure.entry else Action

@@ -81,7 +81,7 @@ class Device:
     telecommands: int = field(default=0, init=False)  # so far; they order the changes
 
 
-class Run:
+class ProcedureRun:
     """State of a procedure in the device.
 
     ``names``: inputs that are the key of the objects.

@@ -25,7 +25,7 @@ MOST_MS = 0x7FFF_FFFF
 REQUIRED: Final = object()
 
 
-class Kind(Enum):
+class FactKind(Enum):
     """Kind of a fact. Each language has one type and one notation for each kind."""
 
     NUMBER = auto()
@@ -39,7 +39,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Fact:
+class ProtocolFact:
     """Protocol fact.
 
     ``least`` and ``most`` limit the value in the ICD. ``holds`` is the largest value of
@@ -47,7 +47,7 @@ class Fact:
     """
 
     name: str
-    kind: Kind
+    kind: FactKind
     key: str  # dotted key within the section of the ICD; empty: derived from other keys
     about: str  # meaning, beginning in lower case
     least: int = 0
@@ -68,7 +68,9 @@ class Fact:
     def meaning(self) -> str:
         """Meaning with its unit."""
         return (
-            f"{self.about}, in milliseconds" if self.kind is Kind.TIME else self.about
+            f"{self.about}, in milliseconds"
+            if self.kind is FactKind.TIME
+            else self.about
         )
 
     def given(self, section: Mapping[str, Any]) -> object:
@@ -78,7 +80,7 @@ class Fact:
             value = value.get(part) if isinstance(value, Mapping) else None
         return value
 
-    def read(
+    def read_value(
         self, section: Mapping[str, Any], preceding: Mapping[str, object]
     ) -> object:
         """Return the value of the fact in a section.
@@ -89,7 +91,7 @@ class Fact:
         value = self.given(section) if self.key else None
         if value is None:
             return self.default(preceding) if callable(self.default) else self.default
-        if self.kind is Kind.FLAG:
+        if self.kind is FactKind.FLAG:
             # The schema allows no value but those in `words`.
             return self.listed in value if self.listed else value == self.words[1]  # type: ignore[operator]
         return value
@@ -100,11 +102,11 @@ Default = object
 
 
 def _declare(
-    kind: Kind, key: str, about: str, default: Default = REQUIRED, **more: Any
+    kind: FactKind, key: str, about: str, default: Default = REQUIRED, **more: Any
 ) -> Any:
     """Return the field of a dataclass that carries the declaration."""
     metadata = {"fact": (kind, key, about, default, more)}
-    # A computed default depends on other facts, so `read` supplies it.
+    # A computed default depends on other facts, so `read_part` supplies it.
     if default is REQUIRED or callable(default):
         return field(metadata=metadata)
     return field(default=default, metadata=metadata)
@@ -120,7 +122,7 @@ def number(
 ) -> Any:
     """Declare a number."""
     return _declare(
-        Kind.NUMBER,
+        FactKind.NUMBER,
         key,
         about,
         default,
@@ -140,7 +142,7 @@ def octets(
 ) -> Any:
     """Declare a number of bytes, or a byte position."""
     return _declare(
-        Kind.SIZE,
+        FactKind.SIZE,
         key,
         about,
         default,
@@ -152,17 +154,17 @@ def octets(
 
 def time(key: str, about: str, default: Default = REQUIRED, least: int = 1) -> Any:
     """Declare a time in milliseconds."""
-    return _declare(Kind.TIME, key, about, default, least=least, most=MOST_MS)
+    return _declare(FactKind.TIME, key, about, default, least=least, most=MOST_MS)
 
 
 def octet(key: str, about: str, default: Default = REQUIRED) -> Any:
     """Declare a byte of the transmission."""
-    return _declare(Kind.OCTET, key, about, default, most=BYTE, holds=BYTE)
+    return _declare(FactKind.OCTET, key, about, default, most=BYTE, holds=BYTE)
 
 
 def code(key: str, about: str, default: Default = REQUIRED) -> Any:
     """Declare a number of up to 32 bits that is read in hexadecimal."""
-    return _declare(Kind.CODE, key, about, default)
+    return _declare(FactKind.CODE, key, about, default)
 
 
 def flag(
@@ -179,23 +181,29 @@ def flag(
     the ICD that sets the flag; then ``words`` are the entries of the list.
     """
     return _declare(
-        Kind.FLAG, key, about, default, words=words, listed=listed, key_about=key_about
+        FactKind.FLAG,
+        key,
+        about,
+        default,
+        words=words,
+        listed=listed,
+        key_about=key_about,
     )
 
 
 def buses(about: str) -> Any:
-    """Declare a set of buses out of UART, I2C and CAN, which `Reader.checksum`
+    """Declare a set of buses out of UART, I2C and CAN, which `ProtocolReader.checksum`
     computes.
     """
-    return _declare(Kind.BUSES, "", about)
+    return _declare(FactKind.BUSES, "", about)
 
 
 def span(about: str) -> Any:
     """Declare a byte position and a number of bytes."""
-    return _declare(Kind.SPAN, "", about)
+    return _declare(FactKind.SPAN, "", about)
 
 
-def facts_of(part: Any) -> tuple[Fact, ...]:
+def facts_of(part: Any) -> tuple[ProtocolFact, ...]:
     """Return the declared facts of a dataclass or of its instance, in order.
 
     Fields without a declaration are computed by `icdgen.protocol.reading`.
@@ -205,7 +213,7 @@ def facts_of(part: Any) -> tuple[Fact, ...]:
 
 # Cached by class: an instance need not be hashable.
 @cache
-def _facts(part: Hashable) -> tuple[Fact, ...]:
+def _facts(part: Hashable) -> tuple[ProtocolFact, ...]:
     assert isinstance(part, type)
     declarations = (
         (item.name, *item.metadata["fact"])
@@ -213,12 +221,12 @@ def _facts(part: Hashable) -> tuple[Fact, ...]:
         if "fact" in item.metadata
     )
     return tuple(
-        Fact(name, kind, key, about, default=default, **more)
+        ProtocolFact(name, kind, key, about, default=default, **more)
         for name, kind, key, about, default, more in declarations
     )
 
 
-def read(
+def read_part(
     part: type[Any],
     section: Mapping[str, Any],
     **computed: object,
@@ -232,7 +240,7 @@ def read(
     for fact in facts_of(part):
         if fact.name in values:
             continue
-        value = fact.read(section, values)
+        value = fact.read_value(section, values)
         if value is REQUIRED:
             return None
         values[fact.name] = value

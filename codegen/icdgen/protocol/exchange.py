@@ -2,7 +2,7 @@
 each response means.
 
 All languages match responses by numbers in fixed bytes, so that a client need not
-decode messages.
+decode messages. `icdgen.protocol.responding` creates the exchanges from the ICD.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Response:
 
 
 @dataclass(frozen=True, slots=True)
-class Poll:
+class ResponsePoll:
     """Telemetry that a client requests again and again until it is the response to a
     telecommand: until it has the right echo, and the number ``until`` is not 0.
     """
@@ -85,7 +85,7 @@ class Exchange:
     responses: tuple[Response, ...]
     timeout: int  # time-out in milliseconds; 0: that of the client
     in_header: int = 0
-    poll: Poll | None = None  # None: the response comes by itself
+    poll: ResponsePoll | None = None  # None: the response comes by itself
 
     def is_in_header(self, source: int) -> bool:
         """Return whether a source is a place in the header."""

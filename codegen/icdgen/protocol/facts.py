@@ -16,14 +16,14 @@ from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.exchange import BusExchanges, Exchange
 from icdgen.protocol.packet_formats import PacketFormat, Stream
 from icdgen.protocol.procedures import Procedure, VerifyChecksum
-from icdgen.protocol.reading import Assumption, Reader
+from icdgen.protocol.reading import Assumption, ProtocolReader
 from icdgen.protocol.sections import (
     SECTIONS,
     Can,
     Checksum,
     ChecksumAlgorithm,
-    Direction,
     Framing,
+    IdRange,
     Index,
     LogFile,
     LogMask,
@@ -46,7 +46,7 @@ class Facts:
 
     node: Node
     little: bool  # byte order of numbers
-    telemetry_ids: Direction
+    telemetry_ids: IdRange
     telecommands: dict[int, Message]
     telemetry: dict[int, Message]
     client: Settings
@@ -77,37 +77,31 @@ class Facts:
     @property
     def checksum_of_files(self) -> ChecksumAlgorithm | None:
         """Checksum of files: the first that the procedures verify; None without one."""
-        return next(
-            (
-                step.algorithm
-                for procedure in self.procedures
-                for step in procedure.steps
-                if isinstance(step, VerifyChecksum)
-            ),
-            None,
-        )
+        for procedure in self.procedures:
+            for step in procedure.steps:
+                if isinstance(step, VerifyChecksum):
+                    return step.algorithm
+        return None
 
     @property
     def exchanges(self) -> tuple[Exchange, ...]:
         """Exchanges on all links."""
-        on_buses = (
-            exchange
-            for each in self.bus_exchanges.values()
-            for exchange in (each.command, each.request)
-            if exchange
-        )
-        return (*(self.stream.exchanges if self.stream else ()), *on_buses)
+        exchanges = [*self.stream.exchanges] if self.stream else []
+        for on_bus in self.bus_exchanges.values():
+            if on_bus.command is not None:
+                exchanges.append(on_bus.command)
+            exchanges.append(on_bus.request)
+        return tuple(exchanges)
 
     @property
     def reason_enums(self) -> list[Enum]:
         """Enumerations of the reasons of refusals, each once."""
-        enums = [
-            response.enum
-            for exchange in self.exchanges
-            for response in exchange.responses
-            if response.enum is not None
-        ]
-        return list({enum.name: enum for enum in enums}.values())
+        enums: dict[str, Enum] = {}
+        for exchange in self.exchanges:
+            for response in exchange.responses:
+                if response.enum is not None:
+                    enums[response.enum.name] = response.enum
+        return list(enums.values())
 
     @property
     def polled(self) -> Message | None:
@@ -131,10 +125,8 @@ class Facts:
         """Names of the nodes that define the messages: the node itself, then included
         nodes.
         """
-        nodes = {
-            message.node
-            for message in (*self.telecommands.values(), *self.telemetry.values())
-        }
+        messages = (*self.telecommands.values(), *self.telemetry.values())
+        nodes = {message.node for message in messages}
         return [self.node.name, *sorted(nodes - {self.node.name})]
 
     @property
@@ -142,9 +134,8 @@ class Facts:
         """Bytes of the longest telecommand with its id and checksum."""
         # The leading 1 is the id byte.
         extra = self.checksum.bytes if self.checksum else 0
-        return (
-            1 + extra + max((m.length for m in self.telecommands.values()), default=0)
-        )
+        longest = max((m.length for m in self.telecommands.values()), default=0)
+        return 1 + extra + longest
 
     @property
     def longest_reply(self) -> int:
@@ -166,10 +157,8 @@ class Facts:
         """Largest number of data bytes of a message in either direction, without id and
         checksum.
         """
-        return max(
-            (m.length for m in (*self.telecommands.values(), *self.telemetry.values())),
-            default=0,
-        )
+        messages = (*self.telecommands.values(), *self.telemetry.values())
+        return max((message.length for message in messages), default=0)
 
     @property
     def longest(self) -> int:
@@ -199,7 +188,7 @@ def need(part: T | None, name: str) -> T:
 @cached_by_node
 def of(icd: Icd, node: Node) -> Facts:
     """Return the protocol facts of a node."""
-    reader = Reader(icd, node)
+    reader = ProtocolReader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
     framing = reader.part(Framing)
     address, can = reader.i2c_address(), reader.can()

@@ -1,5 +1,8 @@
 """Reader of the `link` section of a checked ICD, into the classes of
 `icdgen.protocol.packet_formats`.
+
+`stream_of` is the entry: it reads the packet formats and then the messages of both
+directions with their packet, their checksum and their responses.
 """
 
 from __future__ import annotations
@@ -250,14 +253,14 @@ def stream_of(
     # the packet.
     unrequested = {row.requests for row in telecommands if row.requests is not None}
     unrequested |= {*stream.confirming}
-    requested = {
-        id
-        for id, variants in ids.telemetry.items()
+    requested = set()
+    for id, variants in ids.telemetry.items():
+        messages = [variant.message for variant in variants]
         if all(
-            is_requested(packets, variant.message, ids.telecommand, unrequested)
-            for variant in variants
-        )
-    }
+            is_requested(packets, message, ids.telecommand, unrequested)
+            for message in messages
+        ):
+            requested.add(id)
     rows_of_telemetry = rows_of(
         ids.telemetry, TELEMETRY, packets, checksums, {}, requested
     )

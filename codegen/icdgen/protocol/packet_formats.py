@@ -180,20 +180,22 @@ class Stream:
         """Return the ids of the telemetry that responds to telecommands or requests,
         and is the reply to none of them.
         """
-        responses = {
-            (response.telemetry, response.is_reply)
-            for exchange in self.exchanges
-            for response in exchange.responses
-            if response.telemetry is not None
-        }
-        replies = {id for id, is_reply in responses if is_reply}
-        return tuple(sorted({id for id, _ in responses} - replies))
+        ids: set[int] = set()
+        replies: set[int] = set()
+        for exchange in self.exchanges:
+            for response in exchange.responses:
+                if response.telemetry is not None:
+                    ids.add(response.telemetry)
+                    if response.is_reply:
+                        replies.add(response.telemetry)
+        return tuple(sorted(ids - replies))
 
     @property
     def requested_ids(self) -> frozenset[int]:
         """Return the ids of the telemetry that a client can request."""
-        asked = {row.requests for row in self.telecommands if row.requests is not None}
-        return frozenset(asked | {row.id for row in self.telemetry if row.is_requested})
+        ids = {row.requests for row in self.telecommands if row.requests is not None}
+        ids |= {row.id for row in self.telemetry if row.is_requested}
+        return frozenset(ids)
 
     def exchange_of(self, row: StreamRow) -> Exchange | None:
         """Return the responses to a telecommand, or to the request of telemetry by a
@@ -269,6 +271,6 @@ class Stream:
         # frames may share one in RFC 1662.
         if self.delimited_by in (SLIP, HDLC):
             return 2 * self.longest + 2
-        return self.longest + (
-            self.longest // 254 + 2 if self.delimited_by == COBS else 0
-        )
+        if self.delimited_by == COBS:
+            return self.longest + self.longest // 254 + 2
+        return self.longest

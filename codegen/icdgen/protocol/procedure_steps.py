@@ -98,7 +98,7 @@ class ProcedureReader:
         self._entry: Message | None = None
         self._blocks: Blocks | None = None
 
-    def read(self, name: str) -> Procedure:
+    def read_procedure(self, name: str) -> Procedure:
         """Return the procedure under its name."""
         section, limits = self._section, self._limits
         # Before the steps: a client writes its inputs into consecutive registers.

@@ -33,7 +33,7 @@ from icdgen.icd.packets import ID_ROLE, declared_packets, value_of
 from icdgen.icd.responses import ACK, number_of
 from icdgen.icd.variants import ids_of
 from icdgen.once import cached_property
-from icdgen.protocol.declared import read
+from icdgen.protocol.declared import read_part
 from icdgen.protocol.exchange import BusExchanges
 from icdgen.protocol.framed_links import packet_of, stream_of
 from icdgen.protocol.packet_formats import PacketFormat, Stream
@@ -48,8 +48,8 @@ from icdgen.protocol.sections import (
     Checksum,
     ChecksumAlgorithm,
     Crc,
-    Direction,
     Extended,
+    IdRange,
     Index,
     IndexField,
     LogBit,
@@ -74,7 +74,7 @@ class Assumption(NamedTuple):
     why: str
 
 
-class Reader:
+class ProtocolReader:
     """Reader of the protocol parts of one node."""
 
     def __init__(self, icd: Icd, node: Node) -> None:
@@ -106,17 +106,20 @@ class Reader:
         ``computed``: values that follow from other keys.
         """
         section = self.section(*SECTIONS[part].split("."))
-        result: T | None = read(part, section, **computed) if section else None
+        result: T | None = read_part(part, section, **computed) if section else None
         return result
 
-    def telemetry_ids(self) -> Direction:
+    def telemetry_ids(self) -> IdRange:
+        """Return the range of telemetry ids on buses, which tells replies from
+        acknowledges.
+        """
         ids = self.section("link", "ids", "telemetry")
         if framed_link(self.protocol):
             # Empty: framed links have no range of ids for telemetry.
-            return Direction(1, 0)
+            return IdRange(1, 0)
         # Without telemetry the range is empty (first above last), and no received
         # message is a reply.
-        return Direction(
+        return IdRange(
             ids.get("first", min(self.telemetry, default=1)),
             ids.get("last", max(self.telemetry, default=0)),
         )
@@ -226,14 +229,13 @@ class Reader:
         _, first = places[0]
 
         def buses(direction: str, mandatory: bool) -> tuple[str, ...]:
-            own = {
-                bus
-                for packet, row in places
-                if direction in packet.directions
-                and not (mandatory and row.get("optional", False))
-                for bus in buses_with(packet.section)
-            }
-            return tuple(bus for bus in BUSES if bus in own)
+            """Return the buses on which a message may, or must, have a checksum."""
+            with_checksum: set[str] = set()
+            for packet, row in places:
+                is_optional = row.get("optional", False)
+                if direction in packet.directions and not (mandatory and is_optional):
+                    with_checksum.update(buses_with(packet.section))
+            return tuple(bus for bus in BUSES if bus in with_checksum)
 
         return Checksum(
             algorithm=self.checksums[first["checksum"]],
@@ -246,6 +248,7 @@ class Reader:
         )
 
     def stream(self) -> Stream | None:
+        """Return the messages of a framed link; None on UART, I2C and CAN."""
         section = framed_link(self.protocol)
         if not section:
             return None
@@ -258,6 +261,7 @@ class Reader:
         )
 
     def mask(self) -> LogMask | None:
+        """Return the log mask with its bits; None if the ICD does not describe it."""
         slot, bits = self.section("log_mask").get("frame_bytes", 0), {}
         # The node's own entries override those of included nodes.
         for node in (*self.icd.included(self.node), self.node):
@@ -271,6 +275,7 @@ class Reader:
         return self.part(LogMask, bits=bits)
 
     def log_file(self) -> LogFile | None:
+        """Return the format of log files; None without a mask or the parts of a time."""
         given = self.section("telemetry_log")
         if not given or not self.section("log_mask"):
             return None
@@ -317,18 +322,19 @@ class Reader:
             reader = ProcedureReader(
                 section, nodes, self.messages, self.enums, self.checksums
             )
-            yield reader.read(name)
+            yield reader.read_procedure(name)
 
     def unsolicited(self) -> dict[int, int]:
         """Return the telemetry that the node sends unasked on the UART: the constant that
         heads its packet -> its own id.
         """
         bus = self.buses.get(UART)
-        return {
-            value_of(packet.header[0], TELEMETRY, True): self.messages[name].ids[-1]
-            for packet in (bus.packets.all if bus else ())
-            for name in packet.messages or ()
-        }
+        ids: dict[int, int] = {}
+        for packet in bus.packets.all if bus else ():
+            for name in packet.messages or ():
+                constant = value_of(packet.header[0], TELEMETRY, True)
+                ids[constant] = self.messages[name].ids[-1]
+        return ids
 
     def report(self, given: dict[str, Any]) -> Report | None:
         message = self.messages.get(given.get("message", ""))
@@ -350,7 +356,7 @@ def declared_algorithm(name: str, declaration: Mapping[str, Any]) -> ChecksumAlg
     given: dict[str, Any] = {"polynomial": 0, "init": 0, "xor_out": 0}
     given |= {"reflect_in": False, "reflect_out": False, **declaration}
     kind, seeds = given["kind"], given.get("seeds", {})
-    return ChecksumAlgorithm(name, kind, read(Crc, given), seeds)
+    return ChecksumAlgorithm(name, kind, read_part(Crc, given), seeds)
 
 
 def declared_value(message: Message, key: str) -> object:
@@ -380,8 +386,10 @@ def _name_of_row(row: dict[str, Any]) -> tuple[str, ...]:
     """Return the message of a step, or the name of another row, if it has one."""
     names = (row.get(key) for key in ("send", "get", "poll", "receive", "name"))
     name = next((name for name in names if isinstance(name, str)), None)
+    if name:
+        return (name,)
     # A `map` has several messages.
-    return (name,) if name else ("map",) if "map" in row else ()
+    return ("map",) if "map" in row else ()
 
 
 def by_role(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, Any]]:

@@ -1,5 +1,8 @@
 """Reader of the responses of a checked ICD (`icdgen.icd.responses`) on framed links, on
 UART, I2C and CAN, into the classes of `icdgen.protocol.exchange`.
+
+`exchange_of`, `request_exchange` and `bus_exchanges` are the entries. `Sources` finds
+the places of numbers in the telemetry and packets that respond.
 """
 
 from __future__ import annotations
@@ -40,8 +43,8 @@ from icdgen.protocol.exchange import (
     Echo,
     Exchange,
     NumberPlace,
-    Poll,
     Response,
+    ResponsePoll,
 )
 from icdgen.protocol.packet_formats import PacketField, PacketFormat
 
@@ -63,11 +66,11 @@ class Number(NamedTuple):
     def names(self) -> tuple[tuple[int, str], ...]:
         """Return the values with names, without sign."""
         mask = (1 << self.place.bits) - 1
-        return tuple(
-            (value & mask, member.name)
-            for member in (self.enum.members if self.enum else ())
-            for value in range(member.value, member.last + 1)
-        )
+        names: list[tuple[int, str]] = []
+        for member in self.enum.members if self.enum else ():
+            for value in range(member.value, member.last + 1):
+                names.append((value & mask, member.name))
+        return tuple(names)
 
 
 class Sources(NamedTuple):
@@ -200,8 +203,8 @@ def _exchange(
     repeats. ``sent_in``: index of the packet that is sent. ``reason_of_damage``:
     that of a wrong checksum, after which a telecommand is sent again at once.
     """
-    # Whether it is a place in the header, and the place.
-    every: list[tuple[bool, NumberPlace]] = []
+    # Places that responses repeat, with whether the place is in the header.
+    repeated_places: list[tuple[bool, NumberPlace]] = []
     responses, poll = [], None
     for kind, row in rows.items():
         packet = sources.packet_of(row)
@@ -225,21 +228,20 @@ def _exchange(
             for place, source in pairs:
                 # Responses that repeat the same number share a source: `MOST_SOURCES`
                 # limits their number.
-                if (in_header, source) not in every:
-                    every.append((in_header, source))
-                echoes.append(Echo(place, every.index((in_header, source))))
+                key = in_header, source
+                if key not in repeated_places:
+                    repeated_places.append(key)
+                echoes.append(Echo(place, repeated_places.index(key)))
         telemetry = None if packet is not None else sources.telemetry[row["message"]][0]
         until = sources.number(row, row.get("until"))
         if until and telemetry is not None:
-            poll = Poll(telemetry, until.place)
+            poll = ResponsePoll(telemetry, until.place)
         detail = sources.number(row, row.get("detail"))
         status = sources.number(row, status_of(kind, row))
         reason = sources.number(row, reason_of(row))
-        damage = (
-            reason.raw(reason_of_damage)
-            if reason and reason_of_damage is not None
-            else None
-        )
+        damage = None
+        if reason and reason_of_damage is not None:
+            damage = reason.raw(reason_of_damage)
         if damage is not None and kind == NAK:
             status = reason
         meanings = dict(_meanings(kind, row, status)) if status else {}
@@ -260,21 +262,20 @@ def _exchange(
                 detail and detail.place,
             )
         )
-    assert len(every) <= MOST_SOURCES, "rule ICD177 checks the number"
-    # Those in the header are the last.
-    order = sorted(range(len(every)), key=lambda source: every[source][0])
-    renumbered = tuple(
-        replace(
-            response,
-            echoes=tuple(
-                Echo(echo.place, order.index(echo.source)) for echo in response.echoes
-            ),
-        )
-        for response in responses
+    assert len(repeated_places) <= MOST_SOURCES, "rule ICD177 checks the number"
+    # `Exchange.sources` has the places in the header last, so the echoes get new indexes.
+    order = sorted(
+        range(len(repeated_places)), key=lambda source: repeated_places[source][0]
     )
-    places = tuple(every[source][1] for source in order)
-    count = sum(is_in_header for is_in_header, _ in every)
-    return Exchange(places, renumbered, timeout, count, poll)
+    renumbered = []
+    for response in responses:
+        echoes_in_order = tuple(
+            Echo(echo.place, order.index(echo.source)) for echo in response.echoes
+        )
+        renumbered.append(replace(response, echoes=echoes_in_order))
+    places = tuple(repeated_places[source][1] for source in order)
+    count = sum(is_in_header for is_in_header, _ in repeated_places)
+    return Exchange(places, tuple(renumbered), timeout, count, poll)
 
 
 def _id_source(node: Node, name: str) -> NumberPlace | None:

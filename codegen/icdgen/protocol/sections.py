@@ -1,8 +1,9 @@
 """Parts of a node's protocol, with the facts of each declared once
 (`icdgen.protocol.declared`).
 
-A part stands for a section of the ICD (`SECTIONS`). Times are
-milliseconds, sizes bytes.
+A part stands for a section of the ICD (`SECTIONS`). Times are milliseconds, sizes
+bytes. Most classes have the same name as their counterpart in the runtimes, because
+`icdgen.link_calls` writes the initializers of generated links by class name.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ CAN_KINDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Direction:
+class IdRange:
     """Range of the ids of one direction."""
 
     first: int

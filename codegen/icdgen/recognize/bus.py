@@ -1,4 +1,8 @@
-"""Recognition of CAN packets by the identifiers that the ICD describes."""
+"""Recognition of CAN packets by the identifiers that the ICD describes.
+
+`readings` is for links whose identifiers have parts (node, kind, packet number),
+`by_identifier` for CAN frames whose identifier is the id of a message.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +24,7 @@ from icdgen.recognize.reading import (
     TELECOMMAND,
     TELEMETRY,
     Endpoint,
-    Reading,
+    FrameReading,
 )
 from icdgen.recognize.selection import Selection
 from icdgen.values.errors import BadLength, NotFound
@@ -33,7 +37,7 @@ _WHAT = {
 
 def readings(
     endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the messages in the packets, in their order.
 
     Raise `NotFound`, `BadLength` or `Ambiguous`.
@@ -54,18 +58,19 @@ def readings(
         _chosen([result[number] for result in complete], selection)
         for number in range(most)
     ]
-    left = _left_out(complete[0][0].endpoint, sent) - most
-    note = (
-        [f"{left} of the CAN messages are no message of the ICD, or not complete"]
-        if left
-        else []
-    )
-    return [chosen[0].with_left_out(*note), *chosen[1:]]
+    # Messages that the packets begin, known or unknown. A repeated packet begins none.
+    events, waiting = _can_events(complete[0][0].endpoint, sent)
+    begun = [event for event in events if event.event != "duplicate"]
+    left = len(begun) + len(waiting) - most
+    if not left:
+        return chosen
+    note = f"{left} of the CAN messages are no message of the ICD, or not complete"
+    return [chosen[0].with_left_out(note), *chosen[1:]]
 
 
 def by_identifier(
     endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the message of each packet whose CAN identifier is the id.
 
     Raise `NotFound`, `BadLength` or `Ambiguous` if no packet is a message.
@@ -82,13 +87,12 @@ def by_identifier(
 
 def _by_identifier(
     endpoints: Sequence[Endpoint], packet: Printed, selection: Selection
-) -> Reading:
-    ids = [
-        (endpoint, id)
-        for endpoint in endpoints
-        if (id := wire_ids.of_can(packet.id, packet.extended, endpoint.node.id_bits))
-        is not None
-    ]
+) -> FrameReading:
+    ids: list[tuple[Endpoint, int]] = []
+    for endpoint in endpoints:
+        id = wire_ids.of_can(packet.id, packet.extended, endpoint.node.id_bits)
+        if id is not None:
+            ids.append((endpoint, id))
     candidates = match.of_ids(ids, packet.data)
     if not candidates:
         text = f"no message of {match.nodes_of(endpoints)} has the CAN identifier {packet.identifier}"
@@ -107,7 +111,7 @@ def _by_identifier(
 
 def _of_endpoint(
     endpoint: Endpoint, packets: list[CanPacket], times: list[str]
-) -> list[Reading]:
+) -> list[FrameReading]:
     # A pasted text has no reception times: messages never time out, and any number of
     # senders may be mixed.
     joiner = CanJoiner(endpoint.link, senders=len(packets))
@@ -121,18 +125,20 @@ def _of_endpoint(
     return result
 
 
-def _reading(endpoint: Endpoint, can_message: CanMessage) -> Reading | None:
-    sends = can_message.kind in ("telecommand", "acknowledge", "refusal")
-    message = (endpoint.facts.telecommands if sends else endpoint.facts.telemetry).get(
-        can_message.id
-    )
-    if message is None or (
-        # An acknowledge has the id of its message, but not its data.
-        can_message.kind in CAN_WITH_DATA and len(can_message.data) != message.length
-    ):
+def _reading(endpoint: Endpoint, can_message: CanMessage) -> FrameReading | None:
+    """Return the message of the ICD; None for an unknown id or a wrong length."""
+    is_telecommand = can_message.kind in ("telecommand", "acknowledge", "refusal")
+    facts = endpoint.facts
+    messages = facts.telecommands if is_telecommand else facts.telemetry
+    message = messages.get(can_message.id)
+    if message is None:
+        return None
+    # An acknowledge has the id of its message, but not its data.
+    has_data = can_message.kind in CAN_WITH_DATA
+    if has_data and len(can_message.data) != message.length:
         return None
     way = f"CAN, from address {can_message.source} to {can_message.destination}"
-    return Reading(
+    return FrameReading(
         endpoint,
         _WHAT[can_message.kind],
         message,
@@ -142,22 +148,15 @@ def _reading(endpoint: Endpoint, can_message: CanMessage) -> Reading | None:
     )
 
 
-def _left_out(endpoint: Endpoint, packets: list[CanPacket]) -> int:
-    """Return the number of messages that the packets begin, known or unknown."""
-    events, waiting = _can_events(endpoint, packets)
-    return len([event for event in events if event.event != "duplicate"]) + len(waiting)
-
-
 def _can_events(
     endpoint: Endpoint, packets: list[CanPacket]
 ) -> tuple[list[CanEvent], list[CanEvent]]:
     """Return the events of the packets, and the events of messages that lack packets."""
     joiner = CanJoiner(endpoint.link, senders=len(packets))
+    events = [event for packet in packets for event in joiner.feed(0, packet)]
     # After an infinite time every incomplete message is overdue, so `expire` returns
     # all of them.
-    return [
-        event for packet in packets for event in joiner.feed(0, packet)
-    ], joiner.expire(math.inf)
+    return events, joiner.expire(math.inf)
 
 
 def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
@@ -173,7 +172,7 @@ def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
     return 0
 
 
-def _chosen(candidates: list[Reading], selection: Selection) -> Reading:
+def _chosen(candidates: list[FrameReading], selection: Selection) -> FrameReading:
     # The reading of the node that declares a message replaces those of nodes that
     # include it.
     own = (reading for reading in candidates if reading.is_own)

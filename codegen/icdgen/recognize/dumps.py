@@ -1,4 +1,7 @@
-"""Hexadecimal dumps with addresses: xxd, hexdump, hexdump -C, od and packet analysers."""
+"""Hexadecimal dumps with addresses: xxd, hexdump, hexdump -C, od and packet analysers.
+
+`dump` returns the bytes of such a text, or None if the text is anything else.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,8 @@ _WORDS = 7  # digits of an address of hexdump and od
 
 
 class _Row(NamedTuple):
+    """Line of a dump: its address as printed, and its bytes."""
+
     at: str
     data: bytes
     is_sure: bool  # the first number is certainly an address
@@ -28,15 +33,16 @@ def dump(text: str) -> bytes | None:
     hexdump and od print 16-bit words of a little-endian machine after a 7-digit
     address.
     """
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    rows = [row for line in lines if (row := _row(line)) is not None]
-    if (
-        not rows
-        or len(rows) != len(lines)
-        # The first number of a single line can be data as well. In several lines,
-        # addresses that count the bytes leave no doubt.
-        or not (all(row.is_sure for row in rows) or len(rows) > 1)
-    ):
+    rows: list[_Row] = []
+    for line in text.splitlines():
+        if line.strip():
+            row = _row(line.strip())
+            if row is None:
+                return None
+            rows.append(row)
+    # The first number of a single line can be data as well. In several lines, addresses
+    # that count the bytes leave no doubt.
+    if not rows or (len(rows) == 1 and not rows[0].is_sure):
         return None
     for base in (16, 8):  # od prints octal addresses by default
         try:

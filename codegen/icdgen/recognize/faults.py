@@ -1,5 +1,8 @@
 """Errors of packets that cannot be decoded: cut off, damaged, or not a message of the
 ICD.
+
+`fault_of` explains bytes that begin like a packet of a framed link, with every packet
+format of the link, and returns the explanation that matches most of the header.
 """
 
 from __future__ import annotations
@@ -39,7 +42,7 @@ _DELIMITED_AHEAD = (SLIP, HDLC, ESCAPE)  # packets also begin with a delimiter
 _BITS_OF_SYNC = 8  # constants of fewer bits occur in any data
 
 
-class Fault(NamedTuple):
+class FrameFault(NamedTuple):
     """The reason why a packet cannot be decoded.
 
     ``rank``: how much of the header matches. The explanation with the highest rank is
@@ -74,12 +77,11 @@ def has_sync(form: Stream, direction: Direction) -> bool:
 
 def _sync_bits(packet: PacketForm) -> int:
     """Return the number of constant bits of the header."""
-    constants = (
-        field
+    return sum(
+        field.bits
         for field in packet.fields
         if field.role == "constant" and not field.in_trailer
     )
-    return sum(field.bits for field in constants)
 
 
 def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
@@ -91,11 +93,10 @@ def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
         return has_escape and all(map(form.escaping.begins, data[1:2]))
     if form.delimited_by in _DELIMITED_AHEAD:
         return data.startswith(_opening(form))
-    return any(
+    return data != b"" and any(
         _sync_bits(packet) >= _BITS_OF_SYNC
         and _bits_of_constants(packet, direction, data) > 0
         for packet in form.packets_of(direction)
-        if data
     )
 
 
@@ -150,9 +151,8 @@ def _bits_of_constants(form: PacketForm, direction: Direction, packet: bytes) ->
         # Compare only the bytes that were received.
         received = packet[field.at : field.at + field.size]
         order: Literal["little", "big"] = "little" if field.little else "big"
-        mask = ((1 << field.bits) - 1 << field.shift).to_bytes(field.size, order)[
-            : len(received)
-        ]
+        mask_of_field = (1 << field.bits) - 1 << field.shift
+        mask = mask_of_field.to_bytes(field.size, order)[: len(received)]
         value = field.values[direction == "telemetry"] << field.shift
         expected = value.to_bytes(field.size, order)[: len(received)]
         if any((a ^ b) & m for a, b, m in zip(received, expected, mask, strict=True)):
@@ -163,7 +163,7 @@ def _bits_of_constants(form: PacketForm, direction: Direction, packet: bytes) ->
 
 def fault_of(
     endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool
-) -> Fault | None:
+) -> FrameFault | None:
     """Return the reason why a packet without stuffing is not a message of a direction.
 
     Return None if it does not begin like a packet. ``is_whole``: its end was received,
@@ -191,20 +191,36 @@ def reason_text(response: Response, frame: bytes) -> str:
     return dict(response.reasons).get(code, str(code))
 
 
+class _Attempt(NamedTuple):
+    """Bytes that begin like a packet of one format, with what is known about them."""
+
+    endpoint: Endpoint
+    direction: Direction
+    received: ReceivedPacket
+    packet: bytes
+    id: int | None  # None: no id, or it was not received
+    row: StreamRow | None  # message of the id
+    title: str  # name of the packet in a report
+    # Constant bits of the header, plus 100 for a known id, 200 if only the checksum is
+    # wrong, 300 if only the message is
+    rank: int
+    is_certain: bool = False
+
+
 def _fault_in(
     endpoint: Endpoint,
     direction: Direction,
     received: ReceivedPacket,
     packet: bytes,
     is_whole: bool,
-) -> Fault | None:
+) -> FrameFault | None:
     """Return the reason why the bytes are not a packet of a format; None if they do not
     begin like one.
     """
     stream, form = endpoint.link.stream, received.form
     assert stream
     delimiter, longest = stream.delimited_by, endpoint.link.longest
-    node, count = endpoint.node.name, len(packet)
+    count = len(packet)
     bits = _bits_of_constants(form, direction, packet)
     if bits < 0:
         return None
@@ -212,13 +228,12 @@ def _fault_in(
     id = _id(form, packet, is_whole)
     row = received.row(id) if id is not None or not has_id else None
     title = _title(endpoint, direction, received, id, row)
-    # Ranks: constant bits of the header, plus 100 for a known id, 200 if only the
-    # checksum is wrong, 300 if only the message is.
     rank = bits + (100 if row else 0)
+    attempt = _Attempt(endpoint, direction, received, packet, id, row, title, rank)
     needed = packet_size(stream, received, packet)
     if needed is not None and not form.overhead <= needed <= longest:
         text = f"a {title} says that it has {byte_count(needed)}; packets have up to {longest}"
-        return Fault(
+        return FrameFault(
             rank,
             text,
             "a byte of the header is damaged, or bytes are missing",
@@ -235,28 +250,26 @@ def _fault_in(
     is_unmeasured = delimiter == LENGTH and not received.lengths
     if is_unmeasured and row is None and form.tells_message:
         if id is not None or not has_id:
-            return _no_message(endpoint, direction, packet, title, id, rank, None)
+            return _no_message(attempt, None)
     if not is_whole or (needed is not None and count < needed):
-        expected = (
-            f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
-        )
+        if needed:
+            expected = f"{needed} are needed"
+        else:
+            expected = f"its header has {form.header_bytes}"
         if needed is None and count >= form.header_bytes:
             expected = _closing_text(stream) or expected
         text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
-        help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
-        return Fault(
+        data_alone = _DATA_ALONE.format(endpoint.node.name)
+        return FrameFault(
             rank,
             text,
-            help,
+            f"check that the capture is complete; {data_alone}",
             needed or form.header_bytes,
             count,
-            False,
-            row is not None,
-            is_certain,
+            is_of_message=row is not None,
+            is_certain=is_certain,
         )
-    fault = _fault_of_whole(
-        endpoint, direction, received, packet, title, id, row, rank, is_certain
-    )
+    fault = _fault_of_whole(attempt._replace(is_certain=is_certain))
     return fault._replace(is_of_message=row is not None)
 
 
@@ -273,9 +286,9 @@ def _title(
     if not received.form.tells_message:
         title = f"packet `{received.form.name}` of {node}"
     if row is None:
-        return title + (
-            f" with the id {id_text(declared, id)}" if id is not None else ""
-        )
+        if id is not None:
+            title += f" with the id {id_text(declared, id)}"
+        return title
     is_request = received.requested.get(row.id) is row
     sent: Direction = "telemetry" if is_request else direction
     names = " or ".join(
@@ -285,38 +298,33 @@ def _title(
     return f"{title}, {'request of ' if is_request else ''}{names}"
 
 
-def _fault_of_whole(
-    endpoint: Endpoint,
-    direction: Direction,
-    received: ReceivedPacket,
-    packet: bytes,
-    title: str,
-    id: int | None,
-    row: StreamRow | None,
-    rank: int,
-    is_certain: bool,
-) -> Fault:
-    """Return the fault of a packet that is not cut off."""
+def _fault_of_whole(attempt: _Attempt) -> FrameFault:
+    """Return the fault of a packet that is not cut off.
+
+    The order of the checks is that of the decoder: length, constants, checksum, message.
+    """
+    received, packet, row = attempt.received, attempt.packet, attempt.row
+    title, rank = attempt.title, attempt.rank
     form, count = received.form, len(packet)
-    stream = endpoint.link.stream
+    stream = attempt.endpoint.link.stream
     assert stream
     size = count - form.overhead
     if size < 0:
         least = form.overhead
         text = f"a {title} is cut off: {byte_count(count)} came, header and trailer have {least}"
-        return Fault(rank, text, "check that the capture is complete", least, count)
+        help = "check that the capture is complete"
+        return FrameFault(rank, text, help, least, count)
     needed = packet_size(stream, received, packet)
     if needed is not None and needed != count:
         text = f"a {title} has {byte_count(count)}, its length says {needed}"
-        return Fault(
-            rank, text, "bytes are missing, or too many, or damaged", needed, count
-        )
+        help = "bytes are missing, or too many, or damaged"
+        return FrameFault(rank, text, help, needed, count)
     for field, expected in received.constants:
         value = _get(form, field, packet, count)
         if field.in_trailer and value != expected:
             text = f"a {title} ends with {_bytes_text(field, value)}, expected {_bytes_text(field, expected)}"
             help = "bytes are missing, or too many, or damaged"
-            return Fault(rank, text, help, count, count)
+            return FrameFault(rank, text, help, count, count)
     place, has_message = received.checksum, form.tells_message
     # A seeded checksum depends on the message, so it needs a known id.
     if (
@@ -327,99 +335,84 @@ def _fault_of_whole(
         sent, expected = _get(form, place, packet, count), _checksum(form, row, packet)
         if sent != expected:
             text = f"a {title} has a wrong checksum: it is {_bytes_text(place, sent)}, expected {_bytes_text(place, expected)}"
-            help = (
-                "a byte of it is damaged or missing, or the packet is of another node"
+            return FrameFault(
+                rank + 200,
+                text,
+                "a byte of it is damaged or missing, or the packet is of another node",
+                count,
+                count,
+                is_certain=attempt.is_certain,
             )
-            return Fault(rank + 200, text, help, count, count, is_certain=is_certain)
     if row is None and has_message:
-        return _no_message(endpoint, direction, packet, title, id, rank, size)
+        return _no_message(attempt, size)
     least, most = received.bounds(row)
     if not least <= size <= most:
         lengths = f"{least}" if least == most else f"{least} to {most}"
         text = f"a {title} has {byte_count(size)} of data, the ICD says {lengths}"
-        return Fault(
-            rank + 300,
-            text,
-            "bytes are missing, or too many",
-            most,
-            size,
-            is_certain=True,
-        )
+        help = "bytes are missing, or too many"
+        return FrameFault(rank + 300, text, help, most, size, is_certain=True)
     if row is None and form.content == "none":
-        return _unrelated_response(endpoint, received, packet, title, rank)
+        return _unrelated_response(attempt)
     if row and not received.awaits(row, packet):
         text = (
             f"a {title} asks for another number of bytes than the {row.most} of the ICD"
         )
         help = "the ICD describes what is requested at once"
-        return Fault(rank + 300, text, help, size, size)
+        return FrameFault(rank + 300, text, help, size, size)
     text = (
         f"a {title} has data that do not match the length and constants of the message"
     )
-    return Fault(
-        rank + 300, text, "a byte was damaged, or there are too many", size, size
-    )
+    help = "a byte was damaged, or there are too many"
+    return FrameFault(rank + 300, text, help, size, size)
 
 
-def _no_message(
-    endpoint: Endpoint,
-    direction: Direction,
-    packet: bytes,
-    title: str,
-    id: int | None,
-    rank: int,
-    size: int | None,
-) -> Fault:
+def _no_message(attempt: _Attempt, size: int | None) -> FrameFault:
     """Return the fault of a packet whose id no message of the direction has in it.
 
     ``size``: bytes of its data; None if they are unknown.
     """
-    node = endpoint.node.name
-    other: Direction = "telemetry" if direction == "telecommand" else "telecommand"
+    endpoint, node = attempt.endpoint, attempt.endpoint.node.name
+    other: Direction = "telemetry"
+    if attempt.direction == "telemetry":
+        other = "telecommand"
     names = [
         f"`{variant.message.name}`"
-        for variant in getattr(endpoint.ids, other).get(id, ())
+        for variant in getattr(endpoint.ids, other).get(attempt.id, ())
     ]
-    absence = (
-        f"no {direction} with this id, but {other} {' or '.join(names)}"
-        if names
-        else "no message with this id"
-    )
+    absence = "no message with this id"
+    if names:
+        absence = (
+            f"no {attempt.direction} with this id, but {other} {' or '.join(names)}"
+        )
     data = "" if size is None else f"and {byte_count(size)} of data "
-    text = f"a {title} {data}is no message: {node} has {absence}"
+    text = f"a {attempt.title} {data}is no message: {node} has {absence}"
     help = f"`icdgen show {node}` lists its messages"
-    return Fault(rank + 300, text, help, 0, len(packet), is_unknown=True)
+    count = len(attempt.packet)
+    return FrameFault(attempt.rank + 300, text, help, 0, count, is_unknown=True)
 
 
-def _unrelated_response(
-    endpoint: Endpoint,
-    received: ReceivedPacket,
-    packet: bytes,
-    title: str,
-    rank: int,
-) -> Fault:
+def _unrelated_response(attempt: _Attempt) -> FrameFault:
     """Return the fault of a packet without a message that responds to no message of the
     ICD: its meaning.
     """
-    node, form = endpoint.node.name, endpoint.link.stream
-    assert form
-    responses = (
+    stream, packet = attempt.endpoint.link.stream, attempt.packet
+    assert stream
+    responses = [
         response
-        for exchange in form.exchanges
+        for exchange in stream.exchanges
         for response in exchange.responses
-        if response.packet == received.number
-    )
-    response = next(responses, None)
+        if response.packet == attempt.received.number
+    ]
     meaning = "response"
-    if response is not None:
-        meaning = "refusal" if is_refusal(response, packet) else "acknowledge"
-        reason = reason_text(response, packet)
+    if responses:
+        meaning = "refusal" if is_refusal(responses[0], packet) else "acknowledge"
+        reason = reason_text(responses[0], packet)
         meaning += f", reason {reason}" if reason else ""
-    text = f"a {title} is a {meaning}: no message has this id"
-    if not received.form.of("id"):
-        text = f"a {title} is a {meaning}: without an id, it names no message"
-    help = f"`icdgen show {node}` lists its messages"
-    return Fault(rank + 300, text, help, 0, len(packet), is_unknown=True)
+    text = f"a {attempt.title} is a {meaning}: no message has this id"
+    if not attempt.received.form.of("id"):
+        text = f"a {attempt.title} is a {meaning}: without an id, it names no message"
+    help = f"`icdgen show {attempt.endpoint.node.name}` lists its messages"
+    return FrameFault(attempt.rank + 300, text, help, 0, len(packet), is_unknown=True)
 
 
 def packet_begun(
@@ -431,12 +424,11 @@ def packet_begun(
     if form.delimited_by == DATAGRAM:
         return data, True
     if form.delimited_by == LENGTH:
-        sizes = (
-            packet_size(form, packet, data)
-            for packet in _received_packets(form, direction)
-            if _bits_of_constants(packet.form, direction, data) >= 0
-        )
-        needed = next(sizes, None)
+        needed = None
+        for packet in _received_packets(form, direction):
+            if _bits_of_constants(packet.form, direction, data) >= 0:
+                needed = packet_size(form, packet, data)
+                break
         # If the length is unknown, the slice up to None has all bytes.
         return data[:needed], needed is not None and len(data) >= needed
     line = unstuffer(form, endpoint.link.longest)

@@ -1,4 +1,8 @@
-"""Recognition of messages with header and trailer, as the ICD describes them."""
+"""Recognition of messages with header and trailer, as the ICD describes them.
+
+`readings` decodes the data as both directions of each node, with the stream decoder of
+the runtime, and chooses the direction that explains the most bytes.
+"""
 
 from __future__ import annotations
 
@@ -13,20 +17,20 @@ from icdgen_runtime.wire.stream import ReceivedPacket, StreamDecoder, StreamEven
 from icdgen.describe.ids import id_text
 from icdgen.frozen import NamedTuple
 from icdgen.recognize import faults, match
-from icdgen.recognize.faults import Fault
+from icdgen.recognize.faults import FrameFault
 from icdgen.recognize.reading import (
     ACKNOWLEDGE,
     REFUSAL,
     REQUEST,
     Endpoint,
-    Reading,
+    FrameReading,
 )
 from icdgen.recognize.selection import Selection
 
 DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 
 
-class Span(NamedTuple):
+class ByteSpan(NamedTuple):
     """Bytes of the input from ``at`` to before ``end``."""
 
     at: int
@@ -51,7 +55,8 @@ class _RecordingDecoder(StreamDecoder):
 
     def __init__(self, endpoint: Endpoint, direction: Direction) -> None:
         super().__init__(endpoint.link, direction)
-        self.packets: dict[int, tuple[Span, bytes]] = {}  # by the index of the event
+        # By the index of the event
+        self.packets: dict[int, tuple[ByteSpan, bytes]] = {}
         self._at = self._end = 0
 
     def _skip(self, size: int) -> None:
@@ -65,7 +70,7 @@ class _RecordingDecoder(StreamDecoder):
         self._at, self._end = self._end, self._end + size
         super()._frame(frame, size, fault, events)
         if fault:
-            self.packets[len(events) - 1] = Span(self._at, self._end), frame
+            self.packets[len(events) - 1] = ByteSpan(self._at, self._end), frame
 
     def _front(self, at: int, events: list[StreamEvent]) -> int | None:
         self._at, before = at, len(events)
@@ -74,7 +79,7 @@ class _RecordingDecoder(StreamDecoder):
         if len(events) > before and len(events) - 1 not in self.packets:
             longest = max(packet.form.header_bytes for packet in self._packets)
             header = self._buffer[at : at + longest]
-            self.packets[len(events) - 1] = Span(at, at + 1), bytes(header)
+            self.packets[len(events) - 1] = ByteSpan(at, at + 1), bytes(header)
         return count
 
     def _judge(
@@ -82,7 +87,7 @@ class _RecordingDecoder(StreamDecoder):
     ) -> Literal["message", "proven", "doubtful"]:
         verdict = super()._judge(packet, frame, events)
         end = self._end if self._line else self._at + len(frame)
-        self.packets[len(events) - 1] = Span(self._at, end), frame
+        self.packets[len(events) - 1] = ByteSpan(self._at, end), frame
         return verdict
 
 
@@ -97,14 +102,14 @@ class DirectionResult:
     endpoint: Endpoint
     direction: Direction
     lost: int
-    readings: list[list[Reading]] = field(default_factory=list)
-    spans: list[Span] = field(default_factory=list)  # one per reading
-    faults: list[tuple[Span, Fault]] = field(default_factory=list)
+    readings: list[list[FrameReading]] = field(default_factory=list)
+    spans: list[ByteSpan] = field(default_factory=list)  # one per reading
+    faults: list[tuple[ByteSpan, FrameFault]] = field(default_factory=list)
 
 
 def readings(
     endpoints: Sequence[Endpoint], data: bytes, selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the messages in the data, including messages of the other direction.
 
     The direction with the fewest unused bytes is chosen, among those with a message
@@ -136,32 +141,25 @@ def readings(
         for result in usable
         if any(map(selection.fits, chain.from_iterable(result.readings)))
     ] or usable
-    # With equally few unused bytes, the direction with the most packets is right.
-    least, fewer = min((result.lost, -len(result.readings)) for result in usable)
-    best = [
-        result
-        for result in usable
-        if (result.lost, -len(result.readings)) == (least, fewer)
-    ]
-    # Packets of the opposite direction at other places are no alternatives.
-    best = [
-        result
-        for result in best
-        if result.spans == best[0].spans or result.endpoint is not best[0].endpoint
-    ]
+    best = _best_results(usable)
     requests = _requests(usable)
 
-    def decided(span: Span, candidates: list[Reading]) -> Reading:
+    def decided(span: ByteSpan, candidates: list[FrameReading]) -> FrameReading:
         # A response belongs to the last request in front of it.
         before = [request for at, request in requests if at < span.at]
         requested = [
-            each for each in candidates if before and _answers(each, before[-1])
+            candidate
+            for candidate in candidates
+            if before
+            and candidate.endpoint.node is before[-1].endpoint.node
+            and candidate.message is before[-1].message
         ]
         return match.most_likely(requested or candidates, "a packet", selection)
 
     chosen = {}
+    lost = best[0].lost
     # All of the best results have the same number of packets.
-    for at in range(-fewer):
+    for at in range(len(best[0].readings)):
         readings = [each for result in best for each in result.readings[at]]
         chosen[best[0].spans[at]] = decided(best[0].spans[at], readings)
     taken = bytearray(len(data))
@@ -179,18 +177,37 @@ def readings(
                 chosen[span] = decided(span, readings)
                 span.mark(taken)
                 # The decoder of the chosen direction has counted these bytes as unused.
-                least -= span.end - span.at
+                lost -= span.size
     reports = _left_out(
         [result for result in results if result.endpoint is best[0].endpoint], taken
     )
     first, *remaining = [chosen[span] for span in sorted(chosen)]
     return [
-        first.with_left_out(*reports).with_remarks(*match.stream_remarks(least, ())),
+        first.with_left_out(*reports).with_remarks(*match.stream_remarks(lost, ())),
         *remaining,
     ]
 
 
-def begun(endpoints: Sequence[Endpoint], data: bytes) -> Fault | None:
+def _best_results(usable: list[DirectionResult]) -> list[DirectionResult]:
+    """Return the results with the fewest unused bytes, then the most packets.
+
+    There are several if both directions, or several nodes, explain the same packets.
+    """
+
+    def rank(result: DirectionResult) -> tuple[int, int]:
+        return result.lost, -len(result.readings)
+
+    best_rank = min(map(rank, usable))
+    best = [result for result in usable if rank(result) == best_rank]
+    # Packets of the opposite direction at other places are no alternatives.
+    return [
+        result
+        for result in best
+        if result.spans == best[0].spans or result.endpoint is not best[0].endpoint
+    ]
+
+
+def begun(endpoints: Sequence[Endpoint], data: bytes) -> FrameFault | None:
     """Return the fault of bytes that begin like a packet, otherwise None."""
     begun_faults = []
     for endpoint in endpoints:
@@ -207,12 +224,13 @@ def _left_out(results: Sequence[DirectionResult], taken: bytearray) -> list[str]
 
     If both directions explain a packet, the better match of its header is used.
     """
-    likeliest: dict[int, tuple[Span, Fault]] = {}
-    for span, fault in (entry for result in results for entry in result.faults):
-        if span.is_free(taken) and (
-            span.at not in likeliest or fault.rank > likeliest[span.at][1].rank
-        ):
-            likeliest[span.at] = span, fault
+    likeliest: dict[int, tuple[ByteSpan, FrameFault]] = {}
+    for result in results:
+        for span, fault in result.faults:
+            if not span.is_free(taken):
+                continue
+            if span.at not in likeliest or fault.rank > likeliest[span.at][1].rank:
+                likeliest[span.at] = span, fault
     texts, end = [], 0
     for at, (span, fault) in sorted(likeliest.items()):
         if at >= end:  # bytes within a damaged packet only look like another packet
@@ -224,23 +242,16 @@ def _left_out(results: Sequence[DirectionResult], taken: bytearray) -> list[str]
 def sync_of(endpoint: Endpoint) -> str:
     """Return the first bytes of the packets of a node, for a report."""
     form = endpoint.link.stream
-    return (
-        " or ".join(
-            filter(
-                None,
-                dict.fromkeys(
-                    faults.sync_text(form, packet, direction)
-                    for direction in DIRECTIONS
-                    for packet in form.packets_of(direction)
-                ),
-            )
-        )
-        if form
-        else ""
-    )
+    if form is None:
+        return ""
+    texts: dict[str, None] = {}
+    for direction in DIRECTIONS:
+        for packet in form.packets_of(direction):
+            texts[faults.sync_text(form, packet, direction)] = None
+    return " or ".join(filter(None, texts))
 
 
-def _likeliest(results: Sequence[DirectionResult]) -> Fault | None:
+def _likeliest(results: Sequence[DirectionResult]) -> FrameFault | None:
     """Return the fault of the first packet, for the direction whose header matches
     best.
     """
@@ -297,44 +308,36 @@ def _decode_direction(
         begin = len(data) - decoder.pending
         beginning = faults.packet_begun(endpoint, direction, data[begin:])
         if fault := _fault(endpoint, direction, *beginning):
-            result.faults.append((Span(begin, len(data)), fault))
+            result.faults.append((ByteSpan(begin, len(data)), fault))
     return result
 
 
 def _fault(
     endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool
-) -> Fault | None:
+) -> FrameFault | None:
     """Return the fault of a packet, or None if the bytes may as well be noise."""
     fault = faults.fault_of(endpoint, direction, packet, is_whole)
     form = endpoint.link.stream
-    return (
-        fault
-        if fault and form and (fault.is_of_message or faults.has_sync(form, direction))
-        else None
-    )
+    if fault is None or form is None:
+        return None
+    is_packet = fault.is_of_message or faults.has_sync(form, direction)
+    return fault if is_packet else None
 
 
-def _answers(reading: Reading, request: Reading) -> bool:
-    """Return whether a request requests this telemetry."""
-    is_of_node = reading.endpoint.node is request.endpoint.node
-    return is_of_node and reading.message is request.message
-
-
-def _requests(results: Sequence[DirectionResult]) -> list[tuple[int, Reading]]:
+def _requests(results: Sequence[DirectionResult]) -> list[tuple[int, FrameReading]]:
     """Return where requests of telemetry begin, and what they request, in order."""
-    requests = [
-        (span.at, reading)
-        for result in results
-        for span, readings in zip(result.spans, result.readings, strict=True)
-        for reading in readings
-        if reading.what == REQUEST
-    ]
+    requests: list[tuple[int, FrameReading]] = []
+    for result in results:
+        for span, readings in zip(result.spans, result.readings, strict=True):
+            requests += [
+                (span.at, reading) for reading in readings if reading.what == REQUEST
+            ]
     return sorted(requests, key=lambda request: request[0])
 
 
 def _candidates(
     endpoint: Endpoint, direction: Direction, event: StreamEvent
-) -> Iterator[Reading]:
+) -> Iterator[FrameReading]:
     """Yield the possible messages of a packet.
 
     There are several if the packet has requested telemetry without its id. Only the
@@ -354,7 +357,7 @@ def _candidates(
 
 def _nameless(
     endpoint: Endpoint, form: Stream, number: int, event: StreamEvent
-) -> Iterator[Reading]:
+) -> Iterator[FrameReading]:
     """Yield the telemetry that can be in a packet without its id."""
     packet = form.packets[number]
     data = event.data[packet.header_bytes : len(event.data) - packet.trailer_bytes]
@@ -370,7 +373,7 @@ def _nameless(
 
 def _reading(
     endpoint: Endpoint, direction: Direction, event: StreamEvent
-) -> Reading | None:
+) -> FrameReading | None:
     """Return the message of an event; None if no message matches its data."""
     if event.event == "request":
         return _request(endpoint, event)
@@ -386,7 +389,7 @@ def _reading(
         or match.counter_error(endpoint, message, event.data) is not None
     ):
         return None
-    return Reading(
+    return FrameReading(
         endpoint,
         direction,
         message,
@@ -408,20 +411,18 @@ def _is_checked(endpoint: Endpoint, direction: Direction, id: int) -> bool:
     """Return whether the packet of a message has a checksum."""
     form = endpoint.link.stream
     row = form.row(direction, id) if form else None
-    return (
-        form is not None
-        and row is not None
-        and form.packets[row.packet].check is not None
-    )
+    if form is None or row is None:
+        return False
+    return form.packets[row.packet].check is not None
 
 
-def _request(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
+def _request(endpoint: Endpoint, event: StreamEvent) -> FrameReading | None:
     """Return the request of telemetry."""
     form, id = endpoint.link.stream, event.id or 0
     variants = endpoint.ids.telemetry.get(id, ())
     if form is None or form.request is None or not variants:
         return None
-    return Reading(
+    return FrameReading(
         endpoint,
         REQUEST,
         variants[0].message,
@@ -431,7 +432,7 @@ def _request(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
     )
 
 
-def _response(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
+def _response(endpoint: Endpoint, event: StreamEvent) -> FrameReading | None:
     """Return the response in a packet without a message, to the message with its id.
 
     Return None if the packet does not respond to a message with this id.
@@ -446,7 +447,7 @@ def _response(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
         code = response.reason.of(event.data) if response.reason else None
         names = [f"reason {name}" for value, name in response.reasons if value == code]
         variants = ids.telemetry if direction == "telemetry" else ids.telecommand
-        return Reading(
+        return FrameReading(
             endpoint,
             REFUSAL if is_refusal else ACKNOWLEDGE,
             variants[id][0].message,

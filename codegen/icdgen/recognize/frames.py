@@ -1,4 +1,8 @@
-"""Recognition of all frames in a text or in received bytes."""
+"""Recognition of all frames in a text or in received bytes: the entry of the package.
+
+`recognize` tries framings from the most to the least certain: packets of a link, CAN
+identifiers, an id in front of the data, and the length of the data alone.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +11,14 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
-from icdgen_runtime.wire.packet_formats import Stream
 from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 from icdgen.recognize import bus, faults, framed, match
 from icdgen.recognize.framed import DIRECTIONS
-from icdgen.recognize.pasted import Pasted, read
-from icdgen.recognize.reading import Endpoint, Reading, all_endpoints, endpoint_of
+from icdgen.recognize.pasted import Pasted, read_pasted
+from icdgen.recognize.reading import Endpoint, FrameReading, all_endpoints, endpoint_of
 from icdgen.recognize.selected import selected_message
 from icdgen.recognize.selection import Selection, selection_of
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
@@ -29,7 +32,7 @@ def recognize(
     node: str | None = None,
     key: str | None = None,
     kind: str | None = None,
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the frames in a text, or in bytes as received.
 
     ``node``, ``key`` and ``kind`` restrict the messages, as for
@@ -51,7 +54,7 @@ def recognize(
     ):
         return by_line
     try:
-        return _readings(icd, endpoints, read(text), selection)
+        return _readings(icd, endpoints, read_pasted(text), selection)
     except (Ambiguous, BadHex, BadLength, NotFound):
         if by_line:
             return by_line
@@ -60,25 +63,25 @@ def recognize(
 
 def _line_by_line(
     icd: Icd, endpoints: Sequence[Endpoint], lines: Sequence[str], selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the frames if there are several lines and each is a complete frame."""
     if len(lines) < 2:
         return []
     with suppress(Ambiguous, BadHex, BadLength, NotFound):
-        pasted = [read(line) for line in lines]
+        pasted = [read_pasted(line) for line in lines]
         # A log of CAN packets, a dump or base64 is one input on several lines.
-        if not any(pasted_line.packets or pasted_line.form for pasted_line in pasted):
-            return [
-                reading
-                for pasted_line in pasted
-                for reading in _readings(icd, endpoints, pasted_line, selection)
-            ]
+        if any(pasted_line.packets or pasted_line.form for pasted_line in pasted):
+            return []
+        readings: list[FrameReading] = []
+        for pasted_line in pasted:
+            readings += _readings(icd, endpoints, pasted_line, selection)
+        return readings
     return []
 
 
 def _readings(
     icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     if pasted.packets and any(endpoint.facts.can for endpoint in endpoints):
         results = bus.readings(endpoints, pasted.packets, selection)
     else:
@@ -86,7 +89,7 @@ def _readings(
             icd, endpoints, pasted, selection
         )
     left_out = [text for reading in results for text in reading.left_out]
-    results = selection.of(results)
+    results = selection.preferred_of(results)
     if selection.messages and not any(map(selection.is_of, results)):
         text = f"the frame is not {selection.names} but {results[0].title}"
         raise NotFound(text, "leave the message out, or name that one")
@@ -101,7 +104,7 @@ def _readings(
 
 def _framed(
     endpoints: Sequence[Endpoint], data: bytes, selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the messages in a stream with framing.
 
     Return no messages if there is no framing, or if a named message has exactly these
@@ -172,7 +175,7 @@ def _check_not_cut(endpoints: Sequence[Endpoint], data: bytes) -> None:
 
 def _framed_with_checksum(
     endpoints: Sequence[Endpoint], data: bytes, selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return messages with header and trailer whose checksum is right.
 
     A message of variable length can be as long as another one with header and trailer.
@@ -191,16 +194,15 @@ def _framing_error(events: list[UartEvent]) -> str:
     """Return the error of a stream with framing but without a message."""
     if any(event.event == "protocol_error" for event in events):
         return "the framing is broken: the escape byte is followed by neither itself nor an end of message"
-    return (
-        "the framing is empty"
-        if events
-        else "the framing begins, but the end of the message is missing"
-    )
+    if events:
+        return "the framing is empty"
+    return "the framing begins, but the end of the message is missing"
 
 
 def _of_body(
     endpoints: Sequence[Endpoint], body: bytes, selection: Selection
-) -> Reading:
+) -> FrameReading:
+    """Return the message of an id and data from which the framing was removed."""
     candidates = match.by_id(endpoints, body)
     if not candidates:
         raise match.no_match_error(endpoints, body)
@@ -212,7 +214,7 @@ def _of_body(
 
 def _unframed(
     icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection
-) -> list[Reading]:
+) -> list[FrameReading]:
     """Return the messages of CAN packets by their identifiers, or the message of bytes.
 
     If no identifier matches, the bytes belong to the message that the user has named.
@@ -233,7 +235,7 @@ def _unframed(
 
 def _message_of_bytes(
     icd: Icd, endpoints: Sequence[Endpoint], data: bytes, selection: Selection
-) -> Reading:
+) -> FrameReading:
     """Return the message of bytes without framing.
 
     Raise `BadLength`, `NotFound` or `Ambiguous`.
@@ -243,28 +245,25 @@ def _message_of_bytes(
     fault = framed.begun(endpoints, data)
     if selection.messages:
         reading = selected_message(icd, endpoints[0], selection.messages, data)
-        return (
-            reading.with_remarks(f"the data begin like a packet: {fault.text}")
-            if fault
-            else reading
-        )
+        if fault:
+            remark = f"the data begin like a packet: {fault.text}"
+            reading = reading.with_remarks(remark)
+        return reading
     if fault:
         raise fault.error
     _check_not_cut(endpoints, data)
     # Without constant first bytes, any data may be a piece of a packet.
-    plainly = [
-        endpoint
-        for endpoint in endpoints
-        if endpoint.link.stream is None
-        or (selection.kind and _has_sync(endpoint.link.stream))
-    ]
-    if not plainly:
+    unframed_endpoints = []
+    for endpoint in endpoints:
+        form = endpoint.link.stream
+        if form is None or (
+            selection.kind
+            and all(faults.has_sync(form, direction) for direction in DIRECTIONS)
+        ):
+            unframed_endpoints.append(endpoint)
+    if not unframed_endpoints:
         raise _no_packet_error(endpoints, data, selection)
-    return _by_id_or_length(plainly, data, selection)
-
-
-def _has_sync(form: Stream) -> bool:
-    return all(faults.has_sync(form, direction) for direction in DIRECTIONS)
+    return _by_id_or_length(unframed_endpoints, data, selection)
 
 
 def _no_packet_error(
@@ -273,15 +272,11 @@ def _no_packet_error(
     """Return the error for bytes without the framing that all messages of the node
     have.
     """
-    nodes, syncs = (
-        match.nodes_of(endpoints),
-        dict.fromkeys(map(framed.sync_of, endpoints)),
-    )
-    begin = (
-        f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""
-    )
+    nodes = match.nodes_of(endpoints)
+    syncs = list(filter(None, dict.fromkeys(map(framed.sync_of, endpoints))))
+    begin = f", which begin with {' or '.join(syncs)}" if syncs else ""
     text = f"{byte_count(len(data))} are no packet of {nodes}{begin}"
-    candidates = selection.of(
+    candidates = selection.preferred_of(
         [*match.by_id(endpoints, data), *match.by_length(endpoints, data)]
     )
     if candidates:
@@ -297,7 +292,7 @@ def _no_packet_error(
 
 def _by_id_or_length(
     endpoints: Sequence[Endpoint], data: bytes, selection: Selection
-) -> Reading:
+) -> FrameReading:
     """Return a message without framing, by its id or its length.
 
     Raise `Ambiguous`, `BadLength` or `NotFound`.
@@ -310,22 +305,19 @@ def _by_id_or_length(
         reading = match.most_likely(
             with_id, f"{given} beginning with the id {with_id[0].id}", selection
         )
-        alternatives = [
-            alternative for alternative in plain if alternative.key != reading.key
-        ]
-        note = (
-            [f"without an id in front it could be {match.titles_text(alternatives)}"]
-            if alternatives
-            else []
-        )
-        return reading.with_remarks(f"id {reading.id} removed", *note)
+        remarks = [f"id {reading.id} removed"]
+        alternatives = [other for other in plain if other.key != reading.key]
+        if alternatives:
+            titles = match.titles_text(alternatives)
+            remarks.append(f"without an id in front it could be {titles}")
+        return reading.with_remarks(*remarks)
     if plain:
         reading = match.most_likely(plain, f"{given} without an id", selection)
         return replace(reading, id=None).with_remarks("found by its length alone")
     raise match.no_match_error(endpoints, data)
 
 
-def _decoded(icd: Icd, reading: Reading) -> Reading:
+def _decoded(icd: Icd, reading: FrameReading) -> FrameReading:
     """Return a reading with its decoded frame, if it has data."""
     if reading.what not in KINDS:
         return reading

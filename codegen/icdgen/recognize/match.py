@@ -1,4 +1,8 @@
-"""Candidate messages of an id and bytes, and the error without a candidate."""
+"""Candidate messages of an id and bytes, and the error without a candidate.
+
+Other modules call `by_id`, `of_ids` or `by_length` for all candidates, and
+`most_likely` to choose one of them or to raise `Ambiguous`.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +25,7 @@ from icdgen.recognize.reading import (
     TELECOMMAND,
     TELEMETRY,
     Endpoint,
-    Reading,
+    FrameReading,
 )
 from icdgen.recognize.selection import Selection
 from icdgen.runtime_objects.links import responses_on
@@ -35,13 +39,13 @@ HELP = "name the node and the message: `icdgen decode NODE MESSAGE FRAME`"
 
 
 def read_each(
-    items: Iterable[T], read: Callable[[T], Reading]
-) -> tuple[list[Reading], list[UserError]]:
+    items: Iterable[T], read: Callable[[T], FrameReading]
+) -> tuple[list[FrameReading], list[UserError]]:
     """Return the readings of all items, and the errors of the others.
 
     Raise the first error if there are no readings.
     """
-    readings: list[Reading] = []
+    readings: list[FrameReading] = []
     errors: list[UserError] = []
     for item in items:
         try:
@@ -61,14 +65,14 @@ def stream_remarks(lost: int, errors: Iterable[str]) -> list[str]:
     ]
 
 
-def by_id(endpoints: Sequence[Endpoint], body: bytes) -> list[Reading]:
+def by_id(endpoints: Sequence[Endpoint], body: bytes) -> list[FrameReading]:
     """Return all candidates for an id and the bytes after it."""
     return _unique(
         reading for endpoint in endpoints for reading in _of_endpoint(endpoint, body)
     )
 
 
-def of_ids(ids: Sequence[tuple[Endpoint, int]], data: bytes) -> list[Reading]:
+def of_ids(ids: Sequence[tuple[Endpoint, int]], data: bytes) -> list[FrameReading]:
     """Return all candidates for data whose ids are not in front of it.
 
     Each endpoint has its id.
@@ -78,24 +82,20 @@ def of_ids(ids: Sequence[tuple[Endpoint, int]], data: bytes) -> list[Reading]:
     )
 
 
-def by_length(endpoints: Sequence[Endpoint], data: bytes) -> list[Reading]:
+def by_length(endpoints: Sequence[Endpoint], data: bytes) -> list[FrameReading]:
     """Return all candidates for bytes without an id, by length and by a matching
     checksum.
     """
-    return _unique(
-        reading for endpoint in endpoints for reading in _with_any_id(endpoint, data)
-    )
+    readings: list[FrameReading] = []
+    for endpoint in endpoints:
+        for what, variants in _directions(endpoint):
+            for id in variants:
+                message = _message(endpoint, variants, id, data)
+                readings += _with_checksum(endpoint, what, id, message, data)
+    return _unique(readings)
 
 
-def _with_any_id(endpoint: Endpoint, data: bytes) -> Iterator[Reading]:
-    """Yield the candidates of a node for bytes without an id."""
-    for what, variants in _directions(endpoint):
-        for id in variants:
-            message = _message(endpoint, variants, id, data)
-            yield from _with_checksum(endpoint, what, id, message, data)
-
-
-def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[Reading]:
+def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[FrameReading]:
     """Return the candidates of a node for an id and the bytes after it."""
     parts, facts = endpoint.split_id(body), endpoint.facts
     if parts is None:
@@ -109,10 +109,10 @@ def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[Reading]:
             id = response.echoes[0].place.of(body)
             if response.reason and id in facts.telecommands:
                 message, code = facts.telecommands[id], response.reason.of(body)
-                yield Reading(endpoint, ACKNOWLEDGE, message, id, error=code)
+                yield FrameReading(endpoint, ACKNOWLEDGE, message, id, error=code)
 
 
-def _with_id(endpoint: Endpoint, id: int, data: bytes) -> Iterator[Reading]:
+def _with_id(endpoint: Endpoint, id: int, data: bytes) -> Iterator[FrameReading]:
     """Return the candidates of a node for an id and separate data."""
     for what, variants in _directions(endpoint):
         message = _message(endpoint, variants, id, data)
@@ -120,7 +120,7 @@ def _with_id(endpoint: Endpoint, id: int, data: bytes) -> Iterator[Reading]:
         # A request of telemetry is its id alone. A message that can be empty would look
         # the same.
         if message and what == TELEMETRY and not data and message.layout.shortest:
-            yield Reading(endpoint, REQUEST, message, id)
+            yield FrameReading(endpoint, REQUEST, message, id)
 
 
 def message_of(icd: Icd, messages: Sequence[Message], data: bytes) -> Message | None:
@@ -152,7 +152,7 @@ def _message(
 
 def _with_checksum(
     endpoint: Endpoint, what: str, id: int, message: Message | None, data: bytes
-) -> Iterator[Reading]:
+) -> Iterator[FrameReading]:
     """Return the message if the data has its length, or is followed by the right
     checksum.
     """
@@ -162,11 +162,11 @@ def _with_checksum(
         len(data) in message.layout.lengths
         and counter_error(endpoint, message, data) is None
     ):
-        yield Reading(endpoint, what, message, id, data)
+        yield FrameReading(endpoint, what, message, id, data)
         return
     expected = checksum(endpoint, id, message, data)
     if expected is not None and data[message.length :] == expected:
-        yield Reading(
+        yield FrameReading(
             endpoint,
             what,
             message,
@@ -190,15 +190,15 @@ def checksum(
 
 
 def most_likely(
-    candidates: Sequence[Reading], of: str, selection: Selection
-) -> Reading:
+    candidates: Sequence[FrameReading], of: str, selection: Selection
+) -> FrameReading:
     """Return the most likely reading, with a remark about others. Raise `Ambiguous`.
 
     The message that the user has named has precedence, then a right checksum. An
     acknowledge is less likely than other messages. If the named message has equal
     frames in both directions, the direction remains open.
     """
-    candidates = selection.of(candidates)
+    candidates = selection.preferred_of(candidates)
     # An acknowledge is short and has few fixed bits, so other data often looks like
     # one.
     likely = (
@@ -217,18 +217,15 @@ def most_likely(
             # The kind of a configuration message leaves the direction open.
             return replace(first, what=first.message.kind)
     if len(likely) > 1:
-        contrast = (
-            f", not {selection.names}"
-            if selection.messages and not any(map(selection.is_of, likely))
-            else ""
-        )
-        raise Ambiguous(f"{of} can be {titles_text(likely)}{contrast}", HELP)
+        text = f"{of} can be {titles_text(likely)}"
+        if selection.messages and not any(map(selection.is_of, likely)):
+            text += f", not {selection.names}"
+        raise Ambiguous(text, HELP)
     alternatives = [reading for reading in candidates if reading.key != likely[0].key]
-    return (
-        likely[0].with_remarks(f"it can also be {titles_text(alternatives)}")
-        if alternatives
-        else likely[0]
-    )
+    if alternatives:
+        remark = f"it can also be {titles_text(alternatives)}"
+        return likely[0].with_remarks(remark)
+    return likely[0]
 
 
 def no_match_error(endpoints: Sequence[Endpoint], body: bytes) -> BadLength | NotFound:
@@ -256,25 +253,23 @@ def data_error(parts: Sequence[SplitId], unknown: NotFound) -> BadLength | NotFo
     """Return the error for the data of these ids, or ``unknown`` if no message has
     them.
     """
-    candidates = {
-        (what, message.node, message.name): (endpoint, message, id, data)
-        for endpoint, (id, data) in parts
-        for what, messages in _directions(endpoint)
-        for message, *_ in messages.get(id, ())
-    }
+    # By direction, node and name, so that a message of several nodes counts once
+    candidates: dict[tuple[str, str, str], tuple[Endpoint, Message, int, bytes]] = {}
+    for endpoint, (id, data) in parts:
+        for what, messages in _directions(endpoint):
+            for message, *_ in messages.get(id, ()):
+                key = what, message.node, message.name
+                candidates[key] = endpoint, message, id, data
     if not candidates:
         return unknown
     for endpoint, message, id, data in candidates.values():
         expected = checksum(endpoint, id, message, data)
         if expected is not None:
             return checksum_error(message, expected, data)
-        error = (
-            counter_error(endpoint, message, data)
-            if len(data) in message.layout.lengths
-            else None
-        )
-        if error is not None:
-            return error
+        if len(data) in message.layout.lengths:
+            error = counter_error(endpoint, message, data)
+            if error is not None:
+                return error
     listed = " or ".join(
         f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}"
         for s, m, _, _ in candidates.values()
@@ -333,12 +328,12 @@ def checksum_error(message: Message, expected: bytes, data: bytes) -> BadLength:
     )
 
 
-def _unique(readings: Iterable[Reading]) -> list[Reading]:
+def _unique(readings: Iterable[FrameReading]) -> list[FrameReading]:
     """Return one reading per message and direction, if several nodes have the message.
 
     A reading with a checksum has precedence, then the node that declares the message.
     """
-    by_key: dict[tuple[str, str, str], list[Reading]] = {}
+    by_key: dict[tuple[str, str, str], list[FrameReading]] = {}
     for reading in readings:
         by_key.setdefault(reading.key, []).append(reading)
     return [
@@ -347,13 +342,12 @@ def _unique(readings: Iterable[Reading]) -> list[Reading]:
     ]
 
 
-def titles_text(readings: Sequence[Reading]) -> str:
+def titles_text(readings: Sequence[FrameReading]) -> str:
     """Return the titles of the first readings, for a report.
 
     Each title is given once.
     """
-    all_titles = list(dict.fromkeys(reading.title for reading in readings))
-    titles, remaining = all_titles[:MOST_LISTED], len(all_titles) - MOST_LISTED
-    return ", or ".join(titles) + (
-        f", or one of {remaining} others" if remaining > 0 else ""
-    )
+    titles = list(dict.fromkeys(reading.title for reading in readings))
+    text = ", or ".join(titles[:MOST_LISTED])
+    remaining = len(titles) - MOST_LISTED
+    return f"{text}, or one of {remaining} others" if remaining > 0 else text

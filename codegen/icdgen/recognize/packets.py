@@ -1,4 +1,8 @@
-"""Printed CAN packets: candump, its log files, and the lines of slcan adapters."""
+"""Printed CAN packets: candump, its log files, and the lines of slcan adapters.
+
+`packets` parses a text with one packet per line; `icdgen.recognize.bus` finds the
+messages in them.
+"""
 
 from __future__ import annotations
 

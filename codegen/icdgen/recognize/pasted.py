@@ -1,4 +1,8 @@
-"""Conversion of pasted text to bytes or CAN packets. The spelling is detected."""
+"""Conversion of pasted text to bytes or CAN packets. The spelling is detected.
+
+Supported are hexadecimal digits in many notations, source text of C and Python, dumps
+with addresses (``dumps``), CAN logs (``packets``), decimal numbers and base64.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +73,7 @@ class Pasted:
         return b"".join(packet.data for packet in self.packets) or self.data
 
 
-def read(text: str) -> Pasted:
+def read_pasted(text: str) -> Pasted:
     """Return the bytes or packets of a text.
 
     Raise `BadHex`, with the position of the error.
@@ -99,6 +103,7 @@ def read(text: str) -> Pasted:
 
 
 def _unescaped(text: str) -> bytes | None:
+    """Return the bytes of a Python bytes literal; None if it has an unknown escape."""
     result = bytearray()
     for escape, plain in _ESCAPE.findall(text):
         if plain:
@@ -130,15 +135,13 @@ def _of_code(text: str) -> Pasted | None:
     ]
     values = [int(word, 16 if word[:2] in ("0x", "0X") else 10) for word in words]
     # Up to 9 a decimal number is the same in hexadecimal, so the form needs no remark.
-    decimal = any(
+    is_decimal = any(
         value > 9 and word[:2] not in ("0x", "0X")
         for word, value in zip(words, values, strict=True)
     )
-    return (
-        Pasted(bytes(values), form="decimal numbers" if decimal else "")
-        if max(values) < 256
-        else None
-    )
+    if max(values) > 255:
+        return None
+    return Pasted(bytes(values), form="decimal numbers" if is_decimal else "")
 
 
 def _labelled(text: str) -> Pasted | None:
@@ -169,13 +172,10 @@ def _base64(text: str) -> Pasted | None:
     if not _BASE64.fullmatch(joined) or (is_word and not joined.endswith("=")):
         return None
     # RFC 4648 has two alphabets, which differ in two characters.
+    alternative_characters = b"-_" if set("-_") & set(joined) else b"+/"
     with suppress(binascii.Error):
-        return Pasted(
-            base64.b64decode(
-                joined, altchars=b"-_" if set("-_") & set(joined) else b"+/"
-            ),
-            form="base64",
-        )
+        data = base64.b64decode(joined, altchars=alternative_characters)
+        return Pasted(data, form="base64")
     return None
 
 

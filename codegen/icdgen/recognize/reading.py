@@ -1,4 +1,8 @@
-"""Results of the recognition: a message, its direction and its node."""
+"""Results of the recognition: a message, its direction and its node.
+
+`FrameReading` is the result that all modules of the package return; `Endpoint` is a
+node with its protocol, to which they apply.
+"""
 
 from __future__ import annotations
 
@@ -51,9 +55,9 @@ class Endpoint:
         Return None if there are too few.
         """
         size = wire_ids.size(self.node.id_bits)
-        return (
-            (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
-        )
+        if len(body) < size:
+            return None
+        return wire_ids.number(body[:size]), body[size:]
 
 
 @cached_by_node
@@ -68,7 +72,7 @@ def all_endpoints(icd: Icd) -> list[Endpoint]:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class FrameReading:
     """An interpretation of a frame.
 
     ``what`` is ``telecommand`` or ``telemetry``, or ``request``, ``acknowledge`` or
@@ -107,13 +111,15 @@ class Reading:
     @property
     def title(self) -> str:
         """Description for a report, such as ``request for Attitude (telemetry 146)``."""
-        described = f"`{self.message.name}` ({describe(self.message, self.endpoint.facts.stream)}) of {self.endpoint.node.name}"
+        endpoint = self.endpoint
+        kind_and_ids = describe(self.message, endpoint.facts.stream)
+        described = f"`{self.message.name}` ({kind_and_ids}) of {endpoint.node.name}"
         if self.what in KINDS:
             return described
         text = f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"
         if self.error is None:
             return text
-        responses = responses_on(self.endpoint.link, UART)
+        responses = responses_on(endpoint.link, UART)
         names = {code: name for each in responses for code, name in each.reasons}
         name = f" ({names[self.error]})" if self.error in names else ""
         return f"{text}: error {self.error}{name}"
@@ -123,16 +129,14 @@ class Reading:
         """Whether a field with a constant has another value."""
         return self.frame is not None and bool(self.frame.wrong_constants)
 
-    def with_remarks(self, *remarks: str) -> Reading:
+    def with_remarks(self, *remarks: str) -> FrameReading:
         """Return a copy with further remarks."""
-        frame = (
-            None
-            if self.frame is None
-            else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
-        )
+        frame = self.frame
+        if frame is not None:
+            frame = replace(frame, remarks=(*frame.remarks, *remarks))
         return replace(self, frame=frame, remarks=(*self.remarks, *remarks))
 
-    def with_left_out(self, *left_out: str) -> Reading:
+    def with_left_out(self, *left_out: str) -> FrameReading:
         """Return a copy with reports about packets of the input that cannot be decoded."""
         notes = [f"left out: {report}" for report in left_out]
         return replace(self.with_remarks(*notes), left_out=(*self.left_out, *left_out))
@@ -150,9 +154,10 @@ class Reading:
             "message": self.message.name,
             "direction": self.what,
         }
-        values |= (
-            {"id": self.id}
-            | ({} if self.error is None else {"error": self.error})
-            | time
-        )
-        return values | ({"remarks": list(self.remarks)} if self.remarks else {})
+        values["id"] = self.id
+        if self.error is not None:
+            values["error"] = self.error
+        values |= time
+        if self.remarks:
+            values["remarks"] = list(self.remarks)
+        return values

@@ -1,4 +1,8 @@
-"""Bytes without framing of a message that the user has named."""
+"""Bytes without framing of a message that the user has named.
+
+The user names the message, so only an id in front and a checksum behind the data remain
+to be recognized.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,7 @@ from icdgen.recognize.reading import (
     TELECOMMAND,
     TELEMETRY,
     Endpoint,
-    Reading,
+    FrameReading,
     all_endpoints,
 )
 from icdgen.values.errors import BadLength
@@ -20,7 +24,7 @@ from icdgen.values.errors import BadLength
 
 def selected_message(
     icd: Icd, endpoint: Endpoint, messages: Sequence[Message], data: bytes
-) -> Reading:
+) -> FrameReading:
     """Return the message of the data, which may begin with the id.
 
     If several messages share the id, length and constants of the data distinguish them.
@@ -37,14 +41,14 @@ def selected_message(
     return of_message(icd, endpoint, message, data)
 
 
-def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> Reading:
+def of_message(
+    icd: Icd, endpoint: Endpoint, message: Message, data: bytes
+) -> FrameReading:
     """Return the message, without its id and checksum if present. Raise `BadLength`."""
-    plain = (
-        message.telecommand_id
-        if message.telecommand_id is not None
-        else message.telemetry_id
-    )
-    assert plain is not None
+    own_id = message.telecommand_id
+    if own_id is None:
+        own_id = message.telemetry_id
+    assert own_id is not None
     # The user has named the message, so bytes of its length are its data, even if the
     # first one equals the id.
     if len(data) in message.layout.lengths:
@@ -54,15 +58,14 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
         return _reading(endpoint, message, None, data)
     parts = endpoint.split_id(data)
     # First as data without an id, then with the id in front.
-    for id, remaining in [
-        (None, data),
-        *([parts] if parts and parts[0] in message.ids else []),
-    ]:
+    splits: list[tuple[int | None, bytes]] = [(None, data)]
+    if parts and parts[0] in message.ids:
+        splits.append(parts)
+    for id, remaining in splits:
         notes = () if id is None else (f"id {id} removed",)
         for sender in _nodes_with_message(icd, endpoint, message):
-            expected = match.checksum(
-                sender, plain if id is None else id, message, remaining
-            )
+            checked_id = own_id if id is None else id
+            expected = match.checksum(sender, checked_id, message, remaining)
             if expected is not None and remaining[message.length :] == expected:
                 return _reading(
                     endpoint,
@@ -78,7 +81,7 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
             and match.counter_error(endpoint, message, remaining) is None
         ):
             return _reading(endpoint, message, id, remaining, *notes)
-    expected = match.checksum(endpoint, plain, message, data)
+    expected = match.checksum(endpoint, own_id, message, data)
     if expected is not None:
         raise match.checksum_error(message, expected, data)
     help = f"`icdgen show {endpoint.node.name} {shlex.quote(message.name)}` shows what it holds"
@@ -88,31 +91,21 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
 
 def _reading(
     endpoint: Endpoint, message: Message, id: int | None, data: bytes, *remarks: str
-) -> Reading:
-    what = (
-        message.kind
-        if id is None
-        else TELECOMMAND
-        if id == message.telecommand_id
-        else TELEMETRY
-    )
-    return Reading(endpoint, what, message, id, data, remarks=remarks)
+) -> FrameReading:
+    if id is None:
+        what = message.kind
+    else:
+        what = TELECOMMAND if id == message.telecommand_id else TELEMETRY
+    return FrameReading(endpoint, what, message, id, data, remarks=remarks)
 
 
 def _nodes_with_message(
     icd: Icd, endpoint: Endpoint, message: Message
 ) -> list[Endpoint]:
     """Return the node and all nodes that include the message, which may add a checksum."""
-    endpoints = (
-        candidate
-        for candidate in all_endpoints(icd)
-        if candidate.node is not endpoint.node
-    )
-    return [
-        endpoint,
-        *(
-            including
-            for including in endpoints
-            if message in icd.messages_of(including.node)
-        ),
-    ]
+    endpoints = [endpoint]
+    for candidate in all_endpoints(icd):
+        is_other_node = candidate.node is not endpoint.node
+        if is_other_node and message in icd.messages_of(candidate.node):
+            endpoints.append(candidate)
+    return endpoints

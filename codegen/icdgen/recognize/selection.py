@@ -1,4 +1,4 @@
-"""Message and kind that the user has named for a frame."""
+"""Message and kind that the user has named for a frame: a filter for candidates."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.recognize.reading import Reading
+from icdgen.recognize.reading import FrameReading
 from icdgen.values.errors import Ambiguous
 from icdgen.values.find import find_message, find_sharing
 
@@ -26,7 +26,7 @@ class Selection:
         """Names of the messages, for a report."""
         return " or ".join(f"`{message.name}`" for message in self.messages)
 
-    def is_of(self, reading: Reading) -> bool:
+    def is_of(self, reading: FrameReading) -> bool:
         """Return whether a reading has one of the messages."""
         return any(reading.message is message for message in self.messages)
 
@@ -34,23 +34,20 @@ class Selection:
         """Return whether one of the messages can have the length of ``data``."""
         return any(len(data) in message.layout.lengths for message in self.messages)
 
-    def fits(self, reading: Reading) -> bool:
+    def fits(self, reading: FrameReading) -> bool:
         """Return whether a reading matches messages and kind.
 
         A configuration message matches each kind that it is sent as.
         """
-        return (not self.messages or self.is_of(reading)) and self.kind in (
-            None,
-            reading.what,
-            reading.message.kind,
-        )
+        if self.messages and not self.is_of(reading):
+            return False
+        return self.kind in (None, reading.what, reading.message.kind)
 
-    def of(self, candidates: Sequence[Reading]) -> list[Reading]:
+    def preferred_of(self, candidates: Sequence[FrameReading]) -> list[FrameReading]:
         """Return the matching readings, or all readings if none matches."""
+        matches = [reading for reading in candidates if self.fits(reading)]
         # If none matches, the caller can report what the frame is instead.
-        return [reading for reading in candidates if self.fits(reading)] or list(
-            candidates
-        )
+        return matches or list(candidates)
 
 
 def selection_of(

@@ -12,7 +12,7 @@ from typing import Protocol
 from icdgen.diagnostics import Finding
 
 
-class Report(Protocol):
+class ReportFunction(Protocol):
     """Function that returns findings in a format."""
 
     def __call__(
@@ -26,7 +26,7 @@ class Report(Protocol):
 FORMATS = ("text", "json", "github", "sarif")
 
 
-def get(name: str) -> Report:
+def get(name: str) -> ReportFunction:
     """Return the function ``report`` of a format in `FORMATS`."""
-    report: Report = import_module(f"{__name__}.{name}").report
+    report: ReportFunction = import_module(f"{__name__}.{name}").report
     return report

@@ -14,7 +14,7 @@ from icdgen.diagnostics import Finding, Place
 from icdgen.icd import rules
 
 
-class Page(Protocol):
+class RulePage(Protocol):
     """Page of a rule, as far as SARIF needs it."""
 
     @property
@@ -31,7 +31,7 @@ class Explained(Protocol):
     def title(self) -> str: ...
 
     @property
-    def page(self) -> Page: ...
+    def page(self) -> RulePage: ...
 
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"

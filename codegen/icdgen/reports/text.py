@@ -61,7 +61,7 @@ def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
     corrected line.
     """
     place, related, fix = finding.place, finding.related, finding.fix
-    rows = _Rows(
+    rows = _ExcerptLines(
         max(
             len(str(each.place.line))
             for each in (finding, related, fix)
@@ -97,7 +97,7 @@ def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
     return text
 
 
-class _Rows:
+class _ExcerptLines:
     """Excerpts of a finding, with a gutter for the largest line number."""
 
     def __init__(self, width: int, paint: Paint) -> None:

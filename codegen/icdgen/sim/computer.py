@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.sim.program import Outcome, Program
-from icdgen.sim.settings import Settings
-from icdgen.sim.storage import Storage
+from icdgen.sim.program import Program, TelecommandOutcome
+from icdgen.sim.settings import SimulationSettings
+from icdgen.sim.storage import DeviceStorage
 
 
 class Computer:
     """The device. ``node`` is the first program. Times are in milliseconds."""
 
     def __init__(
-        self, icd: Icd, node: Node, settings: Settings, storage: Storage
+        self, icd: Icd, node: Node, settings: SimulationSettings, storage: DeviceStorage
     ) -> None:
         self.icd, self.settings, self.storage = icd, settings, storage
         self.start(0, node)
@@ -46,7 +46,7 @@ class Computer:
             default=None,
         )
 
-    def take(self, now: int, message: bytes, bus: str) -> Outcome | None:
+    def take(self, now: int, message: bytes, bus: str) -> TelecommandOutcome | None:
         """Process a telecommand, which begins with its id."""
         outcome = self.program.take(now, message, bus)
         if outcome and outcome.reset:

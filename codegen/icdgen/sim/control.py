@@ -32,12 +32,12 @@ HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: 
 
 
 @dataclasses.dataclass
-class Step:
+class ScriptStep:
     """A step of a script, ``at`` milliseconds after the start."""
 
     at: int
     set: dict[str, dict[str, object]] = dataclasses.field(default_factory=dict)
-    faults: list[faults.Fault] | None = None
+    faults: list[faults.InjectedFault] | None = None
     log: bool = False
     restart: bool = False
 
@@ -46,7 +46,7 @@ class Control:
     """Execute the steps of a script, and commands of the user, on a line."""
 
     def __init__(
-        self, icd: Icd, node: Node, line: DeviceLine, steps: list[Step]
+        self, icd: Icd, node: Node, line: DeviceLine, steps: list[ScriptStep]
     ) -> None:
         self.icd, self.node, self.line = icd, node, line
         self.steps = sorted(steps, key=lambda step: step.at)
@@ -76,7 +76,7 @@ class Control:
                     },
                 )
 
-    def do(self, now: int, step: Step) -> None:
+    def do(self, now: int, step: ScriptStep) -> None:
         """Execute a step."""
         for name, fields in step.set.items():
             for key, value in fields.items():
@@ -245,7 +245,7 @@ def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
     return low + (high - low) * part  # ramp
 
 
-def read(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[Step]:
+def read(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[ScriptStep]:
     """Return the steps of a script. Raise `icdgen.errors.UserError`."""
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -264,7 +264,7 @@ def read(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[Step]:
 
 def _step(
     path: Path, number: int, row: object, icd: Icd, node: Node, line: DeviceLine
-) -> Step:
+) -> ScriptStep:
     """Return a checked step of a script. Raise `icdgen.errors.UserError`."""
     where = f"{path}: step {number}"
     if not isinstance(row, dict) or set(row) - {
@@ -297,7 +297,7 @@ def _step(
         and all(isinstance(field, str) for field in fault_texts)
     ):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)
-    return Step(
+    return ScriptStep(
         round(seconds * 1000),
         {
             str(name): {str(key): value for key, value in fields.items()}

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from icdgen.errors import UserError
 from icdgen.sim.computer import Computer
-from icdgen.sim.faults import Fault, Faults, parse
+from icdgen.sim.faults import Faults, InjectedFault, parse
 from icdgen.wording import listing, quote
 
 MOST_NAMES = 3  # of telecommands in a warning
@@ -29,7 +29,7 @@ class DeviceLine:
         self._due: list[tuple[int, int, bytes]] = []
         self._sent = 0
 
-    def fault(self, text: str) -> Fault:
+    def fault(self, text: str) -> InjectedFault:
         """Return the fault of a text; see `icdgen.sim.faults.parse`.
 
         Call `warn` if some telecommands cannot have the reason. Raise

@@ -38,7 +38,7 @@ HELP = (
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class InjectedFault:
     """A fault of the share ``share`` (0 to 1) of messages of the kinds ``on``."""
 
     kind: str
@@ -53,14 +53,14 @@ class Faults:
     """Active faults. ``late_ms`` is the maximum delay."""
 
     random: Random
-    faults: list[Fault] = field(default_factory=list)
+    faults: list[InjectedFault] = field(default_factory=list)
     late_ms: int = 1500
 
     def hits(self, kind: str, on: str) -> bool:
         """Return whether this message has the fault."""
         return self.fault(kind, on) is not None
 
-    def fault(self, kind: str, on: str) -> Fault | None:
+    def fault(self, kind: str, on: str) -> InjectedFault | None:
         """Return the fault of this kind that this message has; None without one."""
         return next(
             (
@@ -105,7 +105,7 @@ class Faults:
         return self.random.randrange(1, self.late_ms + 1)
 
 
-def parse(text: str) -> Fault:
+def parse(text: str) -> InjectedFault:
     """Return the fault of a text such as ``drop=10%@acknowledge``, ``nak=1:Bad length``
     or ``late=50%:300``.
 
@@ -137,10 +137,10 @@ def parse(text: str) -> Fault:
             )
     detail = match["detail"]
     if detail is None:
-        return Fault(kind, value, on)
+        return InjectedFault(kind, value, on)
     detail = detail.strip()
     if kind == "nak":
-        return Fault(kind, value, on, reason=detail)
+        return InjectedFault(kind, value, on, reason=detail)
     if kind != "late":
         help = "only nak (the reason) and late (milliseconds) have a detail"
         raise UserError(f"`{text}`: `{kind}` has no detail `{detail}`", help)
@@ -148,4 +148,4 @@ def parse(text: str) -> Fault:
         raise UserError(
             f"`{text}`: `{detail}` is no number of milliseconds", "late=1:300"
         )
-    return Fault(kind, value, on, delay_ms=int(detail))
+    return InjectedFault(kind, value, on, delay_ms=int(detail))

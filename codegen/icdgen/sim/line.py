@@ -10,7 +10,7 @@ from icdgen.runtime_objects.links import acknowledge_of, responses_on
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
-from icdgen.sim.program import Outcome
+from icdgen.sim.program import TelecommandOutcome
 from icdgen.sim.refusals import refusal_code, refusal_names
 
 # Event of the decoder -> role in the statistics.
@@ -21,7 +21,7 @@ FLAGS: dict[str, str] = {
 }
 
 
-class Line(DeviceLine):
+class UartLine(DeviceLine):
     """A UART. The pieces of the byte stream may have any size."""
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
@@ -104,7 +104,7 @@ class Line(DeviceLine):
         if not message:
             return
         program = self.computer.program
-        outcome: Outcome | None
+        outcome: TelecommandOutcome | None
         fault = self.faults.fault("nak", "telecommand")
         if fault is not None:
             outcome = program.refuse(message, fault.reason)

@@ -18,8 +18,8 @@ from icdgen.protocol import facts
 from icdgen.protocol.exchange import NumberPlace
 from icdgen.runtime_objects.links import link_of, responses_on, with_outcome
 from icdgen.sim.refusals import refusal_code
-from icdgen.sim.settings import Settings
-from icdgen.sim.storage import Storage
+from icdgen.sim.settings import SimulationSettings
+from icdgen.sim.storage import DeviceStorage
 from icdgen.sim.values import Values, number_places
 from icdgen.values.frame import violations
 
@@ -27,7 +27,7 @@ Raw = dict[str, "int | bytes"]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class TelecommandOutcome:
     """Result of a telecommand.
 
     ``reset`` is the message that restarts the device, which then does not respond.
@@ -43,7 +43,12 @@ class Program:
     """A program that has just been started."""
 
     def __init__(
-        self, icd: Icd, node: Node, storage: Storage, settings: Settings, now: int
+        self,
+        icd: Icd,
+        node: Node,
+        storage: DeviceStorage,
+        settings: SimulationSettings,
+        now: int,
     ) -> None:
         self.icd, self.node, self.settings = icd, node, settings
         self.facts = facts.of(icd, node)
@@ -79,7 +84,7 @@ class Program:
         """Increment a counter of the statistics, or set a flag."""
         self.counts[role] = self.counts.get(role, 0) + 1
 
-    def take(self, now: int, message: bytes, bus: str) -> Outcome | None:
+    def take(self, now: int, message: bytes, bus: str) -> TelecommandOutcome | None:
         """Process a telecommand, which begins with its id.
 
         Return None if it is lost because the previous one is still being processed.
@@ -93,7 +98,7 @@ class Program:
         self.last = (message[0], outcome.code, outcome.parameter)
         return outcome
 
-    def refuse(self, message: bytes, reason: str | None = None) -> Outcome:
+    def refuse(self, message: bytes, reason: str | None = None) -> TelecommandOutcome:
         """Reject a telecommand without processing it.
 
         ``reason`` is the name or number of a code; None for that of a wrong parameter.
@@ -169,7 +174,7 @@ class Program:
                 return index
         return None
 
-    def _take(self, now: int, message: bytes, bus: str) -> Outcome:
+    def _take(self, now: int, message: bytes, bus: str) -> TelecommandOutcome:
         telecommand = self.facts.telecommands.get(message[0])
         if telecommand is None or telecommand.name in self.unsupported:
             return self._refusal(
@@ -205,7 +210,9 @@ class Program:
             self._plan_log(now)
         reset = telecommand if telecommand.expects_reset else None
         is_acknowledged = telecommand.acknowledge and not reset
-        return Outcome(self.success, acknowledge=is_acknowledged, reset=reset)
+        return TelecommandOutcome(
+            self.success, acknowledge=is_acknowledged, reset=reset
+        )
 
     def _index(self, message: Message, place: NumberPlace | None) -> int:
         """Return the index of the field at a place; 0 without one."""
@@ -219,8 +226,10 @@ class Program:
 
     def _refusal(
         self, reason: str, parameter: int = 0, acknowledge: bool = True
-    ) -> Outcome:
-        return Outcome(self.facts.reasons.get(reason, 1), parameter, acknowledge)
+    ) -> TelecommandOutcome:
+        return TelecommandOutcome(
+            self.facts.reasons.get(reason, 1), parameter, acknowledge
+        )
 
     def _identify(self) -> None:
         report = self.facts.identification

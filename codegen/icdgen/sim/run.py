@@ -20,9 +20,9 @@ from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.files import read_file, saver
 from icdgen.sim.framed_line import FramedLine
-from icdgen.sim.line import Line
-from icdgen.sim.settings import Settings
-from icdgen.sim.storage import Storage
+from icdgen.sim.line import UartLine
+from icdgen.sim.settings import SimulationSettings
+from icdgen.sim.storage import DeviceStorage
 from icdgen.values.chosen import values_of
 from icdgen.values.find import find_node, is_part
 
@@ -99,11 +99,11 @@ def build(
     `icdgen.errors.UserError`.
     """
     node = node_of(icd, name)
-    storage = Storage(on_write=saver(options.uploads))
+    storage = DeviceStorage(on_write=saver(options.uploads))
     for text in options.files:
         kind, key, file = read_file(icd, node, text)
         storage.of(kind)[key] = file
-    settings = Settings(
+    settings = SimulationSettings(
         options.boot,
         options.busy,
         options.processing,
@@ -116,7 +116,7 @@ def build(
     line: DeviceLine = (
         FramedLine(computer, line_faults, chosen)
         if computer.program.facts.stream
-        else Line(computer, line_faults)
+        else UartLine(computer, line_faults)
     )
     line.warn = warn
     line_faults.faults = [line.fault(text) for text in options.faults]

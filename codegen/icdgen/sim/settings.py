@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass
-class Settings:
+class SimulationSettings:
     """Settings of a simulated device. Times are in milliseconds.
 
     ``boot_ms`` is the time in the boot program; None for the time in the ICD.

@@ -9,10 +9,10 @@ from icdgen.procedures.effects import Key, Object, Objects
 from icdgen.procedures.run import checksum_of
 from icdgen.protocol.sections import ChecksumAlgorithm
 
-__all__ = ["Object", "Storage"]
+__all__ = ["DeviceStorage", "Object"]
 
 
-class Storage(Objects):
+class DeviceStorage(Objects):
     """Objects of the device, and the index file, which describes the files."""
 
     def provide_index(

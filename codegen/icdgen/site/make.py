@@ -11,7 +11,7 @@ from icdgen.backends.html import HtmlBackend
 from icdgen.backends.packages import Packages
 from icdgen.diagnostics import Finding
 from icdgen.generation.generate import Files
-from icdgen.generation.write import Plan, apply, plan
+from icdgen.generation.write import WritePlan, apply, plan
 from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
@@ -32,7 +32,7 @@ class Site:
     inputs: dict[Path, str] = field(default_factory=dict)
 
 
-def make(
+def make_site(
     icds: list[Path],
     previous: str | None = None,
     templates: Path | None = None,
@@ -77,7 +77,7 @@ def _older(site: Site, previous: str, icds: list[Path]) -> ComparisonSide:
     return side
 
 
-def write(site: Site, out: Path, check: bool = False) -> Plan:
+def write(site: Site, out: Path, check: bool = False) -> WritePlan:
     """Write the site to a folder, or only compare with ``check``.
 
     Returns the changes. Raises `UserError`.

@@ -18,7 +18,7 @@ from urllib.parse import unquote, urlsplit
 from icdgen import fingerprints, reports
 from icdgen.backends.packages import Packages
 from icdgen.errors import UserError
-from icdgen.site.make import Site, make
+from icdgen.site.make import Site, make_site
 
 HOST = "127.0.0.1"
 _NAMES = {HOST, "localhost"}
@@ -28,7 +28,7 @@ _TYPES = {
 }  # fmt: skip
 
 
-class Source:
+class SiteSource:
     """The current site: rendered again on a request if an input file has changed."""
 
     def __init__(
@@ -49,16 +49,16 @@ class Source:
             if self._site is None or any(
                 fingerprints.of_path(os.fspath(path)) != old for path, old in inputs
             ):
-                # If `make` raises, the next request tries again.
+                # If `make_site` raises, the next request tries again.
                 self._site = None
-                self._site = make(*self._arguments)
+                self._site = make_site(*self._arguments)
             return self._site
 
 
-def handler(source: Source) -> type[BaseHTTPRequestHandler]:
+def handler(source: SiteSource) -> type[BaseHTTPRequestHandler]:
     """Return a request handler class that serves the site of ``source``."""
 
-    class Handler(BaseHTTPRequestHandler):
+    class SiteHandler(BaseHTTPRequestHandler):
         """Serves pages, or the findings if the ICDs have errors."""
 
         server_version, sys_version = "icdgen", ""
@@ -141,7 +141,7 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
         def log_message(self, format: str, *args: object) -> None:
             """Suppress the log of requests."""
 
-    return Handler
+    return SiteHandler
 
 
 def _complaint(text: str) -> str:
@@ -164,7 +164,7 @@ def serve(
 
     ``say`` shows the address. Raises `UserError` if the port is in use.
     """
-    source = Source(icds, previous, templates, packages)
+    source = SiteSource(icds, previous, templates, packages)
     try:
         server = ThreadingHTTPServer((HOST, port), handler(source))
     except OSError as error:

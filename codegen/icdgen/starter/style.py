@@ -58,7 +58,7 @@ class Style:
     lacks_responses: bool  # whether the responses to telecommands are not copied
 
 
-def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
+def style_of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
     """Return the style of a node. ``texts`` are the files that the ICDs were read from.
 
     Raises `UserError` if the node does not describe a link.

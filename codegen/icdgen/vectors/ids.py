@@ -1,4 +1,4 @@
-"""Ids that test the dispatchers of generated code."""
+"""Ids that test the dispatchers of generated code: ids of the ICD and ids next to them."""
 
 from __future__ import annotations
 

@@ -37,12 +37,12 @@ class NodeLines:
     messages: dict[str, MessageLines] = field(default_factory=dict)
 
 
-def lines(vectors: NodeVectors, text: str) -> NodeLines:
+def line_numbers(vectors: NodeVectors, text: str) -> NodeLines:
     """Return the line numbers of ``text``, which `icdgen.vectors.write.text` wrote for
     these vectors.
     """
     numbers = NodeLines()
-    # One iterator for all loops: each goes on where the one before it ended.
+    # One iterator for all loops: each continues where the previous one ended.
     remaining_lines = enumerate(text.split("\n"), 1)
     for number, line in remaining_lines:
         if line.startswith('"ids": {'):

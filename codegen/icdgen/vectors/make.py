@@ -1,4 +1,8 @@
-"""Golden vectors of a node as data."""
+"""Golden vectors of a node as data.
+
+`make_vectors` decodes and encodes the frames of `icdgen.vectors.patterns` with the
+reference codec (`icdgen.codec`). `icdgen.vectors.write` writes the result as JSON.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +25,7 @@ from icdgen.icd.model import (
     Node,
 )
 from icdgen.vectors import patterns, shared
-from icdgen.vectors.settings import Settings, bits_of, settings
+from icdgen.vectors.settings import Assignments, bits_of, settings
 
 FORMAT = 1
 
@@ -29,7 +33,7 @@ Raw = dict[str, "int | bytes"]
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class FrameVector:
     """Vector of one frame: ``frame`` decodes to ``raw``, which encodes to ``encoded``
     (reserved bits 0).
     """
@@ -53,12 +57,14 @@ class MessageVectors:
     # Initial values: 0, empty or ``const``; overlays have the value that they read.
     # Absent optional fields are missing.
     default: Raw
-    rows: tuple[Row, ...]
+    rows: tuple[FrameVector, ...]
     lengths: tuple[int, ...]  # lengths of refused frames
     # Refused frames whose counters contradict their length
     miscounted: tuple[bytes, ...]
     unfit: dict[str, list[int]]  # refused raw values by field
-    settings: dict[str, Settings]  # assignments of physical values and texts, by field
+    settings: dict[
+        str, Assignments
+    ]  # assignments of physical values and texts, by field
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +83,12 @@ class NodeVectors:
     messages: tuple[MessageVectors, ...]
 
 
-def make(icd: Icd, node: Node) -> NodeVectors:
+def make_vectors(icd: Icd, node: Node) -> NodeVectors:
     """Return all vectors of a node. The result is deterministic."""
     return NodeVectors(
         node=node,
         ids=_ids(icd, node),
-        shared=tuple(shared.rows(icd, node)),
+        shared=tuple(shared.shared_rows(icd, node)),
         enums=tuple((enum, enum.unnamed) for enum in node.enums),
         messages=tuple(message_vectors(node, message) for message in node.messages),
     )
@@ -93,12 +99,13 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     # A frame can result from several patterns; the first one names it.
     frames = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
     whys = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
-    rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
+    vectors = [frame_vector(node, message, whys[frame], frame) for frame in frames]
     for number, raw in enumerate(patterns.raw_columns(message, node)):
         frame = codec.encode(node, message, raw)
         if frame not in frames:
             frames[frame] = None
-            rows.append(frame_row(node, message, f"chosen values {number}", frame))
+            why = f"chosen values {number}"
+            vectors.append(frame_vector(node, message, why, frame))
     fields = frame_fields(message.layout, node.orders)
     raw_fields = [field for field in fields if field.is_raw]
     settable = [
@@ -110,7 +117,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         message=message,
         fields=fields,
         default=codec.new(node, message),
-        rows=tuple(rows),
+        rows=tuple(vectors),
         lengths=_refused_lengths(message),
         miscounted=tuple(_miscounted(node, message)),
         unfit={
@@ -156,12 +163,9 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         return
     frame = patterns.random_frame(message, "miscounted")
     counter = _counter(message, node, last)
-    few, most, low, high = (
-        last.fewest,
-        last.most,
-        counter.raw_min + last.plus,
-        counter.raw_max + last.plus,
-    )
+    few, most = last.fewest, last.most
+    # The smallest and largest number of elements that the counter can state
+    low, high = counter.raw_min + last.plus, counter.raw_max + last.plus
     # Highest bit of the counter, which a narrower implementation would ignore
     top = 1 << counter.bits - 1
     # Number of elements in the frame, and in its counter.
@@ -173,10 +177,9 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         (few, few + top),
         (most, most + top),
     ]
-    for count, stated in (
-        *pairs,
-        *([(few, few - 1), (most, low)] if last.plus else ()),
-    ):
+    if last.plus:
+        pairs += [(few, few - 1), (most, low)]
+    for count, stated in pairs:
         # Fewer elements than the minimum are a wrong length (`_refused_lengths`).
         if stated != count >= few and low <= stated <= high:
             invalid = patterns.with_counts(message, node, frame, {last.name: stated})
@@ -205,12 +208,11 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
         # Above the maximum, in a frame of the maximum length
         if high < counter.raw_max:
             invalid.append(codec.frame_of(longest, highest | {counter: high + 1}))
-    # The last part takes the remaining bytes and can make up for a wrong counter.
-    yield from (
-        candidate
-        for candidate in dict.fromkeys(invalid)
-        if not _is_frame(node, message, candidate)
-    )
+    # The last part takes the remaining bytes and can make up for a wrong counter, so
+    # some of these frames are valid.
+    for candidate in dict.fromkeys(invalid):
+        if not _is_frame(node, message, candidate):
+            yield candidate
 
 
 def _counter(message: Message, node: Node, part: VariablePart) -> FrameField:
@@ -228,29 +230,26 @@ def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
     return False
 
 
-def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
+def frame_vector(node: Node, message: Message, why: str, frame: bytes) -> FrameVector:
     """Return the vector of a frame, decoded and encoded by the reference codec."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
-    # Absent optional fields have no raw value.
-    present = [
-        field
-        for field in frame_fields(message.layout, node.orders)
-        if field.name in raw
-    ]
-    exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
-    # Lookup tables and polynomials have no exact fraction; `doubles` covers them.
-    physical = {name: value for name, value in exact if value is not None}
-    scaled = (field for field in present if field.has_formula)
-    doubles = {
-        field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0)
-        for field in scaled
-    }
-    texts = {
-        field.name: ascii_text(raw[field.name])
-        for field in present
-        if field.type == "text"
-    }
-    return Row(
+    physical: dict[str, Fraction] = {}
+    doubles: dict[str, str] = {}
+    texts: dict[str, str | None] = {}
+    for field in frame_fields(message.layout, node.orders):
+        if field.name not in raw:
+            continue  # an absent optional field
+        value = raw[field.name]
+        # Lookup tables and polynomials have no exact fraction; `doubles` covers them.
+        exact = codec.physical(field, value)
+        if exact is not None:
+            physical[field.name] = exact
+        if field.has_formula:
+            double = codec.physical_double(field, value) or 0.0
+            doubles[field.name] = bits_of(double)
+        if field.type == "text":
+            texts[field.name] = ascii_text(value)
+    return FrameVector(
         why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles
     )
 
@@ -262,6 +261,10 @@ def ascii_text(raw: bytes) -> str | None:
 
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
+    """Return the names of messages by direction and id.
+
+    For the direction ``configuration``, messages by ``set_id`` and ``get_id``.
+    """
     ids_by_direction = {
         direction: shared.messages_by_id(icd, node, direction)
         for direction in (TELECOMMAND, TELEMETRY)

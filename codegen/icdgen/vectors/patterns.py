@@ -1,4 +1,9 @@
-"""Test patterns: frames and raw values that become vectors."""
+"""Test patterns: frames and raw values that become vectors.
+
+`frames` yields frames of a message (decoded by each language), `raw_columns` yields raw
+values (encoded by each language), `unfit` returns raw values that encoders must refuse.
+The choice of patterns decides which faults of generated code the vectors detect.
+"""
 
 from __future__ import annotations
 
@@ -142,11 +147,9 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
         is_longest = count == last.most
         # Derived from the frame, so that the choice is deterministic but differs
         # between frames.
-        return (
-            part.most
-            if is_longest
-            else choices[(sum(frame) + len(counts)) % len(choices)]
-        )
+        if is_longest:
+            return part.most
+        return choices[(sum(frame) + len(counts)) % len(choices)]
 
     for part in earlier:
         counts[part.name] = choose(part)
@@ -155,10 +158,8 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     counters: dict[str, int] = {}
     for part in message.layout.parts:
         for inner in part.inner:
-            low, high = (
-                message.layout.smallest_raw(inner.counter),
-                message.layout.largest_raw(inner.counter),
-            )
+            low = message.layout.smallest_raw(inner.counter)
+            high = message.layout.largest_raw(inner.counter)
             value = counters.setdefault(
                 inner.counter, max(low, min(choose(inner) - inner.plus, high))
             )
@@ -234,27 +235,24 @@ def values(field: AnyScalar) -> list[int | bytes]:
         size = field.bits // 8
         ascending = bytes(number & 0xFF for number in range(1, size + 1))
         if field.type == "text":
-            # A text that ends early, and a character in the last byte only.
-            ended, last = (
-                ascending[: size // 2].ljust(size, b"\0"),
-                bytes(size - 1) + b"x",
+            texts = (
+                ascending,
+                ascending[: size // 2].ljust(size, b"\0"),  # ends early
+                bytes(size - 1) + b"x",  # a character in the last byte only
+                bytes(size),
+                b"\x7f" * size,  # the last ASCII character
+                b"\x80" * size,  # no ASCII
             )
-            return list(
-                dict.fromkeys(
-                    (
-                        ascending,
-                        ended,
-                        last,
-                        bytes(size),
-                        b"\x7f" * size,
-                        b"\x80" * size,
-                    )
-                )
-            )
+            return list(dict.fromkeys(texts))
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
-        named = (special.value for special in field.special)
-        return list(dict.fromkeys((*_FLOATS[field.bits], *named, *_near_bits(field))))
+        bits_of_values = [*_FLOATS[field.bits]]
+        bits_of_values += [special.value for special in field.special]
+        for number in _near(field):
+            # A single cannot represent every number of a lookup table.
+            with suppress(codec.CodecError):
+                bits_of_values.append(codec.float_bits(field, number))
+        return list(dict.fromkeys(bits_of_values))
     if field.type == "bool":
         return [0, 1]
     return list(
@@ -287,12 +285,6 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
         yield special.value
     for near in _near(field):
         yield from (math.floor(near), math.ceil(near))
-
-
-def _near_bits(field: AnyScalar) -> Iterator[int]:
-    for number in _near(field):
-        with suppress(codec.CodecError):
-            yield codec.float_bits(field, number)
 
 
 def _near(field: AnyScalar) -> Iterator[float]:
@@ -339,10 +331,8 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 
     Every second value is the maximum, so that all elements are tested.
     """
-    low, high = (
-        message.layout.smallest_raw(part.counter),
-        message.layout.largest_raw(part.counter),
-    )
+    low = message.layout.smallest_raw(part.counter)
+    high = message.layout.largest_raw(part.counter)
     return [
         max(low, min(number - part.plus, high))
         for count in _counts(part)
@@ -353,10 +343,8 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 def unfit(message: Message, field: FrameField) -> list[int]:
     """Return raw values that encoding must refuse."""
     if any(field.name == part.counter for part in message.layout.counted_parts):
-        low, high = (
-            message.layout.smallest_raw(field.name),
-            message.layout.largest_raw(field.name),
-        )
+        low = message.layout.smallest_raw(field.name)
+        high = message.layout.largest_raw(field.name)
         return list(
             dict.fromkeys((high + 1, low - 1, field.raw_max + 1, field.raw_min - 1))
         )

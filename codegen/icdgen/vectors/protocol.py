@@ -1,5 +1,8 @@
 """Golden vectors of the protocol layer: requests and expected responses in the format
 of the conformance tests.
+
+The modules of ``wire`` yield the requests; `icdgen.runtime_objects.reference` answers
+them with the Python runtime.
 """
 
 from __future__ import annotations
@@ -64,7 +67,7 @@ def cases(icd: Icd, node: Node) -> list[Case]:
     return cases
 
 
-def text(icd: Icd) -> str | None:
+def protocol_vectors_text(icd: Icd) -> str | None:
     """Return the vector file, one case per line; None if no node has a protocol."""
     parts = []
     for node in nodes(icd):

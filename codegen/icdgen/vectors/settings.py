@@ -1,4 +1,8 @@
-"""Physical values and texts that test the setters of fields."""
+"""Physical values and texts that test the setters of fields.
+
+`settings` returns pairs of an assigned value and the raw value that the setter must
+store, or None if it must refuse the value. Most values lie next to a limit of rounding.
+"""
 
 from __future__ import annotations
 
@@ -33,10 +37,10 @@ def float_of(bits: str) -> float:
     return value
 
 
-Settings = list[tuple[str, "int | bytes | None"]]
+Assignments = list[tuple[str, "int | bytes | None"]]
 
 
-def settings(field: AnyScalar) -> Settings:
+def settings(field: AnyScalar) -> Assignments:
     """Return assignments of a field: the bits of a double, or a text, and the resulting
     raw value (None: refused).
     """
@@ -87,6 +91,7 @@ def _raw(field: AnyScalar, assigned: str | float) -> int | bytes | None:
 
 
 def _doubles(field: Scalar) -> Iterator[float]:
+    """Yield physical values of a field with a scale, next to limits of rounding."""
     low, high = field.raw_min, field.raw_max
     # Negative zero and the smallest subnormal double.
     yield from (-0.0, 5e-324)
@@ -146,9 +151,9 @@ def _ties(field: Scalar) -> Iterator[float]:
     if (a + b) % divisor:
         return
     step = odd // divisor
-    first = (
-        -(a + b) // divisor * pow(2 * a // divisor, -1, step) % step if step > 1 else 0
-    )
+    first = 0
+    if step > 1:
+        first = -(a + b) // divisor * pow(2 * a // divisor, -1, step) % step
     low, high = field.raw_min, field.raw_max
     lowest = low + (first - low) % step
     highest = high - (high - first) % step

@@ -42,19 +42,19 @@ def messages_by_id(icd: Icd, node: Node, direction: str) -> dict[int, list[Messa
     return dict(sorted(by_id.items()))
 
 
-def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
+def shared_rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
     """Yield the frames of shared ids of a node: frames of each message, and frames that
     differ from them, as the reference codec assigns them.
     """
     for direction in (TELECOMMAND, TELEMETRY):
         for id, messages in messages_by_id(icd, node, direction).items():
             # Ids of one message are tested by the vectors of the message.
-            if len(messages) > 1:
-                rows = (
-                    _row(icd, direction, id, messages, frame)
-                    for frame in dict.fromkeys(_frames(icd, messages))
-                )
-                yield from (row for row in rows if row is not None)
+            if len(messages) == 1:
+                continue
+            for frame in dict.fromkeys(_frames(icd, messages)):
+                row = _row(icd, direction, id, messages, frame)
+                if row is not None:
+                    yield row
 
 
 def _row(
@@ -81,20 +81,14 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
     """Yield frames of each message: its constants among zeros, ones and random bytes,
     each bit of a constant inverted, and wrong lengths.
     """
-    lengths = sorted(
-        {
-            length
-            for message in messages
-            for length in (message.layout.shortest, message.length)
-        }
-    )
-    yield from (
-        bytes(size)
-        for size in sorted(
-            {near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}
-        )
-    )
-    yield from (b"\xff" * size for size in lengths)
+    lengths: set[int] = set()
+    for message in messages:
+        lengths |= {message.layout.shortest, message.length}
+    sizes = {0}
+    for length in lengths:
+        sizes |= {max(length - 1, 0), length, length + 1}
+    yield from (bytes(size) for size in sorted(sizes))
+    yield from (b"\xff" * size for size in sorted(lengths))
     for message in messages:
         node = icd.node(message.node)
         constant_fields = constants(message, node)

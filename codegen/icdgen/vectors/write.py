@@ -13,12 +13,12 @@ from icdgen import __version__
 from icdgen.icd.frames import FrameField
 from icdgen.icd.layout import VariablePart
 from icdgen.icd.places import AnyScalar
-from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
+from icdgen.vectors.make import FORMAT, FrameVector, MessageVectors, NodeVectors
 from icdgen.vectors.settings import NEVER
 from icdgen.vectors.shared import SharedRow
 
 
-def text(vectors: NodeVectors) -> str:
+def vector_file_text(vectors: NodeVectors) -> str:
     """Return the vector file of one node."""
     node = vectors.node
     head = {
@@ -197,7 +197,7 @@ def _field(vectors: MessageVectors, field: FrameField) -> str:
     return _json(row)
 
 
-def _row(fields: tuple[FrameField, ...], row: Row) -> str:
+def _row(fields: tuple[FrameField, ...], row: FrameVector) -> str:
     line: dict[str, object] = {"why": row.why, "bytes": row.frame.hex()}
     if row.encoded != row.frame:
         line["encoded"] = row.encoded.hex()

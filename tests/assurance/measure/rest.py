@@ -27,7 +27,7 @@ from icdgen.describe.accessors import accessors_of
 from icdgen.describe.contained import contained_messages
 from icdgen.describe.links import links_of
 from icdgen.icd.model import Icd
-from icdgen.vectors.make import Row, message_vectors
+from icdgen.vectors.make import FrameVector, message_vectors
 
 HERE = Path(__file__).parent
 
@@ -118,7 +118,7 @@ def _part(part: MessageDescription, frame: bytes, begin: int) -> str:
 
 
 def _row(
-    message: MessageDescription, row: Row, wholes: dict[str, Any]
+    message: MessageDescription, row: FrameVector, wholes: dict[str, Any]
 ) -> dict[str, Any]:
     values = []
     for name, (accessor, whole) in wholes.items():

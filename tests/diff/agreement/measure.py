@@ -13,8 +13,8 @@ from pathlib import Path
 from icdgen.diff.compare import compare
 from icdgen.diff.layers import MEANING, SOURCE, WIRE
 from icdgen.icd.model import Icd
-from icdgen.vectors.make import make
-from icdgen.vectors.write import text
+from icdgen.vectors.make import make_vectors
+from icdgen.vectors.write import vector_file_text
 from tests.conformance.build import build
 from tests.conformance.cases import Case as Demand
 from tests.conformance.compare import difference
@@ -57,7 +57,7 @@ def measure(cases: list[Case], language: Language, folder: Path) -> Score:
 def _judge(case: Case, testee: Testee, score: Score) -> None:
     comparison = compare(case.old, case.new)
     layers = {change.layer for change in comparison.changes}
-    data = json.loads(text(make(case.old, case.old.nodes[0])))
+    data = json.loads(vector_file_text(make_vectors(case.old, case.old.nodes[0])))
     others = tuple(number for message in case.node.messages for number in message.ids)
     failure = _first_failure(testee, on_the_wire(data, comparison, others), wire=True)
     said = [f"{change.code} {change.message}" for change in comparison.changes]

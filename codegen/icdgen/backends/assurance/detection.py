@@ -25,7 +25,7 @@ from icdgen.icd.layout_nodes import overlay_of
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.vectors.lines import MessageLines
-from icdgen.vectors.make import MessageVectors, Raw, Row, ascii_text
+from icdgen.vectors.make import FrameVector, MessageVectors, Raw, ascii_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
 from icdgen.vectors.write import raw_json
 
@@ -38,7 +38,7 @@ class LongRow(NamedTuple):
     elements are zeros.
     """
 
-    row: Row
+    row: FrameVector
     frame: bytes
     encoded: bytes
     sent: int  # mask of the bits that the encoded frame contains

@@ -18,9 +18,9 @@ from icdgen.icd.layout import LayoutNode
 from icdgen.icd.layout_copies import with_node, with_struct_layout
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
-from icdgen.vectors.lines import NodeLines, lines
-from icdgen.vectors.make import NodeVectors, make
-from icdgen.vectors.write import text
+from icdgen.vectors.lines import NodeLines, line_numbers
+from icdgen.vectors.make import NodeVectors, make_vectors
+from icdgen.vectors.write import vector_file_text
 
 DetectedLines = dict[str, list[int]]
 """Node -> lines of its vector file."""
@@ -95,8 +95,10 @@ class Trace:
         self._lines: dict[str, NodeLines] = {}
         self._watches: dict[tuple[str, str], MessageWatch] = {}
         for node in icd.nodes:
-            vectors = self._vectors[node.name] = make(icd, node)
-            node_lines = self._lines[node.name] = lines(vectors, text(vectors))
+            vectors = self._vectors[node.name] = make_vectors(icd, node)
+            node_lines = self._lines[node.name] = line_numbers(
+                vectors, vector_file_text(vectors)
+            )
             for message_vectors in vectors.messages:
                 name = message_vectors.message.name
                 self._watches[node.name, name] = MessageWatch(

@@ -13,7 +13,7 @@ from icdgen.backends.lines import STEP
 from icdgen.frozen import NamedTuple
 from icdgen.icd.buses import BUSES
 from icdgen.protocol import sections
-from icdgen.protocol.declared import Fact, Kind
+from icdgen.protocol.declared import FactKind, ProtocolFact
 
 MOST_SIGNED = 0x7FFF_FFFF
 TYPES: dict[type, str] = {
@@ -41,7 +41,7 @@ class TableRow(NamedTuple):
         )
 
 
-def has_presence_flag(fact: Fact) -> bool:
+def has_presence_flag(fact: ProtocolFact) -> bool:
     """Return whether a separate member states if an optional fact is given, because
     neither -1 nor 0 can mean that it is not.
     """
@@ -57,7 +57,7 @@ def or_none(value: int | None) -> str:
     return "-1" if value is None else str(value)
 
 
-def fact_value(fact: Fact, value: Any) -> str:
+def fact_value(fact: ProtocolFact, value: Any) -> str:
     """Return the value of a fact, after its presence flag if it `has_presence_flag`."""
     if has_presence_flag(fact):
         return f"{boolean(value is not None)}, {_fact_literal(fact, value or 0)}"
@@ -68,14 +68,14 @@ def fact_value(fact: Fact, value: Any) -> str:
     return _fact_literal(fact, value or 0)
 
 
-def _fact_literal(fact: Fact, value: Any) -> str:
-    if fact.kind is Kind.FLAG:
+def _fact_literal(fact: ProtocolFact, value: Any) -> str:
+    if fact.kind is FactKind.FLAG:
         return boolean(value)
-    if fact.kind is Kind.BUSES:
+    if fact.kind is FactKind.BUSES:
         # Buses are a mask: bit n is bus n in the order of `BUSES`.
         return f"{sum(1 << BUSES.index(bus) for bus in value or ())}u"
-    if fact.kind is Kind.SPAN:
+    if fact.kind is FactKind.SPAN:
         return f"{{{value[0]}u, {value[1]}u}}"
-    if fact.kind is Kind.OCTET:
+    if fact.kind is FactKind.OCTET:
         return f"{value:#04x}u"
-    return f"{value:#x}u" if fact.kind is Kind.CODE else f"{value}u"
+    return f"{value:#x}u" if fact.kind is FactKind.CODE else f"{value}u"

@@ -16,7 +16,7 @@ from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import Assumptions, LinkDescription, byte_table
 from icdgen.frozen import NamedTuple
-from icdgen.protocol.declared import Kind, facts_of
+from icdgen.protocol.declared import FactKind, facts_of
 from icdgen.protocol.sections import ChecksumAlgorithm, Crc
 
 NODE_PREFIX = "icdgen_node_"
@@ -119,7 +119,7 @@ class TableSet:
         rows = []
         for fact in facts_of(part):
             value, text = getattr(part, fact.name), fact.name
-            about = f"{text} in ms" if fact.kind is Kind.TIME else text
+            about = f"{text} in ms" if fact.kind is FactKind.TIME else text
             rows.append(TableRow(fact_value(fact, value), about))
         return rows
 

@@ -31,9 +31,9 @@ from icdgen.icd.model import Icd, Message
 from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
 from icdgen.render import Renderer
 from icdgen.vectors.ids import test_ids
-from icdgen.vectors.make import MessageVectors, Raw, Row, make
+from icdgen.vectors.make import FrameVector, MessageVectors, Raw, make_vectors
 from icdgen.vectors.patterns import values
-from icdgen.vectors.settings import NEVER, Settings, bits_of
+from icdgen.vectors.settings import NEVER, Assignments, bits_of
 from icdgen.vectors.shared import SharedRow
 
 BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
@@ -90,7 +90,7 @@ class _SelftestFile:
 
     def __init__(self, icd: Icd, node: NodeDescription) -> None:
         self.icd, self.node = icd, node
-        self.vectors = make(icd, node.model)
+        self.vectors = make_vectors(icd, node.model)
 
     def template_values(self) -> dict[str, object]:
         node, id_bits = self.node, describe(self.icd).id_bits
@@ -200,7 +200,7 @@ class _SelftestFile:
             ),
         }
 
-    def vector_rows(self, row: Row, fields: list[SelftestField]) -> list[str]:
+    def vector_rows(self, row: FrameVector, fields: list[SelftestField]) -> list[str]:
         data = bytearray(
             row.frame.ljust(
                 fields[0].field.message.model.length if fields else 0, b"\0"
@@ -365,7 +365,7 @@ def _variable_part_values(
     }
 
 
-def _accessor_rows(accessor: Accessor, settings: Settings | None) -> AccessorRows:
+def _accessor_rows(accessor: Accessor, settings: Assignments | None) -> AccessorRows:
     """Return accessors with test values.
 
     ``settings`` is None for an overlay field, because it has no setter.
@@ -383,7 +383,7 @@ def _accessor_rows(accessor: Accessor, settings: Settings | None) -> AccessorRow
     )
 
 
-def _text_rows(settings: Settings) -> list[str]:
+def _text_rows(settings: Assignments) -> list[str]:
     """Return assignments of texts: the resulting bytes, or a refusal.
 
     C strings cannot represent all bytes, so other contents are omitted.
@@ -409,7 +409,7 @@ def _integer_of(value: int | bytes) -> int:
     return value
 
 
-def _double_rows(field: FieldDescription, settings: Settings) -> list[str]:
+def _double_rows(field: FieldDescription, settings: Assignments) -> list[str]:
     """Return assignments of doubles: the resulting raw value, or a refusal."""
     lines = []
     # Floats accept NaN and infinities.

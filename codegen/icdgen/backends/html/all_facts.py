@@ -16,7 +16,7 @@ from icdgen.backends.html.texts import capitalized
 from icdgen.frozen import NamedTuple
 from icdgen.icd import schema
 from icdgen.icd.model import replaced_part
-from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.declared import FactKind, ProtocolFact, facts_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
 
@@ -201,13 +201,13 @@ def _fact_table(path: str, rows: list[FactRow]) -> FactTable:
     )
 
 
-def value_text(fact: Fact, value: object) -> str:
-    if fact.kind is Kind.TIME:
+def value_text(fact: ProtocolFact, value: object) -> str:
+    if fact.kind is FactKind.TIME:
         return f"{value:,} ms"
-    if fact.kind in (Kind.OCTET, Kind.CODE) and isinstance(value, int):
+    if fact.kind in (FactKind.OCTET, FactKind.CODE) and isinstance(value, int):
         return f"0x{value:02X}"
     # A pair of first byte and number of bytes.
-    if fact.kind is Kind.SPAN and isinstance(value, tuple):
+    if fact.kind is FactKind.SPAN and isinstance(value, tuple):
         return f"bytes {value[0]} to {value[0] + value[1] - 1}"
     return as_text(value)
 

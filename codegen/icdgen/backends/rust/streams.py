@@ -30,8 +30,8 @@ from icdgen.protocol.exchange import (
     BusExchanges,
     Exchange,
     NumberPlace,
-    Poll,
     Response,
+    ResponsePoll,
 )
 from icdgen.protocol.packet_formats import (
     CRC,
@@ -216,7 +216,7 @@ def _exchange_form(exchange: Exchange) -> Brackets:
     )
 
 
-def _poll(poll: Poll) -> Brackets:
+def _poll(poll: ResponsePoll) -> Brackets:
     return flat("Poll", telemetry=poll.telemetry, until=_number_place(poll.until))
 
 

@@ -1,5 +1,9 @@
 """Scripts of the client over a packet format: replies, time-outs, simultaneous requests
 and unsolicited messages.
+
+A script is a list of rows with a time ``at`` in milliseconds: what the program requests
+(``telecommand``, ``telemetry``) or what arrives (``receive``). Each `yield` names the
+situation and gives its script. Clients of single buses are in ``clients``.
 """
 
 from __future__ import annotations
@@ -34,7 +38,7 @@ def wire_place(place: NumberPlace) -> WirePlace:
     return WirePlace(place.at, place.size, place.shift, place.bits, place.little)
 
 
-class Sample:
+class StreamSample:
     """Rows of scripts with messages of the node."""
 
     def __init__(self, link: Link[Any], form: Stream, source: Random) -> None:
@@ -69,7 +73,7 @@ class Sample:
     def respond(
         self,
         at: int,
-        asked: dict[str, Any],
+        request_row: dict[str, Any],
         exchange: Exchange,
         response: Response,
         status: int | None = None,
@@ -79,9 +83,11 @@ class Sample:
 
         ``foreign``: each echo differs from the telecommand in its lowest bit.
         """
-        id: int = asked["telecommand" if "telecommand" in asked else "telemetry"]
+        id: int = request_row[
+            "telecommand" if "telecommand" in request_row else "telemetry"
+        ]
         telecommand = id.to_bytes(ID_BYTES, "big") + bytes.fromhex(
-            asked.get("bytes", "")
+            request_row.get("bytes", "")
         )
         telemetry = id if response.telemetry is None else response.telemetry
         row = next((row for row in self.form.telemetry if row.id == telemetry), None)
@@ -91,7 +97,7 @@ class Sample:
         else:
             assert row is not None
             data = bytearray(self.source.randbytes(row.most))
-        header = self.header_of(asked) if exchange.in_header else b""
+        header = self.header_of(request_row) if exchange.in_header else b""
         for echo in response.echoes:
             in_header = exchange.is_in_header(echo.source)
             sent = header if in_header else telecommand
@@ -110,15 +116,15 @@ class Sample:
         assert row is not None
         return self.come(at, row, data=bytes(data))
 
-    def header_of(self, asked: Row) -> bytes:
+    def header_of(self, request_row: Row) -> bytes:
         """Return the header of what a row sends, with the first sequence number."""
         stream = need(self.link.stream, "stream")
         # Without delimiters and byte stuffing, the header begins with the first byte.
         link = self.link._replace(stream=stream._replace(delimited_by="datagram"))
-        if "telecommand" not in asked:
-            return stream_encode_request(link, asked["telemetry"])
-        data = bytes.fromhex(asked["bytes"])
-        return stream_encode(link, asked["telecommand"], data)
+        if "telecommand" not in request_row:
+            return stream_encode_request(link, request_row["telemetry"])
+        data = bytes.fromhex(request_row["bytes"])
+        return stream_encode(link, request_row["telecommand"], data)
 
     def packet(self, number: int, draft: bytes) -> bytes:
         """Return a packet without a message, with the id and values of a draft."""
@@ -134,7 +140,7 @@ class Sample:
 def scripts(link: Link[Any], facts: Facts) -> Requests:
     """Yield the scripts of the client over a packet format."""
     form = need(facts.stream, "stream")
-    sample = Sample(link, form, Random(f"{facts.node.name} client"))
+    sample = StreamSample(link, form, Random(f"{facts.node.name} client"))
     if not form.telecommands and form.request is None:
         return
     for why, rows in _single_requests(form, sample) if form.telecommands else ():
@@ -188,30 +194,31 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
 
 
 def _nameless_responses(
-    form: Stream, row: StreamRow, s: Sample
+    form: Stream, row: StreamRow, s: StreamSample
 ) -> Iterator[tuple[str, Script]]:
     """Yield scripts of requests whose telemetry comes in a packet without its id."""
-    others = [each for each in form.telemetry if each.packet == row.packet]
-    asked = s.ask(0, row)
-    for other in others:
+    request_row = s.ask(0, row)
+    for other in form.telemetry:
+        if other.packet != row.packet:
+            continue
         yield f"the data of {other.name} come", [
-            asked, s.come(30, other), s.come(31, row), s.come(32, other), {"at": 100},
+            request_row, s.come(30, other), s.come(31, row), s.come(32, other), {"at": 100},
         ]  # fmt: skip
         yield f"the data of {other.name} come late", [
-            asked, s.ask(1, other), {"at": 100}, s.come(110, other), {"at": 200}, {"at": 300}, {"at": 400},
+            request_row, s.ask(1, other), {"at": 100}, s.come(110, other), {"at": 200}, {"at": 300}, {"at": 400},
             s.come(401, other), {"at": 500},
         ]  # fmt: skip
         yield f"then {other.name} is requested", [
-            asked, s.ask(1, other), s.come(10, row), s.come(20, other), s.come(30, other),
+            request_row, s.ask(1, other), s.come(10, row), s.come(20, other), s.come(30, other),
         ]  # fmt: skip
         yield f"cancelled, then {other.name} is requested", [
-            asked, {"at": 5, "cancel": True}, s.ask(6, other), s.come(10, other), s.come(20, row), {"at": 200},
+            request_row, {"at": 5, "cancel": True}, s.ask(6, other), s.come(10, other), s.come(20, row), {"at": 200},
             s.come(210, other),
         ]  # fmt: skip
     yield "without a request", [s.come(0, row)]
 
 
-def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
+def _single_requests(form: Stream, s: StreamSample) -> Iterator[tuple[str, Script]]:
     row = min(form.telecommands, key=lambda row: row.most)
     known_ids = {row_.id for row_ in (*form.telecommands, *form.telemetry)}
     # The smallest unused id fits into the id field whenever possible.
@@ -263,26 +270,21 @@ def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
             [{"at": at, **asks} if not at else {"at": at} for at in range(0, 400, 100)],
         )
     for row in form.telecommands:
-        frame = next(
-            (
-                row_
-                for row_ in form.telemetry
-                if row.exchange and row_.id == row.exchange.reply
-            ),
-            row,
-        )
-        if frame is not row:
-            yield (
-                f"{row.name} is answered as the ICD says",
-                [
-                    s.ask(0, row),
-                    s.come(30, frame),
-                ],
-            )
+        if row.exchange is None:
+            continue
+        id = row.exchange.reply
+        reply = next((frame for frame in form.telemetry if frame.id == id), None)
+        if reply is not None:
+            script = [s.ask(0, row), s.come(30, reply)]
+            yield f"{row.name} is answered as the ICD says", script
 
 
 def _requests_with_reply(
-    form: Stream, s: Sample, row: StreamRow, frame: StreamRow, reply: dict[str, object]
+    form: Stream,
+    s: StreamSample,
+    row: StreamRow,
+    frame: StreamRow,
+    reply: dict[str, object],
 ) -> Iterator[tuple[str, Script]]:
     """Yield scripts of a telecommand with a reply that the caller specifies."""
     other = next(
@@ -355,7 +357,9 @@ def _requests_with_reply(
     ]  # fmt: skip
 
 
-def _simultaneous_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
+def _simultaneous_requests(
+    form: Stream, s: StreamSample
+) -> Iterator[tuple[str, Script]]:
     """Yield scripts of requests that start while others are running."""
     row, (*_, last) = form.telecommands[0], form.telecommands
     untaken = {"untaken": True}
@@ -409,10 +413,10 @@ def _simultaneous_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Scrip
 
 
 def _outcomes(
-    row: StreamRow, exchange: Exchange, s: Sample
+    row: StreamRow, exchange: Exchange, s: StreamSample
 ) -> Iterator[tuple[str, dict[str, int], Script]]:
     """Yield scripts of a telecommand and its responses: purpose, settings and rows."""
-    asked = s.ask(0, row)
+    request_row = s.ask(0, row)
     for response in exchange.responses:
         if response.status is None:
             yield from _responses(row, s, exchange, response, None, response.verdict)
@@ -424,42 +428,42 @@ def _outcomes(
             yield from _responses(row, s, exchange, response, status, what)
     two = s.ask(10, row)
     yield "the next of its kind waits until nothing late can come", {}, [
-        asked, {"at": 100}, two | {"at": 110}, {"at": 199}, {"at": 200}, {"at": 300}, {"at": 400},
+        request_row, {"at": 100}, two | {"at": 110}, {"at": 199}, {"at": 200}, {"at": 300}, {"at": 400},
     ]  # fmt: skip
     yield "two at a time", {"in_flight": 2}, [
-        asked, two, *(s.respond(30, asked, exchange, each) for each in exchange.responses),
+        request_row, two, *(s.respond(30, request_row, exchange, each) for each in exchange.responses),
         *(s.respond(40, two, exchange, each) for each in exchange.responses), {"at": 100}, {"at": 110}, {"at": 300},
     ]  # fmt: skip
     yield "a gap between two", {"gap": 20}, [
-        asked, two, *(s.respond(15, asked, exchange, each) for each in exchange.responses), {"at": 19}, {"at": 20},
+        request_row, two, *(s.respond(15, request_row, exchange, each) for each in exchange.responses), {"at": 19}, {"at": 20},
         *(s.respond(25, two, exchange, each) for each in exchange.responses), {"at": 130},
     ]  # fmt: skip
     needed = [each for each in exchange.responses if each.verdict in NEEDED]
     for why, order in (("in order", needed), ("in reverse", needed[::-1])):
         if len(needed) > 1:
             yield f"all responses {why}", {}, [
-                asked, *(s.respond(30, asked, exchange, each) for each in order), {"at": 100},
+                request_row, *(s.respond(30, request_row, exchange, each) for each in order), {"at": 100},
             ]  # fmt: skip
 
 
 def _declared_times(
-    row: StreamRow, exchange: Exchange, s: Sample, settings: Settings
+    row: StreamRow, exchange: Exchange, s: StreamSample, settings: Settings
 ) -> Iterator[tuple[str, Script]]:
     """Yield scripts whose moments are just before and after the times of the ICD."""
-    asked = s.ask(0, row)
+    request_row = s.ask(0, row)
     end = exchange.timeout or settings.reply_timeout
     late = end + settings.late
     for response in exchange.responses:
         at = [end - 1, end, late - 1, late]
         yield f"{response.verdict} in time, late and too late", [
-            asked, *(s.respond(moment, asked, exchange, response) for moment in at[2:]),
+            request_row, *(s.respond(moment, request_row, exchange, response) for moment in at[2:]),
         ]  # fmt: skip
         yield f"{response.verdict} at the time-out", [
-            asked, *(s.respond(moment, asked, exchange, response) for moment in at[:2]),
+            request_row, *(s.respond(moment, request_row, exchange, response) for moment in at[:2]),
         ]  # fmt: skip
         pause = settings.busy_pause
         yield f"{response.verdict}, then the pause of a busy device", [
-            asked, s.respond(0, asked, exchange, response), {"at": pause - 1}, {"at": pause},
+            request_row, s.respond(0, request_row, exchange, response), {"at": pause - 1}, {"at": pause},
         ]  # fmt: skip
         statuses = [value for value, what in response.meanings if what == PROGRESS]
         # Each report comes just before the time-out, which it extends.
@@ -467,44 +471,44 @@ def _declared_times(
         if (response.verdict == PROGRESS or statuses) and len(moments) <= MOST_MOMENTS:
             status = statuses[0] if statuses else None
             yield "progress until it no longer extends the time", [
-                asked, *(s.respond(moment, asked, exchange, response, status) for moment in moments),
+                request_row, *(s.respond(moment, request_row, exchange, response, status) for moment in moments),
             ]  # fmt: skip
 
 
 def _responses(
     row: StreamRow,
-    s: Sample,
+    s: StreamSample,
     exchange: Exchange,
     response: Response,
     status: int | None,
     what: str,
 ) -> Iterator[tuple[str, dict[str, int], Script]]:
     """Yield scripts in which one response arrives, at different times."""
-    asked = s.ask(0, row)
+    request_row = s.ask(0, row)
 
     def come(at: int, foreign: bool = False) -> Row:
-        return s.respond(at, asked, exchange, response, status, foreign)
+        return s.respond(at, request_row, exchange, response, status, foreign)
 
-    yield f"{what}", {}, [asked, come(30), come(31), {"at": 100}, {"at": 130}]
+    yield f"{what}", {}, [request_row, come(30), come(31), {"at": 100}, {"at": 130}]
     yield f"{what} comes late", {}, [
-        asked, {"at": 100}, come(110), come(111), come(112), {"at": 200},
+        request_row, {"at": 100}, come(110), come(111), come(112), {"at": 200},
     ]  # fmt: skip
     yield f"{what} comes after the late time", {}, [
-        asked, {"at": 100}, {"at": 200}, come(201),
+        request_row, {"at": 100}, {"at": 200}, come(201),
     ]  # fmt: skip
     yield f"{what} of another telecommand", {}, [
-        asked, come(30, foreign=True), come(40), {"at": 100},
+        request_row, come(30, foreign=True), come(40), {"at": 100},
     ]  # fmt: skip
     yield f"{what} after the first attempt, which was late", {}, [
-        asked | {"repeat": True}, {"at": 100}, come(110), come(120), {"at": 200}, {"at": 310},
+        request_row | {"repeat": True}, {"at": 100}, come(110), come(120), {"at": 200}, {"at": 310},
     ]  # fmt: skip
     yield f"{what} each time", {}, [
-        asked, *(come(at) for at in range(30, 400, 60)), {"at": 500},
+        request_row, *(come(at) for at in range(30, 400, 60)), {"at": 500},
     ]  # fmt: skip
     yield f"{what} while it is to be sent again", {"gap": 50}, [
-        asked | {"repeat": True}, s.ask(10, row), {"at": 50}, {"at": 100}, come(101), {"at": 150}, come(160),
+        request_row | {"repeat": True}, s.ask(10, row), {"at": 50}, {"at": 100}, come(101), {"at": 150}, come(160),
         {"at": 200}, {"at": 300}, {"at": 400},
     ]  # fmt: skip
     yield f"{what} after it was cancelled", {}, [
-        asked, {"at": 20, "cancel": True}, s.ask(21, row), come(30), come(31), {"at": 131}, {"at": 200},
+        request_row, {"at": 20, "cancel": True}, s.ask(21, row), come(30), come(31), {"at": 131}, {"at": 200},
     ]  # fmt: skip

@@ -1,5 +1,8 @@
 """Scripts of the client on each bus: replies, negative acknowledges, time-outs, late
 and unrelated messages.
+
+These are the clients of UART, CAN and I2C; ``asking`` has the client over a packet
+format and explains the rows of scripts.
 """
 
 from __future__ import annotations
@@ -32,7 +35,7 @@ SETTINGS = {
 OURS = 0x42  # CAN address of the client
 
 
-class Sample:
+class BusSample:
     """Messages of the node for the scripts.
 
     If the node has no message of a kind, another one replaces it.
@@ -80,7 +83,7 @@ def scripts(link: AnyLink, facts: Facts) -> Requests:
     """Yield the scripts of the client on all buses."""
     if not facts.telecommands or not facts.telemetry:
         return
-    sample = Sample(link, facts, Random(f"{facts.node.name} client"))
+    sample = BusSample(link, facts, Random(f"{facts.node.name} client"))
     if facts.framing and facts.acknowledge:
         for why, rows in _uart(facts, sample):
             yield f"UART: {why}", _op(UART, rows)
@@ -107,7 +110,7 @@ def _op(bus: str, script: list[dict[str, Any]], **more: object) -> dict[str, Any
     return {"op": "client", "bus": bus, **more, "settings": SETTINGS, "script": script}
 
 
-def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     def ack(at: int, message: Message, code: int = 0) -> dict[str, Any]:
         return {"at": at, "receive": s.acknowledge(message, code)}
 
@@ -318,7 +321,7 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
 
 
 def _many_late(
-    s: Sample, reply: Callable[[int, Message], Row]
+    s: BusSample, reply: Callable[[int, Message], Row]
 ) -> Iterator[tuple[str, Script]]:
     """Yield requests that are cancelled until a client remembers no more of them."""
     *frames, last = list(s.facts.telemetry.values())[: MOST_AWAITED + 1]
@@ -338,7 +341,7 @@ def _many_late(
         ]  # fmt: skip
 
 
-def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _checked(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     code = facts.reasons.get("checksum")
     if code is None:
         return
@@ -362,7 +365,7 @@ def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]
 
 
 def _checked_frames(
-    facts: Facts, s: Sample
+    facts: Facts, s: BusSample
 ) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     id, data = s.frame.telemetry_id or 0, s.source.randbytes(s.frame.length)
     right, bare = i2c_write(s.link, id, data, True), i2c_write(s.link, id, data, False)
@@ -411,7 +414,7 @@ def _checked_frames(
 
 
 def _i2c(
-    facts: Facts, s: Sample, checked: bool
+    facts: Facts, s: BusSample, checked: bool
 ) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     polled, (response,) = need(facts.polled, "polled"), responses_on(s.link, I2C)
     success = next(code for code, says in response.meanings if says == "ack")
@@ -574,7 +577,7 @@ def _i2c(
     ]  # fmt: skip
 
 
-def _can(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _can(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     assert facts.can
     node = facts.can.node_address
 

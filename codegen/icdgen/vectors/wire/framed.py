@@ -1,5 +1,8 @@
 """Messages in the packet format of a link: complete, in pieces, after noise, damaged,
 truncated and nested.
+
+`requests` yields requests to encode messages, to decode streams, and to respond as a
+device. ``streams`` has the same for the UART of links without a packet format.
 """
 
 from __future__ import annotations
@@ -110,8 +113,8 @@ def _responses(link: Link[Any], form: Stream, source: Random) -> Requests:
     responses = [each for exchange in form.exchanges for each in exchange.responses]
     reasons = sorted({value for each in responses for value, _ in each.reasons})
     # The sender counts the sequence; the response decides status and reason.
-    others = {"sequence", "status", "reason"}
-    values = {role: 1 for role in form.chosen("telemetry") if role not in others}
+    set_elsewhere = {"sequence", "status", "reason"}
+    values = {role: 1 for role in form.chosen("telemetry") if role not in set_elsewhere}
     refusing = (*reasons[:3], *reasons[-1:], 0xFFFFFFFF)
     for verdict in KINDS:
         for reason in (None, *(refusing if verdict in (NAK, BUSY) else ())):
@@ -424,14 +427,8 @@ def _undefined_messages(
     defines them.
     """
     place = form.packets[row.packet].of("id")
-    id = next(
-        (
-            candidate
-            for candidate in range(1, 1000)
-            if all(candidate != row.id for row in form.rows(direction))
-        ),
-        0,
-    )
+    ids = {row_.id for row_ in form.rows(direction)}
+    id = next((candidate for candidate in range(1, 1000) if candidate not in ids), 0)
     variants = []
     if place and id <= place.mask:
         variants.append(("of an unknown id", id, row.most, 0))
@@ -456,6 +453,7 @@ def _undefined_messages(
 def _gaps(
     link: Link[Any], form: Stream, direction: Direction, row: StreamRow, source: Random
 ) -> Iterator[tuple[str, bytes]]:
+    """Yield messages with gaps and repetitions of their sequence numbers."""
     place = form.packets[row.packet].of("sequence")
     if place is None:
         return

@@ -42,6 +42,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
                 for _, size in (facts.log_file.seconds, facts.log_file.milliseconds)
             ]
             times = [(0, 0), (min(0xFFFFFFFF, most[0]), min(999, most[1]))]
+            # Two entries: at time 0, and at the latest time that the file can store
             rows = [(s, ms, row) for (s, ms), row in zip(times, data, strict=True)]
             writer = LogWriter(link, mask)
             file = writer.header() + b"".join(writer.entry(*row) for row in rows)

@@ -1,10 +1,13 @@
 """Scripts of all procedures of a node: success with and without losses, failures, and
 limits.
+
+Each script is recorded with a simulated device (``recording``), which a script can let
+lose packets, report errors or respond late.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from random import Random
 from typing import Any
 
@@ -13,7 +16,7 @@ from icdgen_runtime.wire.awaited import Request
 from icdgen.icd.buses import UART
 from icdgen.icd.model import Message
 from icdgen.procedures.actions import Listing
-from icdgen.procedures.blocks import Packet, Reading
+from icdgen.procedures.blocks import BlockPacket, BlockReading
 from icdgen.procedures.numbers import put_number
 from icdgen.procedures.run import steps_of
 from icdgen.protocol.declared import U32
@@ -36,8 +39,8 @@ from icdgen.vectors.wire import Requests, Row
 from icdgen.vectors.wire.recording import (
     REFUSED,
     TIMEOUT,
+    ClientReport,
     RecordedDevice,
-    Report,
     Respond,
     arrival,
     record,
@@ -127,7 +130,7 @@ class _Scripts:
         )
         device = RecordedDevice(self.facts, bus, source, loss)
         run = device.counterpart.runs[self.procedure.name]
-        if isinstance(run, Reading):
+        if isinstance(run, BlockReading):
             given = call.get("inputs", {})
             key = tuple(given.get(name, 0) for name in run.effect.names)
             data = self.content if content is None else content
@@ -187,11 +190,11 @@ class _Scripts:
         damaged = iter([{"event": "damaged"}])
         device = self.device(call)
 
-        def once(now: int, request: Request) -> list[Report]:
+        def once(now: int, request: Request) -> list[ClientReport]:
             reports = device.respond(now, request)
             is_first = request.kind == "telecommand" and request.repeat
             event = next(damaged, None) if is_first else None
-            return [*reports[:-1], Report(event)] if event else reports
+            return [*reports[:-1], ClientReport(event)] if event else reports
 
         yield self.case("the first acknowledge is damaged", call, respond=once)
         if any(
@@ -205,16 +208,20 @@ class _Scripts:
     def _always(self, why: str, outcome: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         """Return the script of a procedure whose requests all have the same outcome."""
         return self.case(
-            why, self.call(), respond=lambda now, request: [Report(outcome)]
+            why, self.call(), respond=lambda now, request: [ClientReport(outcome)]
         )
 
     def _of_telemetry(self, why: str, outcome: Row) -> tuple[str, Call]:
         """Return the script of a procedure whose telemetry has always this outcome."""
         device = self.device(self.call())
 
-        def respond(now: int, request: Request) -> list[Report]:
+        def respond(now: int, request: Request) -> list[ClientReport]:
             is_telecommand = request.kind == "telecommand"
-            return device.respond(now, request) if is_telecommand else [Report(outcome)]
+            return (
+                device.respond(now, request)
+                if is_telecommand
+                else [ClientReport(outcome)]
+            )
 
         return self.case(why, self.call(), device, respond)
 
@@ -340,7 +347,8 @@ class _Scripts:
                 yield self.case(
                     f"an unknown number of bytes over {bus}, 30% lost", call, device
                 )
-            for size in self._sizes_near_limit():
+            most = self.blocks.most
+            for size in (most, most + 1) if most <= MOST_BYTES else ():
                 content = Random(size).randbytes(size)
                 call = self.call(**unknown)
                 device = self.device(call, content=content)
@@ -376,11 +384,6 @@ class _Scripts:
         assert self.blocks
         return None if self.blocks.total is None else self._input_of_total.name
 
-    def _sizes_near_limit(self) -> Iterator[int]:
-        assert self.blocks
-        if self.blocks.most <= MOST_BYTES:
-            yield from (self.blocks.most, self.blocks.most + 1)
-
     def _longer_blocks(self) -> Requests:
         """Yield scripts of a device that has more than the client requests."""
         lengths = [step.value.number for step in steps_of(self.procedure, SetLength)]
@@ -397,7 +400,7 @@ class _Scripts:
         assert self.blocks
         length = self.blocks.size + 1
 
-        def respond(now: int, request: Request) -> list[Report]:
+        def respond(now: int, request: Request) -> list[ClientReport]:
             reports = device.respond(now, request)
             if _requests(request, step.message):
                 frame = bytearray.fromhex(reports[-1].event["bytes"])
@@ -416,15 +419,17 @@ class _Scripts:
         id, length = receive.message.telemetry_id, receive.message.length
         numbers = (0, self.blocks.first_packet, (1 << receive.number.bits) - 1)
 
-        def respond(now: int, request: Request) -> list[Report]:
-            packets: list[Report] = []
+        def respond(now: int, request: Request) -> list[ClientReport]:
+            packets: list[ClientReport] = []
             for number in numbers:
                 frame = bytearray(length)
                 put_number(receive.number, frame, number)
-                packets.append(Report(arrival(Packet(receive.message, bytes(frame)))))
+                packets.append(
+                    ClientReport(arrival(BlockPacket(receive.message, bytes(frame))))
+                )
             short = {**packets[1].event, "bytes": packets[1].event["bytes"][:-2]}
             other = {**packets[1].event, "id": (id or 0) ^ 1}
-            strange = [*packets, Report(short), Report(other)]
+            strange = [*packets, ClientReport(short), ClientReport(other)]
             is_before = request.kind == "telemetry"
             return [
                 *(strange if is_before else strange[2:]),
@@ -437,29 +442,29 @@ class _Scripts:
         """Return the responses of a device that always sends the same packet."""
         device = self.device(call)
 
-        def respond(now: int, request: Request) -> list[Report]:
+        def respond(now: int, request: Request) -> list[ClientReport]:
             reports = device.respond(now, request)
             packets = [each for each in reports if each.event["event"] == "arrived"]
             if packets:
-                again = packets[:1] * REPETITIONS
                 # Packets that are not new must not extend the silence.
-                later = [Report(each.event, receive.silence - 1) for each in again]
-                return [packets[0], *reports[len(packets) :], *later]
+                repetition = ClientReport(packets[0].event, receive.silence - 1)
+                outcome = reports[len(packets) :]
+                return [packets[0], *outcome, *[repetition] * REPETITIONS]
             if (
                 request.kind == "telemetry"
                 and request.id == receive.message.telemetry_id
             ):
                 run = device.counterpart.runs[self.procedure.name]
-                assert isinstance(run, Reading)
+                assert isinstance(run, BlockReading)
                 return [done(run.packet(0).data)]
             return reports
 
         return respond
 
 
-def done(data: bytes, after: int = 1) -> Report:
+def done(data: bytes, after: int = 1) -> ClientReport:
     """Return the report of requested telemetry."""
-    return Report({"event": "done", "bytes": data.hex()}, after)
+    return ClientReport({"event": "done", "bytes": data.hex()}, after)
 
 
 def _requests(request: Request, message: Message) -> bool:
@@ -504,7 +509,7 @@ def _waiting(device: RecordedDevice, poll: Poll, early: int, is_done: bool) -> R
     """
     begin: int | None = None
 
-    def respond(now: int, request: Request) -> list[Report]:
+    def respond(now: int, request: Request) -> list[ClientReport]:
         nonlocal begin
         if request.kind == "telecommand":
             return device.respond(now, request)

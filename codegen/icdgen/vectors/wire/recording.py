@@ -1,4 +1,8 @@
-"""Scripts of procedures, recorded with the device's half of the same steps."""
+"""Scripts of procedures, recorded with the device's half of the same steps.
+
+`record` runs a procedure of the Python runtime against a `RecordedDevice` and writes
+down every event with its time; other languages must reach the same result.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,7 @@ from icdgen_runtime.wire.awaited import Request
 from icdgen_runtime.wire.procedures import Procedure
 
 from icdgen.frozen import NamedTuple
-from icdgen.procedures.counterpart import Counterpart, Device, Packet, Refused
+from icdgen.procedures.counterpart import BlockPacket, Counterpart, Device, Refused
 from icdgen.procedures.effects import Objects, default_effect
 from icdgen.protocol.facts import Facts
 from icdgen.runtime_objects.operations import AnyLink
@@ -27,7 +31,7 @@ REFUSED: Row = {"event": "refused", "code": 3}
 TIMEOUT: Row = {"event": "timeout"}
 
 
-class Report(NamedTuple):
+class ClientReport(NamedTuple):
     """Event that a client reports, and the time since the event before, or since the
     request, in milliseconds.
     """
@@ -36,7 +40,7 @@ class Report(NamedTuple):
     after: int = 1
 
 
-Respond = Callable[[int, Request], list[Report]]
+Respond = Callable[[int, Request], list[ClientReport]]
 """Function that returns the reports of a client for a request; its outcome is the last
 one, or stands before packets that arrive later.
 """
@@ -61,12 +65,14 @@ class RecordedDevice:
         procedures = [(each, default_effect(each)) for each in facts.procedures]
         self.counterpart = Counterpart(procedures, self.device)
 
-    def respond(self, now: int, request: Request) -> list[Report]:
+    def respond(self, now: int, request: Request) -> list[ClientReport]:
         """Return the reports of a client for a request."""
         if request.kind == "telecommand":
             return self._telecommand(now, request)
         return [
-            Report({"event": "done", "bytes": self.telemetry(now, request.id).hex()})
+            ClientReport(
+                {"event": "done", "bytes": self.telemetry(now, request.id).hex()}
+            )
         ]
 
     def telemetry(self, now: int, id: int) -> bytes:
@@ -87,12 +93,12 @@ class RecordedDevice:
     def _is_lost(self, probability: float) -> bool:
         return self.source.random() < probability
 
-    def _telecommand(self, now: int, request: Request) -> list[Report]:
+    def _telecommand(self, now: int, request: Request) -> list[ClientReport]:
         message, is_framed = self.facts.telecommands[request.id], self.facts.stream
         outcome = DONE if message.acknowledge or not is_framed else SENT
         is_packet = self.counterpart.is_packet(message)
         loss = self.packet_loss if is_packet else self.loss
-        packets: Iterable[Packet] = ()
+        packets: Iterable[BlockPacket] = ()
         is_lost = self._is_lost(loss)
         # Either the telecommand or its acknowledge is lost, unless all are lost.
         is_acknowledge_lost = message.acknowledge and loss < 1 and self._is_lost(0.5)
@@ -106,10 +112,10 @@ class RecordedDevice:
         if is_lost and message.acknowledge:
             outcome = TIMEOUT
         arrived = [each for each in packets if not self._is_lost(self.packet_loss)]
-        return [Report(event) for event in (*map(arrival, arrived), outcome)]
+        return [ClientReport(event) for event in (*map(arrival, arrived), outcome)]
 
 
-def arrival(packet: Packet) -> Row:
+def arrival(packet: BlockPacket) -> Row:
     """Return the event of a packet that arrives unasked."""
     id = packet.message.telemetry_id
     return {"event": "arrived", "id": id, "bytes": packet.data.hex()}
@@ -131,7 +137,17 @@ def record(
     while procedure.result is None and len(script) < STEPS:
         if pending is not None:
             at = now
-            for event, after in _of_client(now, pending, respond):
+            client_reports, tries = respond(now, pending), 1
+            # A client repeats a request after a time-out.
+            while (
+                pending.repeat
+                and client_reports[-1].event == TIMEOUT
+                and tries < ATTEMPTS
+            ):
+                # Packets that arrived before the time-out stay.
+                client_reports = client_reports[:-1] + respond(now, pending)
+                tries += 1
+            for event, after in client_reports:
                 at, count = at + after, count + 1
                 # The order makes entries comparable, because events are mappings.
                 heapq.heappush(reports, (at, count, event))
@@ -151,12 +167,3 @@ def record(
             break
         pending = procedure.next(now)
     return script, procedure
-
-
-def _of_client(now: int, request: Request, respond: Respond) -> list[Report]:
-    """Return the reports of a client, which repeats a request after a time-out."""
-    reports, tries = respond(now, request), 1
-    while request.repeat and reports[-1].event == TIMEOUT and tries < ATTEMPTS:
-        # Packets that arrived before the time-out stay.
-        reports, tries = reports[:-1] + respond(now, request), tries + 1
-    return reports
