@@ -46,17 +46,17 @@ def write(folder: Path, fields: int, newer: bool, every: str | None = None) -> P
     messages = fields // PER_MESSAGE
     for node in range((messages + PER_NODE - 1) // PER_NODE):
         here = range(node * PER_NODE, min(messages, (node + 1) * PER_NODE))
-        vector_file_text = _HEAD % f"node{node}" + "".join(
+        text = _HEAD % f"node{node}" + "".join(
             _message(number, node, newer) for number in here
         )
         if newer:
-            vector_file_text = vector_file_text.replace(
+            text = text.replace(
                 *{
                     "factor": ("raw*0.01", "raw*0.03"),
                     "name": ("Sensor Data", "Reading"),
                 }.get(every, ("", ""))
             )
-        (folder / f"node{node}.yaml").write_text(vector_file_text, encoding="utf-8")
+        (folder / f"node{node}.yaml").write_text(text, encoding="utf-8")
     return folder
 
 

@@ -65,16 +65,13 @@ class Pack:
             if node.name not in needed:
                 Path(node.file.replace(str(self.folder), str(folder), 1)).unlink()
         path = folder / change["file"]
-        vector_file_text = path.read_text("utf-8")
+        text = path.read_text("utf-8")
         before = (
-            sum(
-                len(one) + 1
-                for one in vector_file_text.split("\n")[: int(change["line"]) - 1]
-            )
+            sum(len(one) + 1 for one in text.split("\n")[: int(change["line"]) - 1])
             + int(change["column"])
             - 1
         )
-        rest = vector_file_text[before:]
+        rest = text[before:]
         if rest.startswith("["):  # an id as the numbers that are sent, or points
             end = next(
                 end
@@ -92,7 +89,7 @@ class Pack:
             if change["kind"] == "formula"
             else change["changed to"]
         )
-        path.write_text(vector_file_text[:before] + now + rest[end:], "utf-8")
+        path.write_text(text[:before] + now + rest[end:], "utf-8")
         return load([folder], check=False).icd
 
     def fields(self, message: str, node: str, icd: Icd | None = None) -> list[str]:
@@ -132,29 +129,21 @@ def structs(layout: Layout) -> Iterator[Layout]:
             yield from structs(place.struct)
 
 
-def _value(vector_file_text: str) -> str:
+def _value(text: str) -> str:
     """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts
     without quotes.
     """
-    vector_file_text = vector_file_text.strip()
-    if vector_file_text[:1] == "'":
-        return (
-            vector_file_text[1:-1]
-            if len(vector_file_text) > 1 and vector_file_text[-1] == "'"
-            else ""
-        )
+    text = text.strip()
+    if text[:1] == "'":
+        return text[1:-1] if len(text) > 1 and text[-1] == "'" else ""
     try:
         if (
-            vector_file_text[:1] == '"'
+            text[:1] == '"'
         ):  # names in formulas of derived values have what must be escaped
-            return str(json.loads(vector_file_text))
-        return str(
-            int(vector_file_text, 0)
-            if vector_file_text.lower().startswith("0x")
-            else vector_file_text
-        )
+            return str(json.loads(text))
+        return str(int(text, 0) if text.lower().startswith("0x") else text)
     except ValueError:
-        return "" if vector_file_text[:1] == '"' else vector_file_text
+        return "" if text[:1] == '"' else text
 
 
 def noticed(cell: str) -> dict[str, set[int]]:

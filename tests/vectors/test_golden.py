@@ -229,7 +229,7 @@ def test_ties_are_found_for_every_formula_that_has_them(odd_icd):
 
 
 def test_exact_decimals():
-    assert [decimal(Fraction(vector_file_text)) for vector_file_text in ("-12.34", "0", "5", "1/3", "-7/30", "1/1024")] == [
+    assert [decimal(Fraction(text)) for text in ("-12.34", "0", "5", "1/3", "-7/30", "1/1024")] == [
         "-12.34", "0", "5", "1/3", "-7/30", "0.0009765625",
     ]  # fmt: skip
     assert decimal(Fraction(1, 10**7)) == "0.0000001"

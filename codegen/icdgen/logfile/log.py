@@ -26,7 +26,7 @@ from icdgen.protocol import facts
 class Log(Protocol):
     """A log as a table.
 
-    Call `prepare` before `names`, `log_rows` and `to_parquet`, with the same ``head``: the
+    Call `prepare` before `names`, `rows` and `to_parquet`, with the same ``head``: the
     maximum number of rows, or None. These methods raise `UserError`.
     """
 
@@ -46,7 +46,7 @@ class Log(Protocol):
     def is_damaged(self, head: int | None) -> bool:
         """Return whether entries are left out because the file is damaged."""
 
-    def log_rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         """Iterate over the rows."""
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
@@ -118,7 +118,7 @@ class _Entries:
         # read.
         return self.source.integrity if head is None else self.source.survey(head)
 
-    def log_rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return log_rows(self.source, head, done)
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
@@ -158,7 +158,7 @@ class _Recorded:
         # Noise on a line is normal; it is counted and does not affect decoded messages.
         return False
 
-    def log_rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return self.sheet.rows(head, done)
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:

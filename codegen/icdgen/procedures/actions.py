@@ -1,4 +1,8 @@
-"""Procedures without blocks in the device: lists of objects, and actions on them."""
+"""Procedures without blocks in the device: lists of objects, and actions on them.
+
+`Listing` and `Action` add to `icdgen.procedures.run.ProcedureRun` what a telecommand
+does, and what the telemetry of the procedure has in it.
+"""
 
 from __future__ import annotations
 
@@ -39,10 +43,8 @@ class Listing(ProcedureRun):
             # (`end_if_zeros`).
             entries = self.entries[self._position : self._position + 1]
             return bytearray(entries[0] if entries else bytes(len(data)))
-        frame, keys = (
-            bytearray(len(data)),
-            list(self.device.objects.of(self.effect.kind)),
-        )
+        frame = bytearray(len(data))
+        keys = list(self.device.objects.of(self.effect.kind))
         for key in keys[self._position : self._position + 1]:
             for place, number in self.about(key, False):
                 put_number(place, frame, number)
@@ -65,7 +67,12 @@ class Action(ProcedureRun):
             return
         effect, objects = self.effect, self.device.objects
         if effect.verb == "erase":
-            if self._erases_all:
+            test = effect.all_if
+            if test is None:
+                is_all = not effect.key
+            else:
+                is_all = self.registers.get(test.register) == test.value.number
+            if is_all:
                 objects.of(effect.kind).clear()
             else:
                 objects.of(effect.kind).pop(self.key, None)
@@ -82,10 +89,3 @@ class Action(ProcedureRun):
             for place, number in self.about(self.key, is_busy):
                 put_number(place, frame, number)
         return frame
-
-    @property
-    def _erases_all(self) -> bool:
-        test = self.effect.all_if
-        if test is None:
-            return not self.effect.key
-        return self.registers.get(test.register) == test.value.number

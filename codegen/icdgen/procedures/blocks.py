@@ -1,5 +1,8 @@
 """Procedures with blocks in the device: it sends the blocks of an object, or receives
 them.
+
+A block is a part of an object that is transferred in packets; a map of packets tells
+which of them were received. `BlockReading` sends an object, `BlockWriting` stores it.
 """
 
 from __future__ import annotations
@@ -194,9 +197,11 @@ class BlockWriting(BlockRun):
         later = [i for i in self.inside if i > max(packets)]
         # Without a telecommand that commits the block, each packet is stored at once.
         self._commit_step = later[-1] if later else None
-        others = (self.given(i) for i in self.sends if i not in packets)
         # Registers that telecommands without a packet give to the device.
-        self._block_numbers: set[int] = set().union(*others)
+        self._block_numbers: set[int] = set()
+        for index in self.sends:
+            if index not in packets:
+                self._block_numbers |= self.given(index)
 
     def execute(self, index: int, data: bytes) -> None:
         step = self.step(index)
@@ -239,11 +244,9 @@ class BlockWriting(BlockRun):
         """Offset of the first packet of the block; None if no telecommand has it."""
         if PACKET_OFFSET not in self.registers:
             return 0
-        return (
-            self.registers.get(BLOCK_OFFSET)
-            if BLOCK_OFFSET in self._block_numbers
-            else None
-        )
+        if BLOCK_OFFSET in self._block_numbers:
+            return self.registers.get(BLOCK_OFFSET)
+        return None
 
     def length_of(self, data: bytes) -> int:
         if BLOCK_LENGTH not in self._block_numbers:

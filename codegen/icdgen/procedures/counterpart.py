@@ -1,4 +1,8 @@
-"""Device's half of all procedures of a node."""
+"""Device's half of all procedures of a node.
+
+`Counterpart` gives each telecommand to all procedures, and lets them change the
+telemetry that the client requests.
+"""
 
 from __future__ import annotations
 
@@ -23,18 +27,19 @@ class Counterpart:
         self, procedures: Iterable[tuple[Procedure, Effect]], device: Device
     ) -> None:
         procedures = list(procedures)
+        # A list or a description has no names of its own for the key of an object: those
+        # of the procedure that reads or writes such objects apply.
         names = {
             effect.kind: effect.names
             for _, effect in procedures
             if effect.verb in ("read", "write")
         }
         self.device = device
-        self.runs = {
-            procedure.name: _class_of(procedure)(
-                procedure, effect, device, names.get(effect.kind, effect.names)
-            )
-            for procedure, effect in procedures
-        }
+        self.runs: dict[str, ProcedureRun] = {}
+        for procedure, effect in procedures:
+            key_names = names.get(effect.kind, effect.names)
+            run_class = _class_of(procedure)
+            self.runs[procedure.name] = run_class(procedure, effect, device, key_names)
 
     def telecommand(self, now: int, message: Message, data: bytes) -> None:
         """Process a telecommand. Raise `Refused`."""

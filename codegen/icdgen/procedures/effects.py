@@ -76,13 +76,10 @@ def default_effect(procedure: Procedure) -> Effect:
     that its telecommands have are the key of the object. Other procedures have no
     effect.
     """
-    sent = {
-        put.value.number
-        for step in procedure.steps
-        if isinstance(step, Send)
-        for put in step.puts
-        if put.value.in_register
-    }
+    sent: set[int] = set()  # registers that telecommands have
+    for step in procedure.steps:
+        if isinstance(step, Send):
+            sent |= {put.value.number for put in step.puts if put.value.in_register}
     numbers = [each.name for each in procedure.numbers]
     key = {
         register: name

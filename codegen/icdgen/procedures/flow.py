@@ -1,8 +1,12 @@
-"""Order of the steps of a procedure: which step can follow which one."""
+"""Order of the steps of a procedure: which step can follow which one.
+
+The device sees telecommands only. From the last one, `until_next_send` tells which
+telemetry the client may request next, and which telecommand may follow.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 
 from icdgen.protocol.procedures import (
     Jump,
@@ -48,30 +52,18 @@ def until_next_send(
     """Return the steps that can follow a step before the next telecommand, and the
     steps that send this next telecommand.
     """
-    return _reachable(
-        procedure, index, registers or {}, lambda i: not _sends(procedure, i)
-    )
-
-
-def _sends(procedure: Procedure, index: int) -> bool:
-    return isinstance(procedure.steps[index], Send)
-
-
-def _reachable(
-    procedure: Procedure,
-    start: int,
-    registers: Mapping[int, int],
-    is_passed: Callable[[int], bool],
-) -> list[int]:
+    registers = registers or {}
+    # A dict without values, because it keeps the order of the steps.
     reached: dict[int, None] = {}
-    waiting = list(following(procedure, start, registers)) if start >= 0 else [0]
+    # -1: before the first step
+    waiting = list(following(procedure, index, registers)) if index >= 0 else [0]
     while waiting:
-        index = waiting.pop(0)
-        if index in reached or index >= len(procedure.steps):
+        next_index = waiting.pop(0)
+        if next_index in reached or next_index >= len(procedure.steps):
             continue
-        reached[index] = None
-        if is_passed(index):
-            waiting += following(procedure, index, registers)
+        reached[next_index] = None
+        if not isinstance(procedure.steps[next_index], Send):
+            waiting += following(procedure, next_index, registers)
     return list(reached)
 
 

@@ -1,4 +1,7 @@
-"""Numbers at their places in messages, and bits of the maps of packets."""
+"""Numbers at their places in messages, and bits of the maps of packets.
+
+The runtimes have the same functions for the client.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""A procedure in the device: its telecommands, and the telemetry that its steps request.
+"""A procedure in the device: its telecommands, and the telemetry that its steps
+request.
 
 Everything follows from the steps. A field that a poll waits for has the awaited value
 when the time of processing is over; a field that reports a failure has its value if the
@@ -203,10 +204,10 @@ class ProcedureRun:
         numbers = dict(zip(self.names, key, strict=False)) | {
             "size": len(data),
             "time": stored.time if stored else 0,
-            "checksum": (
-                self.device.checksum(self.device.algorithm, data) if data else 0
-            ),
+            "checksum": 0,
         }
+        if data:
+            numbers["checksum"] = self.device.checksum(self.device.algorithm, data)
         for name, place in self.effect.fields:
             yield place, numbers.get(name, 0)
 
@@ -220,9 +221,10 @@ class ProcedureRun:
 
     def _different_constant(self, index: int, data: bytes) -> NumberPlace | None:
         """Return the first place where the telecommand of a step has another number."""
-        for place, value in ((put.place, put.value) for put in self.step(index).puts):
-            if not value.in_register and number_at(place, data) != value.number:
-                return place
+        for put in self.step(index).puts:
+            is_constant = not put.value.in_register
+            if is_constant and number_at(put.place, data) != put.value.number:
+                return put.place
         return None
 
     def _check(self, step: Send, numbers: Mapping[int, int]) -> None:
@@ -260,11 +262,11 @@ class ProcedureRun:
         has_failed = self.failed or self.device.fails
         if isinstance(step, Poll):
             until, fails = _values(step.until, register), _values(step.fails, register)
-            # The device is the one that the client asks about, even if it is busy.
+            wanted: list[Value] = []
+            # A value of a register identifies the object that the client asks about,
+            # which is right even if the device is busy.
             if until and (not is_busy or until[0].in_register):
                 wanted = until
-            else:
-                wanted = []
             if has_failed and not is_busy and fails:
                 wanted = fails
             if wanted:
@@ -279,9 +281,9 @@ class ProcedureRun:
 
     def _resolved(self, value: Value) -> int:
         """Return the number of a value."""
-        return (
-            self.registers.get(value.number, 0) if value.in_register else value.number
-        )
+        if value.in_register:
+            return self.registers.get(value.number, 0)
+        return value.number
 
 
 def steps_of(procedure: Procedure, kind: type[AnyStep]) -> list[AnyStep]:

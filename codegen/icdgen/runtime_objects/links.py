@@ -1,4 +1,7 @@
-"""Link of a node as an object of the runtime, equal to ``LINK`` in generated code."""
+"""Link of a node as an object of the runtime, equal to ``LINK`` in generated code.
+
+`icdgen.link_calls` describes the object as constructor calls; `link_of` evaluates them.
+"""
 
 from __future__ import annotations
 

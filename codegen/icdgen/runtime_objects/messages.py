@@ -35,12 +35,10 @@ class ModelMessage(Message):
         """Return the message of a frame. Raises `LengthError`."""
         description, frame = cls.description, bytes(data)
         try:
-            raw, message = (
-                codec.decode(description.node, description.model, frame),
-                cls(),
-            )
+            raw = codec.decode(description.node, description.model, frame)
         except codec.LengthError:
             raise LengthError(cls.NAME, cls.LENGTH, len(frame)) from None
+        message = cls()
         for field in description.fields:
             # An absent optional field has no raw value.
             is_present = field.model.name in raw
@@ -82,9 +80,8 @@ class ModelMessages(Messages):
         """Return the class of an id. Raises `UnknownIdError`."""
         if id not in self:
             raise UnknownIdError(self._node, self._kind, id)
-        self._loaded[id] = message_class = _class(
-            self._description.message(self._messages[id])
-        )
+        message_class = _class(self._description.message(self._messages[id]))
+        self._loaded[id] = message_class
         return message_class
 
 

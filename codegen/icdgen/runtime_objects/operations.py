@@ -72,12 +72,13 @@ def uart_events(link: AnyLink, request: Request) -> Response:
     chunks = [hex_bytes(chunk) for chunk in rows(request, "chunks")]
     decoder = UartDecoder(link, limit)
     events = []
-    for event in (event for chunk in chunks for event in decoder.feed(chunk)):
-        row: Response = {"event": event.event}
-        if event.event == "message":
-            row["kind"] = uart_kind(link, event.message)
-            row["bytes"] = event.message.hex()
-        events.append(row)
+    for chunk in chunks:
+        for event in decoder.feed(chunk):
+            row: Response = {"event": event.event}
+            if event.event == "message":
+                row["kind"] = uart_kind(link, event.message)
+                row["bytes"] = event.message.hex()
+            events.append(row)
     return {
         "events": events,
         "discarded": decoder.discarded,
@@ -86,18 +87,13 @@ def uart_events(link: AnyLink, request: Request) -> Response:
 
 
 def can_split(link: AnyLink, request: Request) -> Response:
-    packets = split(link, _can_message(request))
-    return {
-        "packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]
-    }
-
-
-def _can_message(request: Request) -> CanMessage:
     kind, data = choice(request, "kind", CAN_KINDS), octets(request)
     id, source, destination = (
         number(request, key, 0, 255) for key in ("id", "source", "destination")
     )
-    return CanMessage(kind, id, source, destination, data)
+    packets = split(link, CanMessage(kind, id, source, destination, data))
+    rows_of_packets = [{"id": each.id, "bytes": each.data.hex()} for each in packets]
+    return {"packets": rows_of_packets}
 
 
 def can_packet(row: Request) -> CanPacket:
@@ -260,19 +256,16 @@ def _chosen(request: Request) -> dict[str, int]:
 
 
 def stream_events(link: AnyLink, request: Request) -> Response:
-    form, direction = (
-        need(link.stream, "stream"),
-        choice(request, "direction", DIRECTIONS),
-    )
+    form = need(link.stream, "stream")
+    direction = choice(request, "direction", DIRECTIONS)
     # A decoder must have room for a packet without data.
     least = max(packet.overhead for packet in form.packets)
     limit = number(request, "limit", least, link.longest, link.longest)
     decoder = stream.StreamDecoder(link, direction, limit)
     chunks = [hex_bytes(chunk) for chunk in rows(request, "chunks")]
+    events = [_stream_row(event) for chunk in chunks for event in decoder.feed(chunk)]
     return {
-        "events": [
-            _stream_row(each) for chunk in chunks for each in decoder.feed(chunk)
-        ],
+        "events": events,
         "discarded": decoder.discarded,
         "pending": decoder.pending,
     }
@@ -298,9 +291,10 @@ def stream_respond(link: AnyLink, request: Request) -> Response:
             except RangeError:
                 responses.append({"error": "range"})
             else:
-                responses.append(
-                    {"error": "unsupported"} if line is None else {"bytes": line.hex()}
-                )
+                response = {"error": "unsupported"}
+                if line is not None:
+                    response = {"bytes": line.hex()}
+                responses.append(response)
     return {"responses": responses}
 
 

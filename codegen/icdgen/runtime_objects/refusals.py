@@ -1,4 +1,7 @@
-"""Refusals of JSON requests: codes of errors, and the members that describe them."""
+"""Refusals of JSON requests: codes of errors, and the members that describe them.
+
+``tests/conformance/README.md`` lists the codes.
+"""
 
 from __future__ import annotations
 

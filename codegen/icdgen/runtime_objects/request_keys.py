@@ -1,4 +1,7 @@
-"""Reading of the keys of a JSON request; invalid keys raise `Refusal`."""
+"""Reading of the keys of a JSON request; invalid keys raise `Refusal`.
+
+Each function takes a request and a key, and returns the value with its Python type.
+"""
 
 from __future__ import annotations
 
@@ -33,6 +36,7 @@ def number(
 
 
 def text(request: Request, key: str) -> str:
+    """Return a text."""
     value = request.get(key)
     if not isinstance(value, str):
         raise Refusal("request", detail=f"`{key}` is missing or is no text")
@@ -52,6 +56,7 @@ def choice(request: Request, key: str, values: tuple[T, ...]) -> T:
 
 
 def octets(request: Request, key: str = "bytes") -> bytes:
+    """Return bytes, which the request has as hexadecimal digits."""
     return hex_bytes(request.get(key))
 
 
@@ -70,6 +75,7 @@ def flag(request: Request, key: str) -> bool:
 
 
 def rows(request: Request, key: str) -> list[Any]:
+    """Return a list of any values."""
     value = request.get(key)
     if not isinstance(value, list):
         raise Refusal("request", detail=f"`{key}` is missing or is no list")
@@ -77,6 +83,7 @@ def rows(request: Request, key: str) -> list[Any]:
 
 
 def mappings(request: Request, key: str) -> list[dict[str, Any]]:
+    """Return a list of objects."""
     items = rows(request, key)
     if not all(isinstance(row, dict) for row in items):
         raise Refusal("request", detail=f"`{key}` has an entry that is no object")

@@ -61,16 +61,11 @@ def _settings(link: AnyLink, request: Row) -> Settings:
     given = request.get("settings", {})
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")
-    values = {
-        fact.name: number(
-            given,
-            fact.name,
-            fact.least,
-            fact.most or U32,
-            getattr(link.settings, fact.name),
-        )
-        for fact in facts_of(SettingsSection)
-    }
+    values = {}
+    for fact in facts_of(SettingsSection):
+        default = getattr(link.settings, fact.name)
+        most = fact.most or U32
+        values[fact.name] = number(given, fact.name, fact.least, most, default)
     return Settings(**values)
 
 

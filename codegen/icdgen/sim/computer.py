@@ -1,4 +1,7 @@
-"""The simulated device: the running program, and the start of the next one."""
+"""The simulated device: the running program, and the start of the next one.
+
+A device without a boot program has one program only. Time comes from the caller.
+"""
 
 from __future__ import annotations
 
@@ -41,10 +44,8 @@ class Computer:
     @property
     def deadline(self) -> int | None:
         """Time at which `tick` or `Program.log_due` must be called, or None."""
-        return min(
-            (at for at in (self.boot_at, self.program.log_at) if at is not None),
-            default=None,
-        )
+        times = [at for at in (self.boot_at, self.program.log_at) if at is not None]
+        return min(times, default=None)
 
     def take(self, now: int, message: bytes, bus: str) -> TelecommandOutcome | None:
         """Process a telecommand, which begins with its id."""
@@ -55,9 +56,8 @@ class Computer:
 
     def frame(self, now: int, id: int) -> bytes | None:
         """Return the frame with this id, or None if the program has none."""
-        stop = (
-            self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
-        )
+        boot = self.icd.protocol_of(self.program.node).get("boot", {})
+        stop = boot.get("stop_request")
         message = self.program.facts.telemetry.get(id)
         # A request of this telemetry keeps the device in its boot program.
         if message and message.name == stop:

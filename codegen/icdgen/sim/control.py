@@ -65,16 +65,11 @@ class Control:
         while self.steps and now >= self.steps[0].at:
             self.do(now, self.steps.pop(0))
         values = self.line.computer.program.values
+        random = self.line.faults.random.random
         for message, field, wave in self.moving:
             if message.name in values.frames:
-                values.update(
-                    message,
-                    {
-                        field.name: raw_of(
-                            field, at(wave, now / 1000, self.line.faults.random.random)
-                        )
-                    },
-                )
+                raw = raw_of(field, value_of_wave(wave, now / 1000, random))
+                values.update(message, {field.name: raw})
 
     def do(self, now: int, step: ScriptStep) -> None:
         """Execute a step."""
@@ -171,9 +166,11 @@ def fields_of(
     fields = icd.longest_frame(message)
     elements = find_array(fields, key, vocabulary)
     nodes = by_name(message.layout.sequence, key, vocabulary)
-    node_of_array = (
-        nodes[0] if nodes else elements[0].steps[-1].node if elements else None
-    )
+    node_of_array = None
+    if nodes:
+        node_of_array = nodes[0]
+    elif elements:
+        node_of_array = elements[0].steps[-1].node
     part = next(
         (part for part in message.layout.counted_parts if part.node is node_of_array),
         None,
@@ -215,8 +212,9 @@ def raw_value_of(message: Message, field: FrameField, value: object) -> int | by
             f"{message.name}, {field.name}: an overlay field has no bits of its own",
             "set the fields that have them",
         )
-    # `str` spells them `True` and `False`, which no ICD has.
-    text = "true" if value is True else "false" if value is False else str(value)
+    text = str(value)
+    if isinstance(value, bool):
+        text = text.lower()  # `True` and `False` are no values of an ICD
     raw = typed(field, text)
     if (
         isinstance(raw, int)
@@ -230,7 +228,7 @@ def raw_value_of(message: Message, field: FrameField, value: object) -> int | by
     return raw
 
 
-def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
+def value_of_wave(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
     """Return the physical value of a wave at a time."""
     low, high = float(wave.get("min", -1)), float(wave.get("max", 1))
     period = float(wave.get("period", 60))
@@ -245,7 +243,7 @@ def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
     return low + (high - low) * part  # ramp
 
 
-def read(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[ScriptStep]:
+def read_script(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[ScriptStep]:
     """Return the steps of a script. Raise `icdgen.errors.UserError`."""
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -267,13 +265,8 @@ def _step(
 ) -> ScriptStep:
     """Return a checked step of a script. Raise `icdgen.errors.UserError`."""
     where = f"{path}: step {number}"
-    if not isinstance(row, dict) or set(row) - {
-        "at",
-        "set",
-        "faults",
-        "log",
-        "restart",
-    }:
+    keys = {"at", "set", "faults", "log", "restart"}
+    if not isinstance(row, dict) or set(row) - keys:
         raise UserError(f"{where}: there is no such step", HELP)
     seconds, values = row.get("at", 0), row.get("set", {})
     if type(seconds) not in (int, float) or not 0 <= seconds < 1e9:
@@ -297,19 +290,23 @@ def _step(
         and all(isinstance(field, str) for field in fault_texts)
     ):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)
+    step_faults = None
+    if fault_texts is not None:
+        step_faults = [line.fault(text) for text in fault_texts]
     return ScriptStep(
-        round(seconds * 1000),
-        {
+        at=round(seconds * 1000),
+        set={
             str(name): {str(key): value for key, value in fields.items()}
             for name, fields in values.items()
         },
-        None if fault_texts is None else [line.fault(text) for text in fault_texts],
-        bool(row.get("log", False)),
-        bool(row.get("restart", False)),
+        faults=step_faults,
+        log=bool(row.get("log", False)),
+        restart=bool(row.get("restart", False)),
     )
 
 
 def _check_wave(where: str, field: FrameField, wave: Wave) -> None:
+    """Check the keys and numbers of a wave. Raise `icdgen.errors.UserError`."""
     if field.role in ("overlay", "derived"):
         raise UserError(
             f"{where}: an overlay field has no bits of its own",

@@ -1,4 +1,8 @@
-"""Base class of the lines of a simulated device: faults, and delayed transmission."""
+"""Base class of the lines of a simulated device: faults, and delayed transmission.
+
+A line receives bytes (`DeviceLine.received`) and queues bytes to send, each with the
+time at which it is due (`DeviceLine.pieces`).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Simulated transmission faults, from a random seed."""
+"""Simulated transmission faults, from a random seed.
+
+`parse` reads a fault of the command line, such as ``drop=10%@acknowledge``. `Faults`
+decides for each message whether it has the fault.
+"""
 
 from __future__ import annotations
 
@@ -62,16 +66,13 @@ class Faults:
 
     def fault(self, kind: str, on: str) -> InjectedFault | None:
         """Return the fault of this kind that this message has; None without one."""
-        return next(
-            (
-                fault
-                for fault in self.faults
-                if fault.kind == kind
-                and on in fault.on
-                and self.random.random() < fault.share
-            ),
-            None,
-        )
+        for fault in self.faults:
+            # Only a fault that applies takes a random number, so that other faults do
+            # not change the effect of a seed.
+            if fault.kind == kind and on in fault.on:
+                if self.random.random() < fault.share:
+                    return fault
+        return None
 
     def apply(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
         """Return the bytes of a message with faults: pieces and their delays in

@@ -1,4 +1,8 @@
-"""Files of the simulated device that the user gives, and programs that it stores."""
+"""Files of the simulated device that the user gives, and programs that it stores.
+
+`read_file` reads a file of the option ``--file``; `saver` writes uploaded objects to a
+folder.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """The device on a line with header and trailer: periodic telemetry, and responses to
 telecommands.
+
+`FramedLine` decodes telecommands, lets the program execute them, and sends the response
+that the ICD describes for the outcome.
 """
 
 from __future__ import annotations
@@ -95,13 +98,13 @@ class FramedLine(DeviceLine):
             )
         responding = {response.telemetry for response in responses}
         requested = {row.id: row.is_requested for row in self.form.telemetry}
-        self.unsolicited = [
-            variant.message
-            for id, variants in self.ids.telemetry.items()
-            for variant in variants
-            if variant.message.period_ms is not None
-            or (id not in responding and not requested.get(id))
-        ]
+        # Periodic telemetry, and telemetry that nothing requests
+        self.unsolicited: list[Message] = []
+        for id, variants in self.ids.telemetry.items():
+            is_unasked = id not in responding and not requested.get(id)
+            for variant in variants:
+                if variant.message.period_ms is not None or is_unasked:
+                    self.unsolicited.append(variant.message)
         every = computer.settings.every_ms
         self._periods: list[_Period] = []
         if every != 0:
@@ -121,12 +124,12 @@ class FramedLine(DeviceLine):
         return any(refusal_code(each, text) is not None for each in responses)
 
     def without(self, reason: str) -> list[str]:
-        return [
-            variant.message.name
-            for id, response in self._refusals.items()
-            if refusal_code(response, reason) is None
-            for variant in self.ids.telecommand[id]
-        ]
+        names: list[str] = []
+        for id, response in self._refusals.items():
+            if refusal_code(response, reason) is None:
+                variants = self.ids.telecommand[id]
+                names += [variant.message.name for variant in variants]
+        return names
 
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
@@ -245,15 +248,15 @@ class FramedLine(DeviceLine):
         Prefer a telecommand that has the same responses.
         """
         rows = {row.id: row for row in self.form.telecommands}
-        others = [
+        candidates = [
             row for row in rows.values() if row.exchange is not None and row.id != id
         ]
-        if not others:
+        if not candidates:
             return id ^ 1, b""  # nothing responds to an id that the node does not have
         own = rows[id].exchange
         # Then only the numbers that the response repeats reveal the wrong telecommand.
         # A client that does not compare these numbers accepts the response.
-        other = min(others, key=lambda row: row.exchange != own)
+        other = min(candidates, key=lambda row: row.exchange != own)
         return other.id, bytes(other.least)
 
     def _refuse(
@@ -277,11 +280,10 @@ class FramedLine(DeviceLine):
             return
         response = response_of(self.form, id, "nak", is_request)
         if response is not None:
-            number = (
-                first_refusal_code(response)
-                if name is None
-                else refusal_code(response, name)
-            )
+            if name is None:
+                number = first_refusal_code(response)
+            else:
+                number = refusal_code(response, name)
             self._respond(now, id, data, "nak", number, is_request)
 
     def _defer(self, now: int, id: int, data: bytes, is_request: bool = False) -> bool:

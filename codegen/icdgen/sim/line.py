@@ -1,4 +1,8 @@
-"""The device on a UART: a byte stream with times and faults."""
+"""The device on a UART: a byte stream with times and faults.
+
+`UartLine` is for links with ids of one byte and escape characters; ``framed_line`` is
+for links with a packet format.
+"""
 
 from __future__ import annotations
 

@@ -1,9 +1,14 @@
-"""A program of the simulated device: it processes telecommands and requests."""
+"""A program of the simulated device: it processes telecommands and requests.
+
+It checks telecommands as a device would, stores configuration, and answers requests
+with the current values; procedures are in `icdgen.procedures`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 from icdgen_runtime.wire.i2c import i2c_write
@@ -62,11 +67,9 @@ class Program:
         storage.provide_index(self.link, next(kinds, None), checksum)
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
-        responses = [
-            row
-            for bus in self.link.bus_exchanges
-            for row in responses_on(self.link, bus)
-        ]
+        responses = chain.from_iterable(
+            responses_on(self.link, bus) for bus in self.link.bus_exchanges
+        )
         # Response with the code of a refusal; None without one.
         self.refusal = next((row for row in responses if row.reason), None)
         meanings = self.refusal.meanings if self.refusal else ()
@@ -123,14 +126,20 @@ class Program:
 
     def current(self, now: int, message: Message) -> bytes:
         """Return the current frame of a message."""
-        raw = self._statistics(message)
-        data = (
-            self.values.encode(message, {**self.values.raw(message), **raw})
-            if raw
-            else self.values.frame(message)
-        )
+        statistics = self._statistics(message)
+        if statistics:
+            raw = {**self.values.raw(message), **statistics}
+            data = self.values.encode(message, raw)
+        else:
+            data = self.values.frame(message)
         data = self.counterpart.frame(now, message, data)
-        return self._with_outcome(now, message, data)
+        if (
+            message == self.facts.polled
+        ):  # it reports the outcome of the last telecommand
+            id, code, parameter = self.last
+            is_processed = now >= self.free_at
+            data = with_outcome(self.link, data, id, is_processed, code, parameter)
+        return data
 
     def log_due(self, now: int) -> bytes | None:
         """Return an unsolicited log message if it is due."""
@@ -148,14 +157,11 @@ class Program:
         if setting is None or layout is None:
             return None
         frames = []
+        fill = bytes([layout.fill])
         for slot in layout.selected(setting[0]):
             message = self.facts.telemetry.get(slot.id) if slot.id is not None else None
-            data = (
-                self.current(now, message)
-                if message
-                else bytes([layout.fill]) * slot.length
-            )
-            frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
+            data = self.current(now, message) if message else b""
+            frames.append(data[: slot.length].ljust(slot.length, fill))
         return LogMessage.encode(self.link, setting[0], frames)
 
     def first_invalid(
@@ -163,13 +169,14 @@ class Program:
     ) -> int | None:
         """Return the index of the first field with an invalid value, or None."""
         for index, field in enumerate(self.icd.longest_frame(message)):
-            value = raw.get(field.name)  # optional fields may be missing
-            is_invalid = isinstance(value, int) and (
-                bool(violations(field, value))
-                and codec.special_of(field, value) is None
-                if self.settings.strict
-                else field.const is not None and value != field.const
-            )
+            value = raw.get(field.name)
+            if not isinstance(value, int):
+                continue  # bytes, or an absent optional field
+            if self.settings.strict:
+                is_special = codec.special_of(field, value) is not None
+                is_invalid = bool(violations(field, value)) and not is_special
+            else:
+                is_invalid = field.const is not None and value != field.const
             if is_invalid:
                 return index
         return None
@@ -183,18 +190,13 @@ class Program:
         data, form = message[1:], self.facts.checksum
         # The checksum is optional unless `telecommand_always` has the bus: the length
         # shows whether it is there.
-        if (
-            form
-            and bus in form.telecommand_buses
-            and len(data) == telecommand.length + form.bytes
-        ):
-            data = data[: telecommand.length]
-            if message != i2c_write(self.link, message[0], data, crc=True):
+        if form and bus in form.telecommand_buses:
+            if len(data) == telecommand.length + form.bytes:
+                data = data[: telecommand.length]
+                if message != i2c_write(self.link, message[0], data, crc=True):
+                    return self._refusal("checksum")
+            elif bus in form.telecommand_always and len(data) == telecommand.length:
                 return self._refusal("checksum")
-        elif (
-            form and bus in form.telecommand_always and len(data) == telecommand.length
-        ):
-            return self._refusal("checksum")
         if len(data) != telecommand.length:
             return self._refusal("length")
         raw = codec.decode(self.icd.node(telecommand.node), telecommand, data)
@@ -232,22 +234,22 @@ class Program:
         )
 
     def _identify(self) -> None:
+        """Set the numbers of the ICD in the telemetry that identifies the node."""
         report = self.facts.identification
         if report:
             values = {
                 "node_type": self.node.node_type,
                 "interface_version": self.node.interface_version,
             }
-            self.values.update(
-                report.message,
-                {
-                    n: values.get(r) or 0
-                    for r, n in report.fields.items()
-                    if r in values
-                },
-            )
+            raw = {
+                field_name: values[role] or 0
+                for role, field_name in report.fields.items()
+                if role in values
+            }
+            self.values.update(report.message, raw)
 
     def _statistics(self, message: Message) -> Raw:
+        """Return the counters in a message; a flag is 1 after any event."""
         report = self.facts.statistics
         if report is None or report.message.name != message.name:
             return {}
@@ -257,18 +259,9 @@ class Program:
         result: Raw = {}
         for role, name in report.fields.items():
             count = self.counts.get(role, 0)
-            result[name] = (
-                count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
-            )
+            is_flag = bits[name] == 1
+            result[name] = int(count > 0) if is_flag else count % (1 << bits[name])
         return result
-
-    def _with_outcome(self, now: int, message: Message, data: bytes) -> bytes:
-        """Return a frame with the outcome of the last telecommand, if it reports it."""
-        if message != self.facts.polled:
-            return data
-        id, code, parameter = self.last
-        is_processed = now >= self.free_at
-        return with_outcome(self.link, data, id, is_processed, code, parameter)
 
     def _log_role(self) -> dict[str, Any]:
         role: dict[str, Any] = (
@@ -297,9 +290,8 @@ class Program:
 
 def _sent(procedures: Mapping[str, dict[str, Any]]) -> set[str]:
     """Return the telecommands of procedures of an ICD."""
-    return {
-        step["send"]
-        for section in procedures.values()
-        for step in nested_steps(section["steps"])
-        if "send" in step
-    }
+    names: set[str] = set()
+    for section in procedures.values():
+        steps = nested_steps(section["steps"])
+        names.update(step["send"] for step in steps if "send" in step)
+    return names

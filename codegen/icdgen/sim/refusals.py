@@ -1,4 +1,4 @@
-"""Reasons of refusals, as users name them."""
+"""Reasons of refusals, as users name them: by a member of the enumeration or a number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Construction and execution of a simulated device."""
+"""Construction and execution of a simulated device.
+
+`build` makes the device and its line from the options; `run` serves it until the user
+stops it.
+"""
 
 from __future__ import annotations
 
@@ -104,23 +108,25 @@ def build(
         kind, key, file = read_file(icd, node, text)
         storage.of(kind)[key] = file
     settings = SimulationSettings(
-        options.boot,
-        options.busy,
-        options.processing,
-        options.strict,
-        None if options.every is None else round(options.every * 1000),
+        boot_ms=options.boot,
+        busy_ms=options.busy,
+        processing_ms=options.processing,
+        strict=options.strict,
+        every_ms=None if options.every is None else round(options.every * 1000),
     )
     line_faults = Faults(Random(options.seed), late_ms=options.late)
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
-    line: DeviceLine = (
-        FramedLine(computer, line_faults, chosen)
-        if computer.program.facts.stream
-        else UartLine(computer, line_faults)
-    )
+    line: DeviceLine
+    if computer.program.facts.stream:
+        line = FramedLine(computer, line_faults, chosen)
+    else:
+        line = UartLine(computer, line_faults)
     line.warn = warn
     line_faults.faults = [line.fault(text) for text in options.faults]
-    steps = control.read(options.script, icd, node, line) if options.script else []
+    steps = (
+        control.read_script(options.script, icd, node, line) if options.script else []
+    )
     controller = control.Control(icd, node, line, steps)
     for message, text in options.values:
         controller.assign(message, text)

@@ -1,4 +1,8 @@
-"""Transport of the line over a pseudo-terminal, TCP or UDP, with asyncio."""
+"""Transport of the line over a pseudo-terminal, TCP or UDP, with asyncio.
+
+`Server` moves bytes between a line and its clients. Each other public function opens
+one kind of transport; `icdgen.sim.run` finds it by its name.
+"""
 
 from __future__ import annotations
 
@@ -225,14 +229,11 @@ async def pty(server: Server) -> tuple[str, object]:
 def _listen_error(kind: str, host: str, port: int, error: OSError) -> UserError:
     """Return the error for an address that cannot be opened."""
     is_taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
-    why = (
-        os.strerror(error.errno)
-        if error.errno and error.errno > 0
-        else error.strerror or str(error)
-    )
-    help = (
-        "port 0 takes a free one"
-        if is_taken
-        else "--host is an address of this machine"
-    )
+    if error.errno and error.errno > 0:
+        why = os.strerror(error.errno)
+    else:
+        why = error.strerror or str(error)
+    help = "--host is an address of this machine"
+    if is_taken:
+        help = "port 0 takes a free one"
     return UserError(f"cannot listen on {kind} {host}:{port}: {why}", help)

@@ -1,4 +1,8 @@
-"""Values in the frames of a simulated program."""
+"""Values in the frames of a simulated program.
+
+Each frame starts with values that the ICD allows (`allowed_values`); scripts and the
+user set others.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,7 @@ from math import ceil, floor
 
 from icdgen import codec
 from icdgen.icd.curve import Curve
-from icdgen.icd.frames import FrameField
+from icdgen.icd.frames import FrameField, PathStep
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.responses import field_of
 from icdgen.protocol.exchange import NumberPlace
@@ -72,18 +76,14 @@ class Values:
         variable-length array becomes long enough for all elements that are set.
         """
         current, new = self.raw(message), dict(raw)
-        steps = [
-            step
-            for field in self.icd.longest_frame(message)
-            if field.name in raw
-            for step in field.steps
-        ]
+        steps: list[PathStep] = []  # arrays and structs around the fields that are set
+        for field in self.icd.longest_frame(message):
+            if field.name in raw:
+                steps += field.steps
         counters: dict[str, int] = {}
         for part in message.layout.counted_parts:
-            octets, count = (
-                new.get(part.name),
-                codec.size_of_values(part, {**current, **raw}),
-            )
+            octets = new.get(part.name)
+            count = codec.size_of_values(part, {**current, **raw})
             if isinstance(octets, bytes):
                 new[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
             elements = (step.element for step in steps if step.node is part.node)
