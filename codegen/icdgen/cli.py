@@ -111,9 +111,8 @@ def _refuse_mistyped(word: str) -> None:
     """
     if not word.isidentifier() or os.path.lexists(word):
         return
-    help = (
-        question(close_words(word, _COMMANDS)) or "`icdgen --help` lists the commands"
-    )
+    help = question(close_words(word, _COMMANDS))
+    help = help or "`icdgen --help` lists the commands"
     raise UserError(f"`{word}` is neither a command nor a file", help)
 
 

@@ -3,7 +3,8 @@
 
 The Python backend writes the calls into generated code. `icdgen.runtime_objects`
 evaluates them, so that the commands of icdgen have the same link without generating
-code.
+code. A call has the name of the class of the part: `icdgen.protocol.sections` uses the
+names of the runtime.
 """
 
 from __future__ import annotations
@@ -97,11 +98,8 @@ class _LinkBuilder:
     """Builds the calls for the parts of a link."""
 
     def __init__(self, link: LinkDescription) -> None:
-        self.description, self.facts, self.assumed = (
-            link,
-            link.facts,
-            Assumptions(link.facts),
-        )
+        self.description, self.facts = link, link.facts
+        self.assumed = Assumptions(link.facts)
 
     def link(self) -> Call:
         """Return the call of ``Link``."""
@@ -127,6 +125,7 @@ class _LinkBuilder:
         # Before the checksums: the reasons for assumptions about its use are here.
         checksum = self.checksum()
         time = {name: _flat("TimePart", part) for name, part in facts.time.items()}
+        # None: the link has no such part, and the keyword is omitted.
         optional = {
             "framing": self.part(facts.framing),
             "acknowledge_bytes": self.acknowledge(),
@@ -252,11 +251,9 @@ class _LinkBuilder:
     def index(self) -> object:
         """Return the call for the index of files."""
         index = self.facts.index
-        fields = (
-            {role: (field.at, field.bytes) for role, field in index.fields.items()}
-            if index
-            else {}
-        )
+        if index is None:
+            return None
+        fields = {role: (field.at, field.bytes) for role, field in index.fields.items()}
         return self.part(index, fields=fields)
 
     def report(self, report: Report) -> Call:
@@ -302,11 +299,9 @@ def _explained(value: object, why: str) -> object:
 
 def _commented(value: object, reasons: list[tuple[str, str]]) -> object:
     """Return a value, with keys and reasons as comments."""
-    return (
-        Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons))
-        if reasons
-        else value
-    )
+    if not reasons:
+        return value
+    return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons))
 
 
 def _stream(form: Stream) -> Call:
@@ -362,6 +357,7 @@ def _crc(crc: Crc) -> Call:
 
 
 def _packet_field(field: PacketField) -> Call:
+    """Return the call for a field of a header or trailer."""
     parts = _members(field)
     defaults = {"id_shift": 0, "unit": 1, "plus": 0}
     # By keyword and only if needed: most fields of a header have the defaults.

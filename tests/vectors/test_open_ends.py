@@ -59,5 +59,5 @@ def test_the_numbers_of_elements_at_both_limits_and_beside_them_are_tested(
     part = ONE.replace("count: Count", f"count: {{field: Count, plus: {plus}}}")
     (tmp_path / "demo.yaml").write_text(ICD + part, encoding="utf-8")
     icd = load([tmp_path / "demo.yaml"]).icd
-    (message,) = make(icd, icd.node("demo")).messages
+    (message,) = make_vectors(icd, icd.node("demo")).messages
     assert {len(row.frame) - 2 for row in message.rows} >= counts

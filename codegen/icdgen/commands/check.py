@@ -1,4 +1,4 @@
-"""Command ``icdgen check``."""
+"""Command ``icdgen check``: report findings about ICDs."""
 
 from __future__ import annotations
 

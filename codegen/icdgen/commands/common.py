@@ -1,4 +1,8 @@
-"""Shared parts of the commands: selection of the ICDs, options, and output of findings."""
+"""Shared parts of the commands: selection of the ICDs, options, and output of findings.
+
+Without ICDs in the arguments, a command uses those of ``icdgen.toml``, and without a
+configuration the ICDs that are shipped with icdgen (`chosen`).
+"""
 
 from __future__ import annotations
 
@@ -76,11 +80,9 @@ def known_languages() -> str:
         # only if it is used.
         packages = dict.fromkeys(point.dist.name for point in points if point.dist)
         plug_in_names.append(f"{name} ({', '.join(packages)})")
-    return (
-        f"{named}, and of other packages {', '.join(plug_in_names)}"
-        if plug_in_names
-        else named
-    )
+    if plug_in_names:
+        return f"{named}, and of other packages {', '.join(plug_in_names)}"
+    return named
 
 
 def say(text: str, err: bool = False) -> None:
@@ -202,12 +204,11 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
 
 
 def _short(path: Path) -> Path:
+    """Return a path relative to the current folder if it is in it."""
     here = Path.cwd()
-    return (
-        path.relative_to(here)
-        if path.is_absolute() and path.is_relative_to(here)
-        else path
-    )
+    if path.is_absolute() and path.is_relative_to(here):
+        return path.relative_to(here)
+    return path
 
 
 def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
@@ -277,9 +278,9 @@ def _where_named(
     ``icdgen.toml``.
     """
     context = click.get_current_context(silent=True)
-    configuration: config.Config | None = (
-        context.meta.get(_CONFIG_KEY) if context is not None else None
-    )
+    configuration: config.Config | None = None
+    if context is not None:
+        configuration = context.meta.get(_CONFIG_KEY)
     if configuration is None or configuration.path is None:
         return findings, texts
     file = str(_short(configuration.path))

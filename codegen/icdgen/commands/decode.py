@@ -1,4 +1,8 @@
-"""Command ``icdgen decode``, for frames in any notation."""
+"""Command ``icdgen decode``, for frames in any notation.
+
+`icdgen.recognize` does the work; this module separates node, message and frame in the
+arguments, and prints the result.
+"""
 
 from __future__ import annotations
 
@@ -86,9 +90,8 @@ def decode(
     if form == "csv":  # the other forms have it among the remarks
         for text in left_out:
             say(f"left out: {text}", err=True)
-    sys.exit(
-        1 if left_out or any(reading.has_wrong_constant for reading in readings) else 0
-    )
+    has_wrong_constant = any(reading.has_wrong_constant for reading in readings)
+    sys.exit(1 if left_out or has_wrong_constant else 0)
 
 
 def _split_arguments(
@@ -187,6 +190,7 @@ def _is_id(words: list[str]) -> bool:
 
 
 def _is_frame(words: list[str]) -> bool:
+    """Return whether the words are a frame in any notation, or name a file."""
     from icdgen.recognize import read_pasted
     from icdgen.values.errors import BadHex
 
@@ -202,12 +206,11 @@ def _is_frame(words: list[str]) -> bool:
 def _content(words: list[str]) -> str | bytes:
     """Return the frame itself, or the content of the named file."""
     name = words[0]
+    is_named_file = name == "-" or name.startswith("@")
     # A file named like hex digits needs the prefix @.
-    if len(words) > 1 or (
-        name != "-"
-        and not name.startswith("@")
-        and (_is_bytes(name) or not _is_file(name))
-    ):
+    if not is_named_file:
+        is_named_file = _is_file(name) and not _is_bytes(name)
+    if len(words) > 1 or not is_named_file:
         return " ".join(words)
     if name == "-":
         if sys.stdin is None:
@@ -225,6 +228,7 @@ def _content(words: list[str]) -> str | bytes:
 
 
 def _is_bytes(text: str) -> bool:
+    """Return whether a word is one or more bytes in hexadecimal."""
     from icdgen.values.errors import BadHex
     from icdgen.values.hexadecimal import parse_hex
 

@@ -1,4 +1,4 @@
-"""Command ``icdgen diff``."""
+"""Command ``icdgen diff``: report the changes between two ICDs (`icdgen.diff`)."""
 
 from __future__ import annotations
 
@@ -32,15 +32,16 @@ _LAYERS = ("wire", "meaning", "source", "text", "additions")
 def _layers(
     ctx: click.Context, param: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    words = tuple(
-        word.strip() for item in value for word in item.split(",") if word.strip()
-    )
+    """Return the layers of all options, which are separated by commas."""
+    words: list[str] = []
+    for item in value:
+        words += filter(None, map(str.strip, item.split(",")))
     for word in words:
         if word not in _LAYERS:
             raise click.BadParameter(
                 f"'{word}' is not one of {', '.join(_LAYERS)}", ctx, param
             )
-    return words
+    return tuple(words)
 
 
 @click.command(epilog="Example: icdgen diff HEAD~1..HEAD icd/ --fail-on wire,meaning")

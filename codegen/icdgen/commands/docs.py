@@ -1,4 +1,4 @@
-"""Command ``icdgen docs``."""
+"""Command ``icdgen docs``: write or serve the documentation site (`icdgen.site`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command ``icdgen encode``, with the reference codec."""
+"""Command ``icdgen encode``: physical values to a frame, with the reference codec."""
 
 from __future__ import annotations
 

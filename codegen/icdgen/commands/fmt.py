@@ -1,4 +1,4 @@
-"""Command ``icdgen fmt``."""
+"""Command ``icdgen fmt``: write ICDs in the canonical layout (`icdgen.icd.fmt`)."""
 
 from __future__ import annotations
 

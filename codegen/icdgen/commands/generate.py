@@ -1,4 +1,7 @@
-"""Command ``icdgen generate``, also available as ``icdgen --lang ...``."""
+"""Command ``icdgen generate``, also available as ``icdgen --lang ...``.
+
+`icdgen.generation.generate` does the work; this module prints what was written.
+"""
 
 from __future__ import annotations
 

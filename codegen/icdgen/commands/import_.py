@@ -1,4 +1,7 @@
-"""Command ``icdgen import``."""
+"""Command ``icdgen import``: manuals and definitions of other tools to ICDs.
+
+`icdgen.importer` reads manuals, `icdgen.definitions` files such as DBC and XTCE.
+"""
 
 from __future__ import annotations
 
@@ -343,6 +346,7 @@ def _explanation(result: Result, number: int) -> str:
 
 
 def _explore(result: Result, form: str) -> None:
+    """Print the output of `--tables`."""
     from icdgen.importer.rules import explore
 
     report = explore.as_json if form == "json" else explore.report
@@ -383,11 +387,9 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
     ]
     for finding in error.findings:
         if finding.code in ABOUT_FILES:
-            place = (
-                f"{finding.place.file}:{finding.place.line}"
-                if finding.place.line > 1
-                else finding.place.file
-            )
+            place = finding.place.file
+            if finding.place.line > 1:
+                place += f":{finding.place.line}"
             remedy = f"\n  = help: {finding.help}" if finding.help else ""
             say(f"{place}: error[{finding.code}]: {finding.message}{remedy}", err=True)
     if about_lines:

@@ -1,4 +1,4 @@
-"""Command ``icdgen init``."""
+"""Command ``icdgen init``: the first ICD of a project (`icdgen.starter`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command ``icdgen log``."""
+"""Command ``icdgen log``: list or convert logs and recordings (`icdgen.logfile`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command ``icdgen monitor``."""
+"""Command ``icdgen monitor``: live telemetry (`icdgen.link.live`) in rounds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command ``icdgen rule``."""
+"""Command ``icdgen rule``: the explanation of a rule of ICDs or of the diff."""
 
 from __future__ import annotations
 

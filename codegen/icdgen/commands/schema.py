@@ -1,4 +1,4 @@
-"""Command ``icdgen schema``."""
+"""Command ``icdgen schema``: the JSON Schema of ICDs."""
 
 from __future__ import annotations
 

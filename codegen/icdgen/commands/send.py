@@ -1,4 +1,4 @@
-"""Command ``icdgen send``."""
+"""Command ``icdgen send``: send a telecommand over a port and show its outcome."""
 
 from __future__ import annotations
 
@@ -120,18 +120,13 @@ def _sent(frame: Frame) -> str:
     from icdgen.describe.numbers import value_text
 
     constants = [
-        (row.field, row.raw) for row in frame.rows if row.field.const is not None
+        f"{row.field.name} {value_text(row.raw)}"
+        for row in frame.rows
+        if row.field.const is not None and isinstance(row.raw, int)
     ]
-    constant_texts = ", ".join(
-        f"{field.name} {value_text(raw)}"
-        for field, raw in constants
-        if isinstance(raw, int)
-    )
-    return (
-        f"{frame.message.name} with {constant_texts}"
-        if constant_texts
-        else frame.message.name
-    )
+    if not constants:
+        return frame.message.name
+    return f"{frame.message.name} with {', '.join(constants)}"
 
 
 def _response(icd: Icd, node: Node, outcome: Outcome) -> Frame | None:
@@ -157,6 +152,7 @@ def _outcome_text(
     outcome: Outcome,
     response: Frame | None,
 ) -> str:
+    """Return the outcome of a telecommand in words."""
     from icdgen_runtime.wire.events import Busy, Done, Refused, Timeout
 
     from icdgen.link.outcomes import attempts_text, failure_text

@@ -1,4 +1,4 @@
-"""Command ``icdgen show``."""
+"""Command ``icdgen show``: ICDs as text or JSON (`icdgen.show`)."""
 
 from __future__ import annotations
 

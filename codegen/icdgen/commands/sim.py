@@ -1,4 +1,4 @@
-"""Command ``icdgen sim``."""
+"""Command ``icdgen sim``: a simulated device (`icdgen.sim`) on ports."""
 
 from __future__ import annotations
 

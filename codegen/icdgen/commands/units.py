@@ -1,4 +1,4 @@
-"""Command ``icdgen units``."""
+"""Command ``icdgen units``: the built-in units."""
 
 from __future__ import annotations
 

@@ -35,13 +35,13 @@ SAME_ENUM = 0.5
 SAME_FIELD = 0.6
 
 
-class _HasName(Protocol):
+class _NamedObject(Protocol):
     @property
     def name(self) -> str: ...
 
 
 Thing = TypeVar("Thing")
-Named = TypeVar("Named", bound=_HasName)
+Named = TypeVar("Named", bound=_NamedObject)
 Declared = TypeVar("Declared", Enum, Message)
 Paired = TypeVar("Paired", EnumPair, MessagePair)
 Two = tuple[Thing, Thing, float]  # old, new, and confidence of the match

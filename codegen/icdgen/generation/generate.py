@@ -1,4 +1,8 @@
-"""A run of the generator: load, check, render, compare and write."""
+"""A run of the generator: load, check, render, compare and write.
+
+`run` takes a `Job` from the command and returns a `GenerationOutcome`; `remember`
+stores it, so that an equal run ends at once.
+"""
 
 from __future__ import annotations
 
@@ -114,15 +118,11 @@ def _depfile(outcome: GenerationOutcome) -> tuple[bytes, set[str]]:
         os.path.join(plan.out, name) for plan in outcome.plans for name in plan.files
     ]
     needs = [str(path) for path in outcome.inputs if path.is_file()]
-    text = (
-        " \\\n  ".join(map(_escape, targets))
-        + ": \\\n  "
-        + " \\\n  ".join(map(_escape, needs))
-        + "\n"
-    )
-    return text.encode("utf-8", "surrogateescape"), {
-        os.path.realpath(path) for path in (*targets, *needs)
-    }
+    separator = " \\\n  "  # one path per line
+    left, right = (separator.join(map(_escape, side)) for side in (targets, needs))
+    text = f"{left}:{separator}{right}\n"
+    named = {os.path.realpath(path) for path in (*targets, *needs)}
+    return text.encode("utf-8", "surrogateescape"), named
 
 
 def _write_depfile(path: Path, outcome: GenerationOutcome) -> None:

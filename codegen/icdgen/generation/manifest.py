@@ -34,12 +34,8 @@ def read(out: Path, language: str) -> dict[str, str]:
 
 def text(files: dict[str, str]) -> str:
     """Return the text of a manifest; equal for equal files."""
-    return (
-        json.dumps(
-            {"generator": "icdgen", "files": dict(sorted(files.items()))}, indent=1
-        )
-        + "\n"
-    )
+    content = {"generator": "icdgen", "files": dict(sorted(files.items()))}
+    return json.dumps(content, indent=1) + "\n"
 
 
 def digest(data: bytes) -> str:

@@ -78,12 +78,12 @@ def plan(
     for name, digest in written.items():
         if name not in result.files:
             current = read(out / name) if os.path.isfile(out / name) else None
-            if current is not None:
-                (
-                    result.remove
-                    if manifest.digest(current) == digest
-                    else result.edited
-                ).append(name)
+            if current is None:
+                continue
+            if manifest.digest(current) == digest:
+                result.remove.append(name)
+            else:
+                result.edited.append(name)
     result.digests = {
         name: manifest.digest(data) for name, data in result.files.items()
     }

@@ -6,7 +6,6 @@ Two programs on one line would receive each other's responses.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 from icdgen.errors import UserError
@@ -50,14 +49,15 @@ def users_of(path: str) -> list[tuple[int, str]]:
     target = os.path.realpath(path)
     # Files of other users' processes are not visible, so this list can lack the owner
     # of a lock.
-    pids = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
+    try:
+        pids = {int(name) for name in os.listdir("/proc") if name.isdecimal()}
+    except OSError:
+        pids = set()  # there is no /proc on other systems than Linux
+    users = {pid for pid in pids - {os.getpid()} if _has_open(pid, target)}
     # A simulator has opened its own end of a pseudo-terminal. Only the owner of the
     # lock prevents the use.
     owners = _lock_owners(target)
-    return [
-        (pid, _command(pid))
-        for pid in sorted(set(pids) & owners or owners or set(pids))
-    ]
+    return [(pid, _command(pid)) for pid in sorted(users & owners or owners or users)]
 
 
 def _lock_owners(path: str) -> set[int]:
@@ -82,14 +82,8 @@ def _lock_owners(path: str) -> set[int]:
     return {pid for pid in owners if pid > 0} - {os.getpid()}
 
 
-def _pids() -> Iterator[int]:
-    try:
-        yield from (int(name) for name in os.listdir("/proc") if name.isdecimal())
-    except OSError:
-        return
-
-
 def _has_open(pid: int, target: str) -> bool:
+    """Return whether a process has opened a file."""
     try:
         return any(
             os.path.realpath(file) == target
@@ -100,16 +94,12 @@ def _has_open(pid: int, target: str) -> bool:
 
 
 def _command(pid: int) -> str:
+    """Return the program of a process with its first argument, for a message."""
     try:
-        words = (
-            Path(f"/proc/{pid}/cmdline")
-            .read_bytes()
-            .decode(errors="replace")
-            .split("\0")
-        )
+        command_line = Path(f"/proc/{pid}/cmdline").read_bytes()
     except OSError:
         return "unknown"
-    words = [word for word in words if word]
+    words = [word for word in command_line.decode(errors="replace").split("\0") if word]
     if len(words) > 1 and os.path.basename(words[0]).startswith("python"):
         words = words[words.index("-m") + 1 :] if "-m" in words[:-1] else words[1:]
     # Only program and subcommand, as further arguments may be long or secret.

@@ -1,5 +1,5 @@
-"""Statistics of received telemetry: errors, missing and repeated messages, and responses
-without a request.
+"""Statistics of received telemetry: errors, missing and repeated messages, and
+responses without a request.
 """
 
 from __future__ import annotations
@@ -51,10 +51,12 @@ class LineStatistics:
     def text(self) -> str:
         """Return the errors as one line for a report; empty without errors."""
         counts = [f"{fault} ({times})" for fault, times in sorted(self.faults.items())]
-        counts += [f"messages missing ({self.missing})"] if self.missing else []
-        counts += (
-            [f"messages that came again ({self.repeated})"] if self.repeated else []
-        )
-        counts += [f"late responses ({self.late})"] if self.late else []
-        counts += [f"responses without a request ({self.stray})"] if self.stray else []
+        for what, times in (
+            ("messages missing", self.missing),
+            ("messages that came again", self.repeated),
+            ("late responses", self.late),
+            ("responses without a request", self.stray),
+        ):
+            if times:
+                counts.append(f"{what} ({times})")
         return f"on the line: {', '.join(counts)}" if counts else ""

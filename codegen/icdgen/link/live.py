@@ -1,4 +1,8 @@
-"""Table of live telemetry."""
+"""Table of live telemetry, for `icdgen monitor`.
+
+`Monitor` stores the last frame of each message. The command gives it the outcomes of
+requests and unsolicited events, and prints its rows, frames or reports.
+"""
 
 from __future__ import annotations
 
@@ -92,8 +96,7 @@ class Monitor:
         names = [
             message.name
             for message in self.icd.messages_of(self.node)
-            if message.telemetry_id is not None
-            and message.telemetry_id in requested_ids
+            if message.telemetry_id in requested_ids
         ]
         why = "on request" if form.request else "in response to telecommands"
         what = f"{self.node.name} sends telemetry only {why}"
@@ -195,11 +198,9 @@ class Monitor:
                 self._received(message, event.id, event.data)
         elif isinstance(event, Log):
             for log_frame in event.log.frames:
-                message = (
-                    self.facts.telemetry.get(log_frame.id)
-                    if log_frame.id is not None
-                    else None
-                )
+                if log_frame.id is None:
+                    continue  # of an unassigned bit of the mask
+                message = self.facts.telemetry.get(log_frame.id)
                 if message and message.length == len(log_frame.data):
                     self._keep(message, log_frame.data)
 
@@ -253,17 +254,12 @@ class Monitor:
                 OLD_SECONDS, 2 * self._period_seconds(name)
             ):
                 remarks.append(f"last value, {_age_text(age)} old")
-            for number, row in enumerate(self._frame(name, self.last[name]).rows):
-                of_row = "; ".join(
-                    [*remarks, *row.remarks] if number == 0 else row.remarks
-                )
-                yield (
-                    (name if number == 0 else ""),
-                    row.field.name,
-                    row.text,
-                    row.field.unit_symbol,
-                    of_row,
-                )
+            # The first row has the name of the message and the remarks about it.
+            first_cell = name
+            for row in self._frame(name, self.last[name]).rows:
+                text = "; ".join([*remarks, *row.remarks])
+                yield first_cell, row.field.name, row.text, row.field.unit_symbol, text
+                first_cell, remarks = "", []
 
     def _names(self) -> list[str]:
         names = [message.name for message in self.messages]
@@ -284,8 +280,6 @@ def _age_text(seconds: float) -> str:
     minutes, hours = int(seconds // 60), int(seconds // 3600)
     if not minutes:
         return f"{int(seconds)} s"
-    return (
-        f"{hours} h {minutes % 60} min"
-        if hours
-        else f"{minutes} min {int(seconds) % 60} s"
-    )
+    if not hours:
+        return f"{minutes} min {int(seconds) % 60} s"
+    return f"{hours} h {minutes % 60} min"

@@ -1,4 +1,8 @@
-"""Options of `icdgen monitor` and `icdgen send`, and the session that they define."""
+"""Options of `icdgen monitor` and `icdgen send`, and the session that they define.
+
+Modules of the runtime are imported in functions, so that the help of the commands needs
+no runtime.
+"""
 
 from __future__ import annotations
 
@@ -132,11 +136,9 @@ def identity_problem(session: BusSession, faults: Mapping[int, str]) -> str | No
     outcome = session.start(Request("telemetry", link.identification.telemetry))
     if not isinstance(outcome, Done):
         fault = faults.get(link.identification.telemetry)
-        return (
-            f"the device answers, but: {fault}"
-            if fault
-            else "the device does not answer"
-        )
+        if fault:
+            return f"the device answers, but: {fault}"
+        return "the device does not answer"
     identity = identify(link, outcome.data)
     if identity.matches:
         return None

@@ -1,4 +1,4 @@
-"""Outcomes of requests in words."""
+"""Outcomes of requests in words and as JSON, for `icdgen monitor` and `icdgen send`."""
 
 from __future__ import annotations
 

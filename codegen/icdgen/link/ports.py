@@ -231,12 +231,9 @@ class CanBus:
         """
         with _failures(self.name, *self.errors):
             message = self.bus.recv(max(timeout, 0))
-        if (
-            message is None
-            or not message.is_extended_id
-            or message.is_error_frame
-            or message.is_remote_frame
-        ):
+        if message is None or message.is_error_frame or message.is_remote_frame:
+            return None
+        if not message.is_extended_id:
             return None
         return CanPacket(message.arbitration_id, bytes(message.data))
 
@@ -310,6 +307,7 @@ def address(text: str) -> tuple[str, int]:
 
 
 def _can(path: str, section: dict[str, Any]) -> CanBus:
+    """Open the CAN bus of ``INTERFACE/CHANNEL``. Raise `PortError`."""
     interface, separator, channel = path.partition("/")
     if not separator or not interface or not channel:
         raise PortError(
@@ -320,13 +318,14 @@ def _can(path: str, section: dict[str, Any]) -> CanBus:
 
 
 def _is_pty(path: str) -> bool:
+    """Return whether a path names a pseudo-terminal."""
     try:
         status = os.stat(path)
     except OSError:
         return False
-    return stat.S_ISCHR(status.st_mode) and os.path.realpath(path).startswith(
-        "/dev/pts/"
-    )
+    is_device = stat.S_ISCHR(status.st_mode)
+    # Linux only: other systems open a terminal as a serial port.
+    return is_device and os.path.realpath(path).startswith("/dev/pts/")
 
 
 def _is_in_use(error: Exception) -> bool:
@@ -341,6 +340,7 @@ def _is_in_use(error: Exception) -> bool:
 
 
 def _library(name: str, package: str) -> Any:
+    """Return a module of an optional package. Raise `PortError` without it."""
     try:
         return import_module(name)
     except ImportError:

@@ -1,4 +1,8 @@
-"""The live table of `icdgen monitor` on a terminal. It scrolls if it does not fit."""
+"""The live table of `icdgen monitor` on a terminal. It scrolls if it does not fit.
+
+`Screen` draws the rows of `icdgen.link.live.Monitor` with rich; a thread reads the
+keys.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Sessions with a device over a port."""
+"""Sessions with a device over a port.
+
+A session of the Python runtime is a client with its clock and its port. `session`
+chooses the class that matches the port.
+"""
 
 from __future__ import annotations
 
@@ -39,11 +43,9 @@ class CanSession(BusSession):
 
     def _receive(self, seconds: float) -> list[Event]:
         packet = self._port.receive(seconds)
-        return (
-            self._can.packet(self._now(), packet)
-            if packet
-            else self._can.tick(self._now())
-        )
+        if packet is None:
+            return self._can.tick(self._now())
+        return self._can.packet(self._now(), packet)
 
 
 @contextmanager

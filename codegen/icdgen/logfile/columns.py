@@ -1,4 +1,8 @@
-"""Columns of a log, and the bits of an entry that they contain."""
+"""Columns of a log, and the bits of an entry that they contain.
+
+`plan` returns the layout of the entries for a mask; `columns_of` the columns of one
+message, also for recordings of links.
+"""
 
 from __future__ import annotations
 
@@ -87,11 +91,9 @@ def plan(icd: Icd, facts: Facts, mask: bytes) -> EntryLayout:
 
     Raise `icdgen.protocol.facts.Unsupported`.
     """
-    form, slot_bytes = (
-        need(facts.log_file, "telemetry_log"),
-        need(facts.mask, "log_mask").slot_bytes,
-    )
-    slots = need(facts.mask, "log_mask").selected(mask)
+    form = need(facts.log_file, "telemetry_log")
+    log_mask = need(facts.mask, "log_mask")
+    slot_bytes, slots = log_mask.slot_bytes, log_mask.selected(mask)
     columns: list[LogColumn] = []
     for number, slot in enumerate(slots):
         columns += _columns(icd, facts, slot, form.frames_at + number * slot_bytes)
@@ -136,13 +138,15 @@ def columns_of(
     columns: dict[str, LogColumn] = {}
     for field in icd.longest_frame(message):
         operand_names = field.derived.fields if field.derived is not None else ()
+        if field.role == "count":
+            continue
         # A derived field has no bits of its own: it is left out with its operands, and
         # not by its place.
-        if (
-            field.role == "count"
-            or not columns.keys() >= set(operand_names)
-            or (not operand_names and field.at + field.bits > size * 8)
-        ):
+        if operand_names:
+            is_in_entry = columns.keys() >= set(operand_names)
+        else:
+            is_in_entry = field.at + field.bits <= size * 8
+        if not is_in_entry:
             continue
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:

@@ -160,31 +160,22 @@ class LogSurvey:
 
         A time is -1 if milliseconds or seconds are out of range.
         """
-        (seconds_at, seconds_size), (milliseconds_at, milliseconds_size) = (
-            self.plan.seconds,
-            self.plan.milliseconds,
-        )
+        seconds_at, seconds_size = self.plan.seconds
+        milliseconds_at, milliseconds_size = self.plan.milliseconds
         little = self.plan.order == "little"
         # The last entry need not be complete: only its time must be within the data.
         count = min(count, (len(data) - self.time_end) // stride + 1)
         if count < FIRST_CHUNK or not _has_numpy():
             times = []
             for at in range(0, count * stride, stride):
-                milliseconds = int.from_bytes(
-                    data[
-                        at + milliseconds_at : at + milliseconds_at + milliseconds_size
-                    ],
-                    self.plan.order,
-                )
-                seconds = int.from_bytes(
-                    data[at + seconds_at : at + seconds_at + seconds_size],
-                    self.plan.order,
-                )
-                times.append(
-                    seconds * 1000 + milliseconds
-                    if milliseconds < 1000 and seconds <= LATEST_SECOND
-                    else -1
-                )
+                first = at + milliseconds_at
+                octets = data[first : first + milliseconds_size]
+                milliseconds = int.from_bytes(octets, self.plan.order)
+                first = at + seconds_at
+                octets = data[first : first + seconds_size]
+                seconds = int.from_bytes(octets, self.plan.order)
+                is_valid = milliseconds < 1000 and seconds <= LATEST_SECOND
+                times.append(seconds * 1000 + milliseconds if is_valid else -1)
             return times
         import numpy as np
 
@@ -194,14 +185,10 @@ class LogSurvey:
         milliseconds_array = numbers_at(
             data, stride, milliseconds_at, milliseconds_size, little, count=count
         )
-        times_array = seconds_array.astype(np.int64) * 1000 + milliseconds_array.astype(
-            np.int64
-        )
-        result: Sequence[int] = np.where(
-            (milliseconds_array < 1000) & (seconds_array <= LATEST_SECOND),
-            times_array,
-            -1,
-        )  # type: ignore[assignment]
+        times_array = seconds_array.astype(np.int64) * 1000
+        times_array += milliseconds_array.astype(np.int64)
+        is_valid_array = (milliseconds_array < 1000) & (seconds_array <= LATEST_SECOND)
+        result: Sequence[int] = np.where(is_valid_array, times_array, -1)  # type: ignore[assignment]
         return result
 
     def _anchor(self) -> int | None:
@@ -255,11 +242,9 @@ class LogSurvey:
                 start = (ending or following or near)[0]
                 self._learn(start)
                 # A clock that is set within the first entries leaves them in place.
-                return (
-                    begin
-                    if (start - begin) % size == 0 and first is not None
-                    else self._regular(start)
-                )
+                if (start - begin) % size == 0 and first is not None:
+                    return begin
+                return self._regular(start)
         if is_clock or is_trusted:
             return begin
         # Too few entries to compare: believe the positions that the header gives, if
@@ -310,11 +295,8 @@ class LogSurvey:
         """Return the first entry behind ``at`` whose time does not follow that of its
         predecessor, or the end of whole entries.
         """
-        size, position, previous = (
-            self.entry_bytes,
-            at + self.entry_bytes,
-            self._time(at),
-        )
+        size = self.entry_bytes
+        position, previous = at + size, self._time(at)
         # Reads grow, because the first rows of a log need few entries, and a long log
         # without damage needs few calls.
         amount = FIRST_CHUNK * size
@@ -329,11 +311,9 @@ class LogSurvey:
             index = _first_irregular(previous, times, self.limit)
             if index is not None:
                 return position + index * size
-            previous, position, amount = (
-                int(times[-1]),
-                position + count * size,
-                min(2 * amount, LAST_CHUNK),
-            )
+            previous = int(times[-1])
+            position += count * size
+            amount = min(2 * amount, LAST_CHUNK)
         return position
 
     def _ends_well(self, end: int) -> bool:
@@ -356,10 +336,10 @@ class LogSurvey:
         data may be damaged already.
         """
         size = self.entry_bytes
-        before, previous = (
-            (self._time(broken - 2 * size) if broken - 2 * size >= run else None),
-            self._time(broken - size),
-        )
+        previous = self._time(broken - size)
+        before = None
+        if broken - 2 * size >= run:
+            before = self._time(broken - 2 * size)
         here, next_, second = (
             self._time(broken + number * size) for number in range(3)
         )
@@ -367,9 +347,9 @@ class LogSurvey:
         # Infinite behind an earlier fault, which must not exclude two of the
         # explanations below.
         lead = min(lead, self.limit)
-        follow = (
-            self._deviation(next_, second) if broken + 3 * size <= self.size else 0.0
-        )
+        follow = 0.0
+        if broken + 3 * size <= self.size:
+            follow = self._deviation(next_, second)
         # Three explanations: the clock was set at `broken`, only the time there is
         # damaged, or only the time before it is. The one with the steps that are
         # closest to the usual step applies.
@@ -419,11 +399,9 @@ class LogSurvey:
         """Return the difference between the step over ``entries`` and the usual one, in
         ms.
         """
-        if (
-            before is None
-            or after is None
-            or abs(after - before) > entries * self.limit
-        ):
+        if before is None or after is None:
+            return NEVER
+        if abs(after - before) > entries * self.limit:
             return NEVER
         return abs(after - before - entries * self.step)
 
@@ -441,13 +419,10 @@ class LogSurvey:
             # A single entry is believed only if the file ends with it.
             return available[0] is not None and (self.size - at) % self.entry_bytes == 0
         for before, after in pairwise(available):
-            if (
-                before is None
-                or after is None
-                or not (
-                    0 <= after - before <= YEAR or abs(after - before) <= self.limit
-                )
-            ):
+            if before is None or after is None:
+                return False
+            step = after - before
+            if not 0 <= step <= YEAR and abs(step) > self.limit:
                 return False
             if after == 0 < before:
                 return False  # erased memory
@@ -471,12 +446,9 @@ class LogSurvey:
         first, second, third = (
             self._time(at + number * self.entry_bytes) for number in range(3)
         )
-        if (
-            first is None
-            or second is None
-            or third is None
-            or not first <= second <= third
-        ):
+        if first is None or second is None or third is None:
+            return NEVER
+        if not first <= second <= third:
             return NEVER
         return abs((third - second) - (second - first)) / max(third - first, 1)
 
@@ -555,22 +527,16 @@ class LogSurvey:
         """
         size = self.entry_bytes
         for place in self.other_times:
-            starts = [
-                start
-                for start in (at, at + size, at + 2 * size)
-                if start + place + self.time_end <= self.size
-            ]
-            pairs = [
-                (
-                    self._time(start, self.time_end),
-                    self._time(start + place, self.time_end),
-                )
-                for start in starts
-            ]
-            if pairs and not any(
-                a is not None and b is not None and abs(b - a) <= self.limit
-                for a, b in pairs
-            ):
+            compared, has_match = 0, False
+            for start in (at, at + size, at + 2 * size):
+                if start + place + self.time_end > self.size:
+                    continue
+                compared += 1
+                own = self._time(start, self.time_end)
+                other = self._time(start + place, self.time_end)
+                if own is not None and other is not None:
+                    has_match |= abs(other - own) <= self.limit
+            if compared and not has_match:
                 return False
         return True
 

@@ -1,4 +1,4 @@
-"""Listing of the contents of a log."""
+"""Listing of the contents of a log or a recording, as `icdgen log` prints it."""
 
 from __future__ import annotations
 
@@ -20,30 +20,28 @@ _MESSAGES = [
 
 def recording_text(recording: Recording, tally: Tally, width: int | None) -> str:
     """List the received messages with their numbers, and the errors of the recording."""
-    times = sum(tally.messages.values())
-    line = f"{recording.path}: {recording.direction} of {recording.node.name}, {byte_count(recording.size)}, "
+    is_telemetry = recording.direction == "telemetry"
     rows = []
     for name, message in recording.messages.items():
-        if tally.messages[name]:
-            id = (
-                message.telemetry_id
-                if recording.direction == "telemetry"
-                else message.telecommand_id
+        if not tally.messages[name]:
+            continue
+        fields = recording.icd.longest_frame(message)
+        rows.append(
+            (
+                str(message.telemetry_id if is_telemetry else message.telecommand_id),
+                message.name,
+                f"{tally.messages[name]:,}",
+                f"{tally.sizes[name]:,}",
+                str(sum(field.role != "count" for field in fields)),
             )
-            fields = sum(
-                field.role != "count" for field in recording.icd.longest_frame(message)
-            )
-            rows.append(
-                (
-                    str(id),
-                    message.name,
-                    f"{tally.messages[name]:,}",
-                    f"{tally.sizes[name]:,}",
-                    str(fields),
-                )
-            )
-    text = clean(f"{line}{times:,} message{'' if times == 1 else 's'}") + "\n"
-    text += "\n" + render(_MESSAGES, rows, width) if rows else ""
+        )
+    owner, size = recording.node.name, byte_count(recording.size)
+    times = sum(tally.messages.values())
+    messages = f"{times:,} message{'' if times == 1 else 's'}"
+    head = f"{recording.path}: {recording.direction} of {owner}, {size}, {messages}"
+    text = clean(head) + "\n"
+    if rows:
+        text += "\n" + render(_MESSAGES, rows, width)
     return text + "".join(f"\nnote: {note}\n" for note in tally.notes())
 
 
@@ -55,9 +53,9 @@ def to_text(source: LogSource, width: int | None) -> str:
         f"{entries:,} entr{'y' if entries == 1 else 'ies'} of {plan.entry_bytes} bytes"
     )
     if times := source.first_and_last():
-        span += f", {time_text(times[0])}" + (
-            f" to {time_text(times[1])}" if entries > 1 else ""
-        )
+        span += f", {time_text(times[0])}"
+        if entries > 1:
+            span += f" to {time_text(times[1])}"
     lines += [span, f"mask {source.mask.hex(' ')}"]
     rows = []
     for slot in plan.slots:
@@ -73,11 +71,8 @@ def to_text(source: LogSource, width: int | None) -> str:
             )
         )
     text = "".join(clean(line) + "\n" for line in lines)
-    text += (
-        "\n" + render(_COLUMNS, rows, width)
-        if rows
-        else "\nThe mask selects no frame.\n"
-    )
+    text += "\n"
+    text += render(_COLUMNS, rows, width) if rows else "The mask selects no frame.\n"
     return text + "".join(
         f"\nnote: {note}\n" for note in source.notes(source.integrity)
     )

@@ -1,5 +1,8 @@
 """Recordings: files with the received bytes of a link whose messages have header and
 trailer.
+
+`Recording` decodes the file with the stream decoder of the runtime and yields the
+messages; `Tally` counts them and everything that is not a message.
 """
 
 from __future__ import annotations
@@ -64,18 +67,13 @@ class Tally:
         if event.event == "gap":
             self.missing += event.missing
             self.repeated += event.missing == 0
-        elif (
-            event.event == "unknown_id"
-            and event.id is not None
-            and self._has_own_counter(event.id)
-        ):
-            self.unknown[event.id] += 1
-        else:
-            self.faults[FAULTS.get(event.event, event.event)] += 1
-
-    def _has_own_counter(self, id: int) -> bool:
-        """Return whether an unknown id has its own counter."""
-        return id in self.unknown or len(self.unknown) < _MOST_IDS
+            return
+        if event.event == "unknown_id" and event.id is not None:
+            # Noise can have any id, so the number of counters is limited.
+            if event.id in self.unknown or len(self.unknown) < _MOST_IDS:
+                self.unknown[event.id] += 1
+                return
+        self.faults[FAULTS.get(event.event, event.event)] += 1
 
     def notes(self) -> list[str]:
         """Return the errors as notes for a report."""
@@ -86,10 +84,9 @@ class Tally:
                 f"{id} ({times:,})"
                 for id, times in self.unknown.most_common(_MOST_LISTED)
             ]
+            note = f"ids that the ICD does not have: {', '.join(listed)}"
             remaining = len(self.unknown) - len(listed)
-            notes.append(
-                f"ids that the ICD does not have: {', '.join(listed)}{f' and {remaining} others' if remaining else ''}"
-            )
+            notes.append(note + (f" and {remaining} others" if remaining else ""))
         counts = {
             "messages missing, by their sequence numbers": self.missing,
             "messages that came again, by their sequence numbers": self.repeated,
@@ -115,15 +112,12 @@ class Recording:
     ) -> None:
         self.icd, self.node, self.path, self.direction = icd, node, path, direction
         self.link = link_of(icd, facts.of(icd, node))
-        self._known: dict[int, list[Message]] = {
-            id: [variant.message for variant in variants]
-            for id, variants in getattr(ids_of(icd, node), direction).items()
-        }
-        self.messages = {
-            key(message): message
-            for messages in self._known.values()
-            for message in messages
-        }
+        self._messages_by_id: dict[int, list[Message]] = {}
+        self.messages: dict[Key, Message] = {}
+        for id, variants in getattr(ids_of(icd, node), direction).items():
+            messages = [variant.message for variant in variants]
+            self._messages_by_id[id] = messages
+            self.messages |= {key(message): message for message in messages}
         # Most messages, which then need no pass of the slow reference codec.
         self._with_equal_frames = {
             name
@@ -194,12 +188,10 @@ class Recording:
             tally.fault(event)
             return None
         # The decoder reports other ids as `unknown_id`.
-        messages = self._known[event.id]
-        message = (
-            messages[0]
-            if len(messages) == 1
-            else codec.message_of_frame_if_any(self.icd, messages, event.data)
-        )
+        messages = self._messages_by_id[event.id]
+        message: Message | None = messages[0]
+        if len(messages) > 1:
+            message = codec.message_of_frame_if_any(self.icd, messages, event.data)
         unpacked: Unpacked = (event.data, None, {})
         try:
             if message is not None and key(message) not in self._with_equal_frames:

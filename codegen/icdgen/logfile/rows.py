@@ -1,4 +1,8 @@
-"""Entries as Python values, one at a time, with the standard library only."""
+"""Entries as Python values, one at a time, with the standard library only.
+
+`reader` returns, for each column, a function that reads its value from the bytes of an
+entry. `icdgen.logfile.parquet` does the same for many entries at once with numpy.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +22,8 @@ Done = Callable[[int], None]  # called with the number of bytes read
 
 def log_rows(source: LogSource, head: int | None, done: Done) -> Iterator[list[Value]]:
     """Iterate over time and values of each entry."""
-    readers, size = (
-        [reader(column) for column in source.plan.columns],
-        source.plan.entry_bytes,
-    )
+    readers = [reader(column) for column in source.plan.columns]
+    size = source.plan.entry_bytes
     for piece in source.pieces(head):
         for at in range(0, len(piece), size):
             entry = piece[at : at + size]
@@ -39,11 +41,9 @@ def reader(column: LogColumn) -> Callable[[bytes], Value]:
 def _derived(column: LogColumn) -> Callable[[bytes], float]:
     """Return the function that computes a derived value from an entry."""
     assert column.field and column.field.derived
-    how, numbers = (
-        column.field.derived,
-        [_number(operand) for operand in column.operands],
-    )
-    return lambda entry: how.double([number(entry) for number in numbers])
+    formula = column.field.derived
+    operands = [_number(operand) for operand in column.operands]
+    return lambda entry: formula.double([operand(entry) for operand in operands])
 
 
 def _number(column: LogColumn) -> Callable[[bytes], float]:
@@ -94,12 +94,13 @@ def _bool(column: LogColumn) -> Callable[[bytes], Value]:
 def _enum(column: LogColumn) -> Callable[[bytes], Value]:
     assert column.field and column.field.enum
     raw, enum = _raw(column), column.field.enum
-    named = lru_cache(maxsize=1024)(
-        lambda value: (
-            member.name if (member := enum.member_of(value)) else f"unknown {value}"
-        )
-    )
-    return lambda entry: named(raw(entry))
+
+    @lru_cache(maxsize=1024)
+    def name(value: int) -> str:
+        member = enum.member_of(value)
+        return member.name if member else f"unknown {value}"
+
+    return lambda entry: name(raw(entry))
 
 
 def _float(column: LogColumn) -> Callable[[bytes], Value]:

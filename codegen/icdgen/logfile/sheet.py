@@ -73,10 +73,9 @@ class Sheet:
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         """Iterate over the rows, one for each message."""
+        # By message: its columns, each with the function that reads the value
         readers = {
-            name: [
-                (column_entry, reader(column_entry.column)) for column_entry in entries
-            ]
+            name: [(entry, reader(entry.column)) for entry in entries]
             for name, entries in self.entries.items()
         }
         for received in self.recording.read(Tally(), head, done):
@@ -86,12 +85,12 @@ class Sheet:
                 received.values.get(role) for role in self.roles
             ]
             for entry, read in readers[key(received.message)]:
-                if is_present(received, entry.column):
-                    row[entry.place] = read(
-                        received.data[: end_of_field(received, entry.column)]
-                        if entry.is_cut
-                        else received.data
-                    )
+                if not is_present(received, entry.column):
+                    continue
+                data = received.data
+                if entry.is_cut:
+                    data = data[: end_of_field(received, entry.column)]
+                row[entry.place] = read(data)
             yield row
 
 

@@ -26,24 +26,14 @@ def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
     """Write the file. Missing values are null. Raise `icdgen.errors.UserError`."""
     check_installed()
     builder = _TableBuilder(sheet)
-    batches = _batches(
-        sheet.recording.read(Tally(), head, done), max(256, _CELLS // len(sheet.names))
-    )
-    write(path, builder.schema, map(builder.table, batches))
+    messages = sheet.recording.read(Tally(), head, done)
+    size = max(256, _CELLS // len(sheet.names))  # rows of a row group
 
+    def tables() -> Iterator[pa.Table]:
+        while batch := list(islice(messages, size)):
+            yield builder.table(batch)
 
-def _batches(
-    messages: Iterator[ReceivedMessage], size: int
-) -> Iterator[list[ReceivedMessage]]:
-    while batch := list(islice(messages, size)):
-        yield batch
-
-
-def _readers(
-    entries: list[SheetColumn], length: int
-) -> list[tuple[SheetColumn, ColumnReader]]:
-    """Return a reader for each column of a message of ``length`` bytes."""
-    return [(entry, ColumnReader(entry.column, length)) for entry in entries]
+    write(path, builder.schema, tables())
 
 
 class _TableBuilder:
@@ -53,10 +43,13 @@ class _TableBuilder:
         import pyarrow as pa
 
         self.sheet = sheet
-        self.readers = {
-            name: _readers(entries, sheet.recording.messages[name].length)
-            for name, entries in sheet.entries.items()
-        }
+        # By message: its columns, each with the reader for many messages at once
+        self.readers: dict[Key, list[tuple[SheetColumn, ColumnReader]]] = {}
+        for name, entries in sheet.entries.items():
+            length = sheet.recording.messages[name].length
+            self.readers[name] = [
+                (entry, ColumnReader(entry.column, length)) for entry in entries
+            ]
         fields = [
             pa.field(MESSAGE, pa.dictionary(pa.int32(), pa.string()), nullable=False)
         ]

@@ -1,4 +1,8 @@
-"""A log file, read in pieces of complete entries."""
+"""A log file, read in pieces of complete entries.
+
+`open_source` reads the header of a file; `LogSource` gives the entries to the
+converters, and notes about damage to the user.
+"""
 
 from __future__ import annotations
 
@@ -65,10 +69,8 @@ class LogSource:
         Raise `icdgen.errors.UserError`.
         """
         integrity = self.integrity if head is None else self.survey(head)
-        chunk_entries, entry_bytes = (
-            max(1, size // self.plan.entry_bytes),
-            self.plan.entry_bytes,
-        )
+        entry_bytes = self.plan.entry_bytes
+        chunk_entries = max(1, size // entry_bytes)
         try:
             with self.path.open("rb") as file:
                 for span in integrity.spans:
@@ -86,14 +88,11 @@ class LogSource:
 
     def time(self, entry: bytes) -> int:
         """Return the time of an entry in milliseconds since 1970."""
-        order = self.plan.order
-        (at, size), (milliseconds_at, milliseconds_size) = (
-            self.plan.seconds,
-            self.plan.milliseconds,
-        )
-        return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(
-            entry[milliseconds_at : milliseconds_at + milliseconds_size], order
-        )
+        at, size = self.plan.seconds
+        seconds = int.from_bytes(entry[at : at + size], self.plan.order)
+        at, size = self.plan.milliseconds
+        milliseconds = int.from_bytes(entry[at : at + size], self.plan.order)
+        return seconds * 1000 + milliseconds
 
     def first_and_last(self) -> tuple[int, int] | None:
         """Times of the first and the last entry; None without entries.
@@ -158,18 +157,17 @@ def _jump_text(jump: TimeJump) -> str:
 def _summary(texts: list[str], what: str) -> list[str]:
     """Return the first texts and the number of the remaining ones."""
     remaining = len(texts) - _MOST_NOTES
-    return texts[:_MOST_NOTES] + (
-        [f"and {remaining:,} more {what}{'s' * (remaining > 1)}"]
-        if remaining > 0
-        else []
-    )
+    if remaining <= 0:
+        return texts
+    plural = "s" if remaining > 1 else ""
+    return [*texts[:_MOST_NOTES], f"and {remaining:,} more {what}{plural}"]
 
 
 def time_text(milliseconds: int) -> str:
     """Return a time as ISO 8601 text in UTC."""
-    return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(
-        timespec="milliseconds"
-    )[:-6] + "Z"
+    time = _EPOCH + timedelta(milliseconds=milliseconds)
+    # RFC 3339 with Z instead of +00:00
+    return time.isoformat(timespec="milliseconds").removesuffix("+00:00") + "Z"
 
 
 def node_of(icd: Icd, name: str | None) -> Node:
@@ -179,11 +177,11 @@ def node_of(icd: Icd, name: str | None) -> Node:
     """
     if name is not None:
         return find_node(icd, name)
-    candidates = [
-        node
-        for node in icd.nodes
-        if (node_facts := facts.of(icd, node)).log_file or node_facts.stream
-    ]
+    candidates = []
+    for node in icd.nodes:
+        node_facts = facts.of(icd, node)
+        if node_facts.log_file or node_facts.stream:
+            candidates.append(node)
     if len(candidates) == 1:
         return candidates[0]
     if not candidates:

@@ -1,4 +1,6 @@
-"""Numbers at a fixed distance in bytes, as numpy arrays."""
+"""Numbers at a fixed distance in bytes, as numpy arrays: a column of a log is the
+number at the same byte of each entry.
+"""
 
 from __future__ import annotations
 

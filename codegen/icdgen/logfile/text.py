@@ -1,4 +1,4 @@
-"""Conversion to CSV and JSON lines."""
+"""Conversion of rows to CSV and JSON lines, in constant memory."""
 
 from __future__ import annotations
 
@@ -19,7 +19,13 @@ def to_csv(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) 
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(names)
     for values in rows:
-        writer.writerow([_csv_value(value) for value in values])
+        # Booleans as in JSON: `true`, not Python's `True`
+        writer.writerow(
+            [
+                str(value).lower() if isinstance(value, bool) else value
+                for value in values
+            ]
+        )
 
 
 def to_json_lines(
@@ -30,17 +36,10 @@ def to_json_lines(
     NaN and infinity become null, as JSON cannot represent them.
     """
     for values in rows:
-        present = (
-            (name, value)
-            for name, value in zip(names, values, strict=True)
-            if value is not None
-        )
-        record = {
-            name: None if isinstance(v, float) and not math.isfinite(v) else v
-            for name, v in present
-        }
+        record: dict[str, Value] = {}
+        for name, value in zip(names, values, strict=True):
+            if isinstance(value, float) and not math.isfinite(value):
+                record[name] = None
+            elif value is not None:
+                record[name] = value
         file.write(json.dumps(record, ensure_ascii=False) + "\n")
-
-
-def _csv_value(value: Value) -> Value:
-    return str(value).lower() if isinstance(value, bool) else value

@@ -397,12 +397,11 @@ def _unrelated_response(attempt: _Attempt) -> FrameFault:
     """
     stream, packet = attempt.endpoint.link.stream, attempt.packet
     assert stream
-    responses = [
-        response
-        for exchange in stream.exchanges
-        for response in exchange.responses
-        if response.packet == attempt.received.number
-    ]
+    responses: list[Response] = []
+    for exchange in stream.exchanges:
+        for response in exchange.responses:
+            if response.packet == attempt.received.number:
+                responses.append(response)
     meaning = "response"
     if responses:
         meaning = "refusal" if is_refusal(responses[0], packet) else "acknowledge"

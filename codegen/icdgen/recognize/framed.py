@@ -118,13 +118,12 @@ def readings(
     Raise `BadLength` or `NotFound` for a packet that is cut off, damaged or unknown,
     and `Ambiguous`.
     """
-    results = [
-        _decode_direction(endpoint, direction, data)
-        for endpoint in endpoints
-        if endpoint.facts.stream
-        for direction in DIRECTIONS
-        if endpoint.facts.stream.packets_of(direction)
-    ]
+    results: list[DirectionResult] = []
+    for endpoint in endpoints:
+        form = endpoint.facts.stream
+        for direction in DIRECTIONS if form else ():
+            if form and form.packets_of(direction):
+                results.append(_decode_direction(endpoint, direction, data))
     # Without a constant or a checksum, nearly any bytes look like a packet. Then all of
     # them must belong to packets.
     usable = [

@@ -1,6 +1,7 @@
 """Formats of findings, for people and for programs.
 
-Each format is a module with a function ``report``.
+Each format is a module with a function ``report``: findings and the texts of their
+files go in, the report comes out as text. `get` returns the function of a format.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Findings as workflow commands, which GitHub shows at the lines of a pull request."""
+"""Findings as workflow commands, which GitHub shows at the lines of a pull request.
+
+The runner of GitHub Actions reads them from the output of a step.
+"""
 
 from __future__ import annotations
 

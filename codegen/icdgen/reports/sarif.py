@@ -1,4 +1,7 @@
-"""Findings as SARIF 2.1.0, a format of code-scanning services and editors."""
+"""Findings as SARIF 2.1.0, a format of code-scanning services and editors.
+
+`document` and `described` also serve the SARIF report of `icdgen diff`.
+"""
 
 from __future__ import annotations
 

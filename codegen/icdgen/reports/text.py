@@ -61,14 +61,8 @@ def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
     corrected line.
     """
     place, related, fix = finding.place, finding.related, finding.fix
-    rows = _ExcerptLines(
-        max(
-            len(str(each.place.line))
-            for each in (finding, related, fix)
-            if each is not None
-        ),
-        paint,
-    )
+    places = [each.place for each in (finding, related, fix) if each is not None]
+    rows = _ExcerptLines(max(len(str(each.line)) for each in places), paint)
     heading = paint("place", printable(str(place)))
     kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
     marks = [(place, "^", finding.severity, "")]
@@ -118,19 +112,13 @@ class _ExcerptLines:
         if content is None:
             return ""
         line, marks = content
-        number, bar = (
-            self._paint("gutter", str(place.line).rjust(len(self.indent))),
-            self._paint("gutter", "|"),
-        )
-        below = marks.replace(
-            marks.strip(), self._paint(role, f"{marks.strip()} {label}".rstrip())
-        )
+        number = self._paint("gutter", str(place.line).rjust(len(self.indent)))
+        bar = self._paint("gutter", "|")
+        labelled_marks = f"{marks.strip()} {label}".rstrip()
+        below = marks.replace(marks.strip(), self._paint(role, labelled_marks))
         text = f"{self.indent} {bar}\n" if begin else ""
-        return (
-            text
-            + f"{number} {bar} {line}".rstrip()
-            + f"\n{self.indent} {bar} {below}\n"
-        )
+        text += f"{number} {bar} {line}".rstrip() + "\n"
+        return text + f"{self.indent} {bar} {below}\n"
 
 
 def _plain(role: str, text: str) -> str:

@@ -1,4 +1,8 @@
-"""Table of the fields of a message, with the columns of tables in manuals."""
+"""Table of the fields of a message, with the columns of tables in manuals.
+
+`field_table` returns the table as text; `remarks` are its last column, which HTML pages
+show as well.
+"""
 
 from __future__ import annotations
 
@@ -89,21 +93,17 @@ def remarks(
     variable-length parts.
     """
     part = _variable_part(message, field)
-    if part is not None:
-        yield (
-            (
-                "up to the fields behind it"
-                if part.behind
-                else "up to the end of the frame"
-            )
-            if part.is_rest
-            else f"as many as {count_text(part.counter, part.plus)} says"
-        )
+    if part is not None and not part.is_rest:
+        yield f"as many as {count_text(part.counter, part.plus)} says"
+    elif part is not None:
+        end = "the fields behind it" if part.behind else "the end of the frame"
+        yield f"up to {end}"
     front = message.layout.part_in_front_of(field.steps[0].node) if message else None
     if front is not None:
         yield f"behind {front.name}"
     if field.conditions:
-        yield f"only there if {' and '.join(condition_text(condition, message) for condition in field.conditions)}"
+        conditions = [condition_text(each, message) for each in field.conditions]
+        yield f"only there if {' and '.join(conditions)}"
     if field.aliases:
         yield f"also called {', '.join(field.aliases)}"
     if field.derived is not None:
@@ -116,12 +116,11 @@ def remarks(
     for level in field.levels if isinstance(field, Line) else ():
         if level.struct is not None and level.count:
             most = "up to " if part is not None else ""
-            every = f", every {byte_count(level.struct.length)}"
-            yield (
-                f"{most}{level.count} times{every}"
-                if level.count > 1
-                else f"{most}once"
-            )
+            if level.count > 1:
+                stride = byte_count(level.struct.length)
+                yield f"{most}{level.count} times, every {stride}"
+            else:
+                yield f"{most}once"
         size = level.node.size if isinstance(level.node, Array) else None
         # That of a part of the message is above.
         if isinstance(size, Counted) and (part is None or level.node is not part.node):
@@ -137,7 +136,11 @@ def remarks(
         if bound.key in ("above", "below"):
             yield f"{bound.kind.words} {number(bound.value)}"
     for special in field.special:
-        yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
+        if special.number:
+            value = special_text(special)
+        else:
+            value = number(Fraction(special.value))
+        yield f"{value}: {special.meaning}"
 
 
 def _variable_part(

@@ -1,6 +1,7 @@
 """JSON form of ICDs.
 
 ``show.schema.json`` defines it; attributes that do not apply are omitted.
+`icdgen.diff.inputs.shown` reads it back into ICDs.
 """
 
 from __future__ import annotations
@@ -108,12 +109,13 @@ def _message(message: Message) -> _Object:
     # ``show.schema.json``.
     parts = list(map(_variable_part, message.layout.parts))
     places = [place for place in places_in(message.layout) if not place.is_count]
+    acknowledge: object = None  # the default: it is acknowledged
+    if not message.acknowledge:
+        acknowledge = "reset" if message.expects_reset else False
     return _present(
         **{"name": message.name, "kind": message.kind, "length": message.length}
         | _attributes(message),
-        acknowledge=(
-            None if message.acknowledge else "reset" if message.expects_reset else False
-        ),
+        acknowledge=acknowledge,
         response=message.response,
         repeat=message.repeat or None,
         aliases=list(message.aliases),

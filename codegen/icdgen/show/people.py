@@ -87,11 +87,9 @@ def to_text(
     if len(selection) > 1:
         return _item(icd, find_node(icd, selection[0]), selection[1], width, kind)
     node, items = find_named(icd, selection)
-    return (
-        _item(icd, node, items[0], width, kind)
-        if items
-        else _node(icd, node, width, kind)
-    )
+    if items:
+        return _item(icd, node, items[0], width, kind)
+    return _node(icd, node, width, kind)
 
 
 def _nodes(icd: Icd, width: int | None) -> str:
@@ -116,18 +114,17 @@ def _row_of_node(node: Node) -> tuple[str, ...]:
 
 def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
     """Return the head of a node and the table of its messages, own messages first."""
-    facts = [
-        f"node type {node.node_type}" if node.node_type is not None else "",
-        (
-            f"interface version {node.interface_version}"
-            if node.interface_version is not None
-            else ""
-        ),
-        f"{node.byte_order}-endian, {node.bit_order}",
-        f"ids of {node.id_bits} bits" if node.id_bits != DEFAULT_BITS else "",
-        f"includes {', '.join(node.includes)}" if node.includes else "",
-        _count(node),
-    ]
+    facts = []
+    if node.node_type is not None:
+        facts.append(f"node type {node.node_type}")
+    if node.interface_version is not None:
+        facts.append(f"interface version {node.interface_version}")
+    facts.append(f"{node.byte_order}-endian, {node.bit_order}")
+    if node.id_bits != DEFAULT_BITS:
+        facts.append(f"ids of {node.id_bits} bits")
+    if node.includes:
+        facts.append(f"includes {', '.join(node.includes)}")
+    facts.append(_count(node))
     text = _lines(
         [f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary],
         width,
@@ -141,16 +138,15 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
     rows = []
     for message in messages:
         layout = message.layout
+        lengths = str(layout.longest)
+        if len(layout.lengths) > 1:
+            lengths = f"{layout.shortest} to {layout.longest}"
         rows.append(
             (
                 "/".join(id_text(form, id) for id in message.ids),
                 message.kind,
                 message.name,
-                (
-                    str(layout.longest)
-                    if len(layout.lengths) == 1
-                    else f"{layout.shortest} to {layout.longest}"
-                ),
+                lengths,
                 str(message.field_count),
                 _number(message.table),
                 message.group,
@@ -179,21 +175,16 @@ def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) 
     try:
         return _message(icd, node, find_message(icd, node.name, name, kind), width)
     except NotFound:
-        scope = (*icd.included(node), node)
-        enums = by_name(
-            [enum for owner in scope for enum in owner.enums], name, node.vocabulary
-        )
-        structs = by_name(
-            [struct for owner in scope for struct in owner.structs],
-            name,
-            node.vocabulary,
-        )
-        errata = [
-            erratum
-            for owner in scope
-            for erratum in owner.errata
-            if erratum.id.casefold() == name.casefold()
-        ]
+        enums: list[Enum] = []
+        structs: list[Struct] = []
+        errata: list[Erratum] = []
+        for owner in (*icd.included(node), node):
+            enums += owner.enums
+            structs += owner.structs
+            errata += owner.errata
+        enums = by_name(enums, name, node.vocabulary)
+        structs = by_name(structs, name, node.vocabulary)
+        errata = [each for each in errata if each.id.casefold() == name.casefold()]
         if enums:
             texts = [_enum(enum, width) for enum in enums]
         elif structs:
@@ -253,15 +244,9 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
         f"From bit {part.at} it repeats {part.message}." for part in message.contains
     ]
     table = field_table(message, node, width)
-    enums = [
-        _enum(enum, width)
-        for enum in dict.fromkeys(
-            # Each enumeration once, in the order of its first field.
-            line.enum
-            for line in icd_lines(message.layout)
-            if line.enum
-        )
-    ]
+    # Each enumeration once, in the order of its first field.
+    used = dict.fromkeys(line.enum for line in icd_lines(message.layout) if line.enum)
+    enums = [_enum(enum, width) for enum in used]
     errata = [_erratum(erratum, width) for erratum in errata_of_message(message)]
     return "\n".join([_lines(lines, width), *filter(None, [table]), *enums, *errata])
 
@@ -288,9 +273,8 @@ def _outcomes(icd: Icd, selected: Node, message: Message) -> list[str]:
 
 def _enum(enum: Enum, width: int | None) -> str:
     """Return an enumeration with the table of its members, and its errata."""
-    head = f"{enum.name} (enumeration" + (
-        f", table {enum.table})" if enum.table else ")"
-    )
+    table_of_manual = f", table {enum.table}" if enum.table else ""
+    head = f"{enum.name} (enumeration{table_of_manual})"
     members = [
         (member.values, ", ".join((member.name, *member.aliases)), member.summary)
         for member in enum.members
@@ -343,12 +327,10 @@ def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
     omitted.
     """
     text = ""
-    for line in map(clean, filter(None, lines)):
-        wrapped = (
-            [line]
-            if width is None
-            else textwrap.wrap(line, max(width - len(indent), 20)) or [line]
-        )
+    for paragraph in map(clean, filter(None, lines)):
+        wrapped = [paragraph]
+        if width is not None:
+            wrapped = textwrap.wrap(paragraph, max(width - len(indent), 20)) or wrapped
         text += "".join(f"{indent}{line}\n" for line in wrapped)
     return text
 

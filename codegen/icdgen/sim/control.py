@@ -17,6 +17,7 @@ import yaml
 from icdgen import codec
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.frames import FrameField
+from icdgen.icd.layout import LayoutNode
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.device_line import DeviceLine
@@ -166,7 +167,7 @@ def fields_of(
     fields = icd.longest_frame(message)
     elements = find_array(fields, key, vocabulary)
     nodes = by_name(message.layout.sequence, key, vocabulary)
-    node_of_array = None
+    node_of_array: LayoutNode | None = None
     if nodes:
         node_of_array = nodes[0]
     elif elements:

@@ -1,4 +1,8 @@
-"""Rendering of the documentation site from ICD files."""
+"""Rendering of the documentation site from ICD files.
+
+`make_site` loads and checks the ICDs and renders all pages in memory; `write` writes
+them to a folder, and `icdgen.site.serve` serves them.
+"""
 
 from __future__ import annotations
 

@@ -174,11 +174,9 @@ def serve(
         ) from None
     with server:
         site = source.site()
-        state = (
-            f"{len(site.files)} files"
-            if site.ok
-            else "the ICDs have errors: see the pages"
-        )
+        state = "the ICDs have errors: see the pages"
+        if site.ok:
+            state = f"{len(site.files)} files"
         say(f"http://localhost:{server.server_port}/ ({state}); Ctrl+C ends it")
         try:
             server.serve_forever()

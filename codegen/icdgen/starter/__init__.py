@@ -50,15 +50,13 @@ def write(
     and ``icdgen.toml``.
 
     Returns the paths of the written files, relative to ``folder``. With a ``style``,
-    the ICD has the style of the node ``origin``. ``link`` is a key of `TEMPLATES`. Raises `UserError`, before anything is
-    written, if the name is invalid or a file of this name exists.
+    the ICD has the style of the node ``origin``. ``link`` is a key of `TEMPLATES`.
+    Raises `UserError`, before anything is written, if the name is invalid or a file of
+    this name exists.
     """
     if not _NAME.fullmatch(name):
-        proposal = (
-            re.sub(r"[^a-z0-9]+", "_", latin(name).lower())
-            .strip("_")
-            .lstrip("0123456789_")[:64]
-        )
+        proposal = re.sub(r"[^a-z0-9]+", "_", latin(name).lower()).strip("_")
+        proposal = proposal.lstrip("0123456789_")[:64]
         help = f"for instance `icdgen init {proposal or 'battery'}`"
         raise UserError(
             f"`{name}` cannot name a node: lower-case letters, digits and _, a letter first",

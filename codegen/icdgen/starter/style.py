@@ -1,5 +1,8 @@
 """Style of an existing node, for the first ICD of another device: its links, byte order
 and bit order.
+
+`style_of` takes these parts from the YAML of the node; `in_style` puts them into the
+text of the first ICD and preserves its comments.
 """
 
 from __future__ import annotations
@@ -77,46 +80,35 @@ def style_of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
     lacks_responses = "commands" in (sections.get("link") or {})
     if "packets" in protocol.get("link", {}):
         protocol["link"] = _without_listed_messages(protocol["link"])
-    for key, omitted in _KEYS_ABOUT_MESSAGES.items():
-        if key in protocol:
-            protocol[key] = {
-                name: value
-                for name, value in protocol[key].items()
-                if name not in omitted
-            }
+    for key, omitted_keys in _KEYS_ABOUT_MESSAGES.items():
+        for omitted in omitted_keys if key in protocol else ():
+            protocol[key] = {k: v for k, v in protocol[key].items() if k != omitted}
+    # The messages that the copied sections name, and the units and enumerations of their
+    # fields
     named = set(_strings(protocol, MESSAGES))
-    messages = [
-        message.source
-        for owner in scope
-        for message in owner.messages
-        if message.name in named
-    ]
+    messages: list[Map] = []
+    for owner in scope:
+        messages += [each.source for each in owner.messages if each.name in named]
     fields = [field for message in messages for field in message.get("fields") or ()]
     used_units = {field.get("unit") for field in fields}
     used_enums = {field.get("enum") for field in fields} | set(_strings(protocol, None))
-    units = [
-        unit
-        for owner in scope
-        for unit in owner.source.get("units") or ()
-        if unit["symbol"] in used_units
-    ]
-    enums = [
-        enum.source
-        for owner in scope
-        for enum in owner.enums
-        if enum.name in used_enums
-    ]
+    units: list[Map] = []
+    enums: list[Map] = []
+    for owner in scope:
+        declared_units = owner.source.get("units") or ()
+        units += [each for each in declared_units if each["symbol"] in used_units]
+        enums += [each.source for each in owner.enums if each.name in used_enums]
+    head = node.source["node"]
+    orders = {
+        key: head[key] for key in ("byte_order", "bit_order", "id_bits") if key in head
+    }
     return Style(
-        {
-            key: node.source["node"][key]
-            for key in ("byte_order", "bit_order", "id_bits")
-            if key in node.source["node"]
-        },
-        protocol,
-        list(map(spelled.plain, units)),
-        list(map(spelled.plain, enums)),
-        list(map(spelled.plain, messages)),
-        lacks_responses,
+        node=orders,
+        protocol=protocol,
+        units=list(map(spelled.plain, units)),
+        enums=list(map(spelled.plain, enums)),
+        messages=list(map(spelled.plain, messages)),
+        lacks_responses=lacks_responses,
     )
 
 
@@ -231,16 +223,11 @@ def _renumber(messages: list[Child], style: Style) -> None:
         for key, direction in KEYS_OF_IDS[_value(entries["kind"])]:
             first, last = ranges[direction]
             candidates = (_value(entries[key]), *range(first, last + 1))
-            free = [
-                id
-                for id in candidates
-                if first <= id <= last
-                and (direction, id) not in used
-                and id not in escapes
-            ]
-            entries[key].value = (
-                Text(free[0], str(free[0])) if free else entries[key].value
-            )
+            for id in candidates:
+                is_used = (direction, id) in used or id in escapes
+                if first <= id <= last and not is_used:
+                    entries[key].value = Text(id, str(id))
+                    break
             used.add((direction, _value(entries[key])))
 
 
@@ -251,11 +238,7 @@ def _lengthen(messages: list[Child], style: Style) -> None:
     unit = max(units, default=1)
     for message in messages:
         children = _children(message)
-        (at,) = (
-            index
-            for index, child in enumerate(children)
-            if scalars.name(child.key) == "length"
-        )
+        at = [scalars.name(child.key) for child in children].index("length")
         length = _value(children[at])
         reserved = -length % unit
         if reserved:
@@ -303,12 +286,10 @@ class _SpelledTrees:
         """Return a value at a place; a hexadecimal number with its spelling."""
         if not isinstance(value, int) or isinstance(value, bool):
             return self.plain(value)
-        lines = self.lines.get(place.file, [])
-        spelling = (
-            lines[place.line - 1][place.column - 1 :][: place.length]
-            if place.line <= len(lines)
-            else ""
-        )
+        lines, spelling = self.lines.get(place.file, []), ""
+        if place.line <= len(lines):
+            line = lines[place.line - 1]
+            spelling = line[place.column - 1 :][: place.length]
         return emit.Spelled(spelling) if spelling.lower().startswith("0x") else value
 
 
@@ -319,11 +300,9 @@ def _strings(value: Any, keys: tuple[str, ...] | None) -> Iterator[str]:
     if isinstance(value, dict):
         for key, item in value.items():
             if keys is None or key in keys:
-                yield from (
-                    text
-                    for text in (item if isinstance(item, list) else [item])
-                    if isinstance(text, str)
-                )
+                for text in item if isinstance(item, list) else [item]:
+                    if isinstance(text, str):
+                        yield text
             yield from _strings(item, keys)
     elif isinstance(value, list):
         for item in value:
@@ -343,11 +322,8 @@ def _value(child: Child) -> Any:
 
 def _name(child: Child) -> str:
     """Return the value of the key `name` of a mapping; empty without the key."""
-    return next(
-        (
-            _value(entry)
-            for entry in _children(child)
-            if scalars.name(entry.key) == "name"
-        ),
-        "",
-    )
+    for entry in _children(child):
+        if scalars.name(entry.key) == "name":
+            name: str = _value(entry)
+            return name
+    return ""

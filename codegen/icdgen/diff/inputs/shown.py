@@ -210,12 +210,9 @@ class _ShownNodeReader:
         )
 
     def about(self, item: Map) -> tuple[model.Erratum, ...]:
-        return tuple(
-            self.errata[id]
-            for key in ("errata", "notes")
-            for id in item.get(key, ())
-            if id in self.errata
-        )
+        """Return the errata and notes that are about an object."""
+        ids = (*item.get("errata", ()), *item.get("notes", ()))
+        return tuple(self.errata[id] for id in ids if id in self.errata)
 
     def row(self, kind: Callable[..., Thing], item: Map, /, **more: object) -> Thing:
         """Return an object with its plain attributes and errata; ``more``: other
