@@ -1,4 +1,9 @@
-"""Base classes of structs and messages."""
+"""Base classes of structs and messages.
+
+Generated classes declare their fields with the functions of `_fields`; the metaclass
+`MessageType` turns them into a dataclass with slots. `_compiled` makes ``from_bytes``
+and ``to_bytes`` of a class at their first use.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
 """Helpers of the compiled decoders and encoders, and the search for a value out of
 range.
+
+`_compiled` refers to these functions in the code that it makes.
 """
 
 from __future__ import annotations

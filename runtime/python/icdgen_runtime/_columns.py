@@ -1,4 +1,8 @@
-"""Decoding of many frames into columns. Needs numpy; tables also need pyarrow."""
+"""Decoding of many frames into columns. Needs numpy; tables also need pyarrow.
+
+`decode_many` and `decode_table` take the bytes of consecutive frames and read each
+field of all frames at once.
+"""
 
 from __future__ import annotations
 

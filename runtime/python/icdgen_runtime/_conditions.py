@@ -1,4 +1,7 @@
-"""Optional fields: present only if other fields have certain values, otherwise None."""
+"""Optional fields: present only if other fields have certain values, otherwise None.
+
+`decoder` and `encoder` wrap the compiled functions of a class that has such fields.
+"""
 
 from __future__ import annotations
 

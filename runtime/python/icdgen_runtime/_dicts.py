@@ -1,4 +1,7 @@
-"""Conversion of messages from and to dictionaries and JSON."""
+"""Conversion of messages from and to dictionaries and JSON.
+
+JSON has raw values by the names of attributes; bytes are hexadecimal digits.
+"""
 
 from __future__ import annotations
 

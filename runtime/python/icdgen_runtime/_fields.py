@@ -1,4 +1,8 @@
-"""Declarations of fields in a message class, and the properties that they create."""
+"""Declarations of fields in a message class, and the properties that they create.
+
+`field` declares an attribute for the raw value; `scaled`, `whole`, `curve` and `text`
+declare further attributes of the same bits, such as the physical value.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Import on first use, so that importing a node is fast."""
+"""Import on first use, so that importing a node is fast.
+
+The classes of a node are in several modules. A module is imported when one of its
+classes is used by name (`attribute`) or by id (`Messages`).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts of a composite message."""
+"""Parts of a composite message: messages whose fields it repeats at other positions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Messages that share an id."""
+"""Messages that share an id: the length and the constants of a frame select one of
+them.
+"""
 
 from __future__ import annotations
 

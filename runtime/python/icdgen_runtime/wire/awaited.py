@@ -1,4 +1,9 @@
-"""Responses that a client waits for, and requests in progress."""
+"""Responses that a client waits for, and requests in progress.
+
+`Awaited` decides whether an arrival responds to a request. `LateResponses` stores what
+may still arrive after a time-out, so that it is not taken for the response to a later
+request.
+"""
 
 from __future__ import annotations
 

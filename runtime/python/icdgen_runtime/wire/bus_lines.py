@@ -1,4 +1,7 @@
-"""Lines of UART and CAN, and what all buses have in common."""
+"""Lines of UART and CAN, and what all buses have in common.
+
+A line encodes the requests of a client and decodes what arrives; see `lines`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""CAN: conversion between messages and packets."""
+"""CAN: conversion between messages and packets.
+
+A message with more data than fits into one packet is split (`can_split`) and assembled
+again (`CanJoiner`).
+"""
 
 from __future__ import annotations
 

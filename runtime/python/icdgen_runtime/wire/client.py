@@ -1,4 +1,9 @@
-"""Client that sends requests and reports their outcomes, on any link."""
+"""Client that sends requests and reports their outcomes, on any link.
+
+The application calls it with the time, received bytes and requests, and takes out bytes
+to send and events. The line of the link (`lines`) encodes and decodes; the client has
+the time-outs, the retries and the queue of requests.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Requests and procedures, independent of blocking and asyncio sessions."""
+"""Requests and procedures, independent of blocking and asyncio sessions.
+
+`Exchanges` joins a client with a clock; `session` and `async_session` add the
+transport.
+"""
 
 from __future__ import annotations
 

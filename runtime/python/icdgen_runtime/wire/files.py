@@ -1,4 +1,4 @@
-"""The index file."""
+"""The index file: a list of the files of a device, one entry of fixed size per file."""
 
 from __future__ import annotations
 

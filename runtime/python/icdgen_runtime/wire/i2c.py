@@ -1,4 +1,7 @@
-"""I2C: bytes that the master writes and reads."""
+"""I2C: bytes that the master writes and reads.
+
+A telecommand is one write. Telemetry is a write of its id, then a read.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Protocol of a line: what a client needs to know of UART, I2C, CAN or framed links."""
+"""Protocol of a line: what a client needs to know of UART, I2C, CAN or framed links.
+
+`bus_lines`, `i2c_line` and `stream_line` implement it.
+"""
 
 from __future__ import annotations
 

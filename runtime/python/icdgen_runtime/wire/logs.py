@@ -1,4 +1,8 @@
-"""Telemetry logs: the file form and the unsolicited form."""
+"""Telemetry logs: the file form and the unsolicited form.
+
+A mask selects the frames of a log; each selected bit has a slot of fixed size in every
+entry.
+"""
 
 from __future__ import annotations
 

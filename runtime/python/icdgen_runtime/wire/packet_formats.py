@@ -1,4 +1,7 @@
-"""Packet formats that the ICD describes by header and trailer fields with roles."""
+"""Packet formats that the ICD describes by header and trailer fields with roles.
+
+The ``LINK`` of a node has these objects; `stream` encodes and decodes packets by them.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Encoder of consecutive messages of one direction, with header and trailer."""
+"""Encoder of consecutive messages of one direction, with header and trailer.
+
+It counts the sequence numbers; `stream` encodes a single message.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Blocking client over any port."""
+"""Blocking client over any port.
+
+`Session` adds a transport and a clock to `client`, and waits until a request has ended.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Messages with the packet formats of the ICD, in a byte stream or in packets."""
+"""Messages with the packet formats of the ICD, in a byte stream or in packets.
+
+`stream_encode` adds header and trailer to a message; `StreamDecoder` finds the packets
+of one direction in received bytes, checks them, and continues after noise and damage.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Line of a framed link: messages with header and trailer, in a stream or in packets."""
+"""Line of a framed link: messages with header and trailer, in a stream or in packets.
+
+It implements `lines` with the encoder and decoder of `stream`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Date and time packed into bits."""
+"""Date and time packed into bits, as in MS-DOS; the ICD gives the position of each
+part.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """UART: conversion between messages and a byte stream.
 
-A message is the id and the data.
+A message is the id and the data. An escape byte precedes the bytes that begin and end a
+message; in the data, a byte of the ICD follows each escape byte.
 """
 
 from __future__ import annotations
