@@ -50,7 +50,7 @@ def test_an_object_is_written(size, loss):
     request = {"name": "write", "inputs": {"number": 5}, "bytes": content.hex()}
     _, procedure = record(LINK, request, device.respond)
     assert procedure.result == "done"
-    assert device.device.objects.read("write", (5,)) == content
+    assert device.device.objects.content_of("write", (5,)) == content
 
 
 def test_a_procedure_of_unknown_size_has_vectors_also_if_its_blocks_are_small(tmp_path):
@@ -71,7 +71,9 @@ class Device:
     """A simulated device in memory, and a session with it, in a time of its own."""
 
     def __init__(self, **options) -> None:
-        self.line, _ = run.build(ICD, "store", run.Options(every=0, busy=0, **options))
+        self.line, _ = run.build_device(
+            ICD, "store", run.Options(every=0, busy=0, **options)
+        )
         self.now, self.sent = 0.0, []
         self.session = Session(LINK, self._write, self._read, clock=lambda: self.now)
 

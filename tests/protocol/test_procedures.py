@@ -94,7 +94,7 @@ def test_an_uploaded_program_is_the_program(boot, boot_facts, loss):
     request = {"name": "upload", "inputs": {"destination": 3}, "bytes": data.hex()}
     _, procedure = record(boot, request, device.respond)
     assert (procedure.result, procedure.progress) == ("done", (len(data), len(data)))
-    assert device.device.objects.read("upload", (3,)) == data
+    assert device.device.objects.content_of("upload", (3,)) == data
 
 
 @pytest.mark.parametrize("loss", LOSSES)
@@ -108,7 +108,7 @@ def test_a_program_reaches_a_device_with_other_steps(loader, size, loss):
         request = {"name": "upload", "inputs": {"area": 1}, "bytes": data.hex()}
         _, procedure = record(link, request, device.respond)
         assert procedure.result == "done"
-        assert device.device.objects.read("upload", (1,)) == data
+        assert device.device.objects.content_of("upload", (1,)) == data
 
 
 @pytest.mark.parametrize("loss", LOSSES)

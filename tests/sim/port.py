@@ -14,7 +14,7 @@ class Port:
     """Nothing sleeps: reading moves the clock, ``now`` in milliseconds."""
 
     def __init__(self, icd: Icd, node: str, **options) -> None:
-        self.line, _ = run.build(icd, node, run.Options(**options))
+        self.line, _ = run.build_device(icd, node, run.Options(**options))
         self.now = 0.0
 
     def clock(self) -> float:

@@ -33,7 +33,7 @@ class Port:
     """
 
     def __init__(self, spoil=lambda message: message, changed=lambda message: message):
-        self.line, _ = run.build(ICD, "battery", run.Options())
+        self.line, _ = run.build_device(ICD, "battery", run.Options())
         self.spoil, self.changed, self.now = spoil, changed, 0.0
 
     def write(self, data: bytes) -> None:

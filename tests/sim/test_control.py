@@ -12,7 +12,7 @@ import pytest
 from icdgen.errors import UserError
 from icdgen.loading import load
 from icdgen.sim import control, run
-from icdgen.sim.control import at
+from icdgen.sim.control import value_of_wave
 from icdgen.sim.values import allowed_values
 from tests.limits import assert_limits
 
@@ -61,7 +61,7 @@ class Device:
     """A simulated device in this process, and its control."""
 
     def __init__(self, icd) -> None:
-        self.line, self.control = run.build(icd, "pump", run.Options(every=0))
+        self.line, self.control = run.build_device(icd, "pump", run.Options(every=0))
         (self.message, _) = icd.nodes[0].messages
 
     def value(self, name: str) -> object:
@@ -138,7 +138,7 @@ def test_steps_of_a_script_are_executed_in_their_order_when_they_are_due(icd, tm
         "- {at: 4, set: {State: {Level: 4}}, faults: []}\n"
     )
     empty = Device(icd)
-    steps = control.read(path, icd, icd.nodes[0], empty.line)
+    steps = control.read_script(path, icd, icd.nodes[0], empty.line)
     device = control.Control(icd, icd.nodes[0], empty.line, steps)
     seen = []
     for now in (0, 999, 1000, 2499, 2500, 9000):
@@ -196,11 +196,14 @@ def test_a_wave_has_its_shape_within_each_period(wave, values):
     for period in (60, 8):
         keys = wave if period == 60 else wave | {"period": period}
         for begin in (0, 5 * period):
-            seen = [at(keys, begin + period * part / 4, math.nan) for part in range(4)]
+            seen = [
+                value_of_wave(keys, begin + period * part / 4, math.nan)
+                for part in range(4)
+            ]
             assert seen == pytest.approx(values)
 
 
 def test_noise_fills_its_range():
     wave, random = {"wave": "noise", "min": 10, "max": 30}, Random(1).random
-    values = [at(wave, 0, random) for _ in range(1000)]
+    values = [value_of_wave(wave, 0, random) for _ in range(1000)]
     assert 10 <= min(values) < 11 and 29 < max(values) <= 30

@@ -22,7 +22,7 @@ from icdgen.procedures.run import steps_of
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Send
 from icdgen.runtime_objects.links import responses_on
-from icdgen.sim.run import Options, build
+from icdgen.sim.run import Options, build_device
 from icdgen.sim.serve import Server
 from icdgen.sim.values import allowed_values
 from tests.conftest import DEMO
@@ -228,7 +228,7 @@ def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
 def test_an_interrupt_ends_it_even_where_data_come_at_the_same_moment(turns):
     async def ends() -> bool:
         running = asyncio.create_task(
-            (server := Server(*build(ICD, "cubeacp", Options()))).run()
+            (server := Server(*build_device(ICD, "cubeacp", Options()))).run()
         )
         await asyncio.sleep(0.01)
         server.wake.set()
@@ -430,7 +430,7 @@ def test_a_wrong_script_is_refused_before_anything_runs(script, words, tmp_path)
     path = tmp_path / "script.yaml"
     path.write_text(script)
     with pytest.raises(UserError, match=words):
-        run.build(ICD, "cubeacp", run.Options(script=path))
+        run.build_device(ICD, "cubeacp", run.Options(script=path))
 
 
 def test_monitor_and_send_from_the_outside():
@@ -505,7 +505,7 @@ def test_monitor_and_send_from_the_outside():
 def test_the_response_to_a_telecommand_can_be_made_wrong(fault, event, code):
     from icdgen.sim import run
 
-    line, _ = run.build(ICD, "cubeacp", run.Options(faults=[fault]))
+    line, _ = run.build_device(ICD, "cubeacp", run.Options(faults=[fault]))
     client = Client(line.computer.program.link, "uart")
     client.start(0, Request("telecommand", 12, bytes(1)))
     line.received(0, client.output())
@@ -522,4 +522,4 @@ def test_a_response_that_the_link_does_not_have_is_no_fault(fault):
     from icdgen.sim import run
 
     with pytest.raises(UserError):
-        run.build(ICD, "cubeacp", run.Options(faults=[fault]))
+        run.build_device(ICD, "cubeacp", run.Options(faults=[fault]))

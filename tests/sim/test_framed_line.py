@@ -38,7 +38,7 @@ class Port:
     """
 
     def __init__(self, node: str, spoil=lambda data: data, **options):
-        self.line, self.control = run.build(ICD, node, run.Options(**options))
+        self.line, self.control = run.build_device(ICD, node, run.Options(**options))
         self.spoil, self.now, self.queue = spoil, 0.0, []
 
     @property

@@ -6,7 +6,7 @@ import pytest
 
 from icdgen.errors import UserError
 from icdgen.loading import load
-from icdgen.sim.run import Options, build
+from icdgen.sim.run import Options, build_device
 
 ICD = """\
 icdgen: 1
@@ -69,7 +69,9 @@ def frame(icd, message: str, *assigned: str) -> str:
     """The frame of a message for which this was set, in hexadecimal; the same from the
     next start on.
     """
-    line, _ = build(icd, None, Options(values=[(message, one) for one in assigned]))
+    line, _ = build_device(
+        icd, None, Options(values=[(message, one) for one in assigned])
+    )
     frames = [bytes(line.computer.program.values.frames[message])]
     line.computer.restart(0)
     frames.append(bytes(line.computer.program.values.frames[message]))

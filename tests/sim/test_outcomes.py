@@ -342,7 +342,7 @@ def test_a_telecommand_is_refused_with_the_reason_of_the_icd(received, refusal):
 def test_without_a_reason_for_it_a_wrong_checksum_has_no_response(tmp_path):
     icd = WHEEL.read_text().replace(", checksum: Bad CRC", "")
     (tmp_path / "wheel.yaml").write_text(icd)
-    line, _ = run.build(
+    line, _ = run.build_device(
         load_or_exit((tmp_path / "wheel.yaml",)).icd, None, run.Options(every=0)
     )
     line.received(0, frame(SET_MODE, b"\1")[:-1] + b"\0")
@@ -367,7 +367,7 @@ def test_responses_are_not_sent_periodically():
 )
 def test_a_fault_that_the_link_cannot_have_is_an_error(node, fault, text):
     with pytest.raises(UserError) as error:
-        run.build(ICD, node, run.Options(faults=[fault]))
+        run.build_device(ICD, node, run.Options(faults=[fault]))
     assert text in str(error.value) and error.value.help
 
 
@@ -400,7 +400,7 @@ def test_a_fault_that_no_response_can_express_names_what_the_icd_lacks(
     file.write_text(STATUS_OF_ONE_BIT.replace(", busy: [0]", sets))
     icd = load_or_exit((file,)).icd
     with pytest.raises(UserError, match="describes no response") as error:
-        run.build(icd, None, run.Options(faults=[fault]))
+        run.build_device(icd, None, run.Options(faults=[fault]))
     assert lacks in str(error.value)
 
 
@@ -411,7 +411,7 @@ def test_a_device_without_acknowledges_cannot_refuse(tmp_path):
     text = re.sub(r"\n    commands:\n(      .*\n)*", "\n", text)
     file.write_text(re.sub(r"\n      acknowledge: .*\n", "\n", text))
     with pytest.raises(UserError, match="it needs an `ack` of the UART"):
-        run.build(load_or_exit((file,)).icd, None, run.Options(faults=["nak=1"]))
+        run.build_device(load_or_exit((file,)).icd, None, run.Options(faults=["nak=1"]))
 
 
 def test_a_reason_that_some_refusals_cannot_have_is_a_warning(tmp_path):

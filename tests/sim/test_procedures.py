@@ -23,7 +23,7 @@ def uploaded(image: bytes, area: int = 1, **options):
 
 def programs(port) -> dict:
     """The stored programs by area."""
-    objects = port.line.computer.storage.of("upload")
+    objects = port.line.computer.storage.objects_of("upload")
     return {key: bytes(stored.data) for key, stored in objects.items()}
 
 

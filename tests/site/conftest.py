@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from icdgen.loading import load
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from icdgen.site.serve import HOST, SiteSource, handler
 from tests.conftest import ROOT
 from tests.site import hostile, pages
@@ -54,7 +54,7 @@ def strange(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("strange")
     made = make_site([hostile.write(folder / "icd")])
     assert made.ok, made.findings
-    write(made, folder / "site")
+    write_site(made, folder / "site")
     return folder / "site"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from tests.conftest import ROOT
 
 KINDS = {
@@ -38,4 +38,4 @@ def shipped(out: Path, old: Path) -> None:
         .replace("name: Emulation", "name: Simulation"),
         "utf-8",
     )
-    write(make_site([ROOT / "icd"], str(old / "icd")), out)
+    write_site(make_site([ROOT / "icd"], str(old / "icd")), out)

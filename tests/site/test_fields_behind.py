@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from tests.conformance import odd
 from tests.site.test_browser import opened
 
@@ -14,7 +14,7 @@ from tests.site.test_browser import opened
 @pytest.fixture(scope="module")
 def behind(tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("behind")
-    write(make_site([odd.FOLDER / "behind.yaml"]), out)
+    write_site(make_site([odd.FOLDER / "behind.yaml"]), out)
     return out
 
 

@@ -13,7 +13,7 @@ from icdgen.backends.c import CBackend
 from icdgen.backends.html.links import Links
 from icdgen.backends.python import PythonBackend
 from icdgen.backends.rust import RustBackend
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
@@ -173,7 +173,7 @@ def test_a_quantity_finds_the_fields_of_its_units(tmp_path):
     without.write_text(
         P31U.read_text("utf-8").replace("aliases: [Battery Voltage], ", "")
     )
-    write(make_site([without]), tmp_path / "site")
+    write_site(make_site([without]), tmp_path / "site")
     ((first, *_),) = found(tmp_path / "site", ["battery voltage"])
     assert first == "p31u/housekeeping.html#field-power_battery"
 
@@ -191,7 +191,7 @@ def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path
         "name: Boot Cause, ", "name: Boot Cause, aliases: [Reason of Restart], "
     )
     (tmp_path / "p31u.yaml").write_text(text)
-    write(make_site([tmp_path / "p31u.yaml"]), tmp_path / "site")
+    write_site(make_site([tmp_path / "p31u.yaml"]), tmp_path / "site")
     wanted = {
         "state of health": "p31u/housekeeping.html",
         "StateOfHealth": "p31u/housekeeping.html",

@@ -18,7 +18,7 @@ from icdgen.loading import load
 from icdgen.recognize import recognize
 from icdgen.recognize.framed import sync_of
 from icdgen.recognize.reading import endpoint_of
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from icdgen.vectors.make import make_vectors
 from tests.conftest import ROOT
 from tests.features.framed import recorded
@@ -228,7 +228,7 @@ def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
     file.write_text(format_text(content, "odd.yaml"))
     made = make_site([file])
     assert made.ok, made.findings
-    write(made, tmp_path / "site")
+    write_site(made, tmp_path / "site")
     text = (tmp_path / "site" / "autopilot" / "protocol.html").read_text("utf-8")
     assert hostile not in text and "<img" not in text
     plain = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text))
@@ -249,7 +249,7 @@ def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
 
 
 def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
-    write(make_site([LINKS / "ubx.yaml"]), tmp_path / "ubx")
+    write_site(make_site([LINKS / "ubx.yaml"]), tmp_path / "ubx")
     page = (tmp_path / "ubx" / "receiver" / "end_of_epoch.html").read_text()
     assert '<span class="id"><b>01 61</b></span>' in page
     overview = (tmp_path / "ubx" / "receiver" / "index.html").read_text()
@@ -260,7 +260,7 @@ def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
 
 
 def test_other_ids_are_written_as_number_and_in_hexadecimal(tmp_path):
-    write(make_site([LINKS / "mavlink1.yaml"]), tmp_path / "mavlink")
+    write_site(make_site([LINKS / "mavlink1.yaml"]), tmp_path / "mavlink")
     pages = [page.read_text() for page in (tmp_path / "mavlink").rglob("*.html")]
     assert any(
         '<span class="id"><b>11</b> <code>0x0B</code></span>' in page for page in pages

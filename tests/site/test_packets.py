@@ -26,7 +26,7 @@ from icdgen.protocol import facts
 from icdgen.recognize import recognize
 from icdgen.recognize.framed import DIRECTIONS
 from icdgen.runtime_objects.links import link_of
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
 from tests.site.relay import RELAY
@@ -169,7 +169,7 @@ def site(tmp_path_factory) -> Path:
     file.write_text(RELAY, "utf-8")
     made = make_site([file, LINKS / "jbd.yaml"])
     assert made.ok, made.findings
-    write(made, folder / "site")
+    write_site(made, folder / "site")
     return folder / "site"
 
 
@@ -401,7 +401,7 @@ def test_the_page_of_a_message_shows_its_request_and_the_packet_in_which_it_is_s
 
 
 def test_a_link_with_one_format_shows_it_without_a_name(tmp_path):
-    write(make_site([LINKS / "ubx.yaml"]), tmp_path)
+    write_site(make_site([LINKS / "ubx.yaml"]), tmp_path)
     text = (tmp_path / "receiver" / "protocol.html").read_text("utf-8")
     assert text.count('aria-label="A packet"') == 1
     assert "Sent by" not in text and "Packet " not in plain(
@@ -429,7 +429,7 @@ def test_names_of_packets_are_text_whatever_they_contain(tmp_path):
     file.write_text(content, "utf-8")
     made = make_site([file])
     assert made.ok, made.findings
-    write(made, tmp_path / "site")
+    write_site(made, tmp_path / "site")
     pages = [page.read_text("utf-8") for page in (tmp_path / "site").rglob("*.html")]
     assert not [page for page in pages if "<img" in page]
     anchors = re.findall('id="(packet-[^"]*)"', "".join(pages))

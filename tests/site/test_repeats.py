@@ -15,7 +15,7 @@ from icdgen.backends.html.plan import message_plan
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import schema
 from icdgen.loading import load
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from tests.conftest import ROOT
 from tests.describe.test_display import in_page
 from tests.site.test_browser import opened
@@ -48,7 +48,7 @@ NESTED = {
 @pytest.fixture(scope="module")
 def ublox(tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("ublox")
-    write(make_site([DEVICES / "ublox" / "ublox.yaml"]), out)
+    write_site(make_site([DEVICES / "ublox" / "ublox.yaml"]), out)
     return out
 
 
@@ -60,7 +60,7 @@ def many_satellites(tmp_path_factory) -> Path:
     text = text.replace("bits: 8, name: numSvs", "bits: 16, name: numSvs")
     text = text.replace("count: numSvs, up_to: 64", "count: numSvs, up_to: 1024")
     (folder / "ublox.yaml").write_text(text, "utf-8")
-    write(make_site([folder / "ublox.yaml"]), folder / "site")
+    write_site(make_site([folder / "ublox.yaml"]), folder / "site")
     return folder / "site"
 
 

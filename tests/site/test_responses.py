@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.site import make_site, write
+from icdgen.site import make_site, write_site
 from tests.conformance.icds import LINKS
 from tests.conftest import ROOT
 
@@ -21,7 +21,7 @@ def plain(page: Path) -> str:
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("site")
-    write(make_site([ROOT / "examples" / "links" / "wheel.yaml"]), folder)
+    write_site(make_site([ROOT / "examples" / "links" / "wheel.yaml"]), folder)
     return folder / "wheel"
 
 
@@ -58,7 +58,7 @@ def test_the_page_of_a_message_shows_its_responses_or_what_it_responds_to(wheel)
 
 
 def test_a_status_says_which_values_confirm_and_which_do_not(tmp_path):
-    write(make_site([LINKS / "outcomes.yaml"]), tmp_path)
+    write_site(make_site([LINKS / "outcomes.yaml"]), tmp_path)
     page = plain(tmp_path / "arm" / "protocol.html")
     assert "Group = id[0], Number = id[1]" in page
     assert (
@@ -68,6 +68,6 @@ def test_a_status_says_which_values_confirm_and_which_do_not(tmp_path):
 
 
 def test_a_link_without_responses_has_no_table_of_them(tmp_path):
-    write(make_site([ROOT / "examples" / "links" / "sbp.yaml"]), tmp_path)
+    write_site(make_site([ROOT / "examples" / "links" / "sbp.yaml"]), tmp_path)
     (page,) = tmp_path.glob("*/protocol.html")
     assert "Responses to telecommands" not in plain(page)

@@ -65,7 +65,7 @@ def docs(
     if not built_site.ok:
         sys.exit(1)
     out = out or Path("site")
-    plan = site.write(built_site, out, check)
+    plan = site.write_site(built_site, out, check)
     if check and plan.changes:
         say(
             f"{out}: {len(plan.write)} files are not current, {len(plan.remove)} are stale"

@@ -138,7 +138,7 @@ def _write_depfile(path: Path, outcome: GenerationOutcome) -> None:
             "give the dependency file a name of its own",
         )
     # Build tools compare times, so an equal file is not written again.
-    if write.read(depfile) != data:
+    if write.read_if_exists(depfile) != data:
         try:
             write.replace(depfile, data)
         except OSError as error:

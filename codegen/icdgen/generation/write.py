@@ -66,7 +66,7 @@ def plan(
             ) from None
     written = manifest.read(out, language)
     for name, data in result.files.items():
-        current = read(os.path.join(out, name))
+        current = read_if_exists(os.path.join(out, name))
         if current == data:
             continue
         if current is not None and name not in written:
@@ -77,7 +77,7 @@ def plan(
         result.write.append(name)
     for name, digest in written.items():
         if name not in result.files:
-            current = read(out / name) if os.path.isfile(out / name) else None
+            current = read_if_exists(out / name) if os.path.isfile(out / name) else None
             if current is None:
                 continue
             if manifest.digest(current) == digest:
@@ -108,7 +108,7 @@ def apply(changes: WritePlan) -> None:
             (out / name).unlink(missing_ok=True)
             _remove_empty(out, (out / name).parent)
         # Last: a file that the manifest no longer names is never removed.
-        if read(target) != changes.manifest.encode():
+        if read_if_exists(target) != changes.manifest.encode():
             replace(target, changes.manifest.encode())
     except OSError as error:
         message = f"cannot write {error.filename}: {error.strerror}"
@@ -162,7 +162,7 @@ def _new_file(folder: str) -> tuple[int, str]:
     )
 
 
-def read(path: str | Path) -> bytes | None:
+def read_if_exists(path: str | Path) -> bytes | None:
     """Return the content of a file; None if it does not exist.
 
     Raises `UserError` if it cannot be read.

@@ -145,7 +145,7 @@ class Recording:
         assert self.link.stream is not None
         return self.link.stream
 
-    def read(
+    def received_messages(
         self, tally: Tally, head: int | None, done: Done
     ) -> Iterator[ReceivedMessage]:
         """Iterate over the chosen messages, up to ``head``.
@@ -173,7 +173,7 @@ class Recording:
         Raise `icdgen.errors.UserError`, also if there is no message.
         """
         tally = Tally()
-        for _ in self.read(tally, head, done):
+        for _ in self.received_messages(tally, head, done):
             pass
         if self.size and head != 0 and not tally.messages:
             why = "; ".join(tally.notes())

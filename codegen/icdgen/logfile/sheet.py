@@ -78,7 +78,7 @@ class Sheet:
             name: [(entry, reader(entry.column)) for entry in entries]
             for name, entries in self.entries.items()
         }
-        for received in self.recording.read(Tally(), head, done):
+        for received in self.recording.received_messages(Tally(), head, done):
             row: list[Value] = [None] * len(self.names)
             row[0] = received.message.name
             row[1 : 1 + len(self.roles)] = [

@@ -26,7 +26,7 @@ def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
     """Write the file. Missing values are null. Raise `icdgen.errors.UserError`."""
     check_installed()
     builder = _TableBuilder(sheet)
-    messages = sheet.recording.read(Tally(), head, done)
+    messages = sheet.recording.received_messages(Tally(), head, done)
     size = max(256, _CELLS // len(sheet.names))  # rows of a row group
 
     def tables() -> Iterator[pa.Table]:

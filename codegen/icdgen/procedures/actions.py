@@ -44,7 +44,7 @@ class Listing(ProcedureRun):
             entries = self.entries[self._position : self._position + 1]
             return bytearray(entries[0] if entries else bytes(len(data)))
         frame = bytearray(len(data))
-        keys = list(self.device.objects.of(self.effect.kind))
+        keys = list(self.device.objects.objects_of(self.effect.kind))
         for key in keys[self._position : self._position + 1]:
             for place, number in self.about(key, False):
                 put_number(place, frame, number)
@@ -73,11 +73,11 @@ class Action(ProcedureRun):
             else:
                 is_all = self.registers.get(test.register) == test.value.number
             if is_all:
-                objects.of(effect.kind).clear()
+                objects.objects_of(effect.kind).clear()
             else:
-                objects.of(effect.kind).pop(self.key, None)
+                objects.objects_of(effect.kind).pop(self.key, None)
         elif effect.verb == "copy":
-            source = objects.read(effect.kind, self.key)
+            source = objects.content_of(effect.kind, self.key)
             self.failed = not source
             if source:
                 objects.put(effect.kind, effect.to, source)

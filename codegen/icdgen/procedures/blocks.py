@@ -101,7 +101,7 @@ class BlockRun(ProcedureRun):
             if not step.covers_fill:
                 data = data[: self.length_of(data)]
         else:
-            data = self.device.objects.read(self.effect.kind, self.key) or b""
+            data = self.device.objects.content_of(self.effect.kind, self.key) or b""
         return self.device.checksum(step.algorithm, data)
 
 
@@ -156,7 +156,7 @@ class BlockReading(BlockRun):
         return super().number(register, is_busy)
 
     def _load(self) -> None:
-        content = self.device.objects.read(self.effect.kind, self.key)
+        content = self.device.objects.content_of(self.effect.kind, self.key)
         offset = self.registers.get(BLOCK_OFFSET, 0)
         length = self.registers.get(BLOCK_LENGTH, self.blocks.size)
         self.block, self.waiting, self._last = b"", [], None

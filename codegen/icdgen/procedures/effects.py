@@ -35,25 +35,25 @@ class Objects:
     computed: Callable[[str, Key], bytes | None] | None = None
     on_write: Callable[[str, Key, bytes], None] | None = None
 
-    def of(self, kind: str) -> dict[Key, Object]:
+    def objects_of(self, kind: str) -> dict[Key, Object]:
         """Return the objects of a kind."""
         return self.kinds.setdefault(kind, {})
 
-    def read(self, kind: str, key: Key) -> bytes | None:
+    def content_of(self, kind: str, key: Key) -> bytes | None:
         """Return the content of an object; None if there is no such object."""
         computed = self.computed(kind, key) if self.computed else None
         if computed is not None:
             return computed
-        stored = self.of(kind).get(key)
+        stored = self.objects_of(kind).get(key)
         return None if stored is None else bytes(stored.data)
 
     def put(self, kind: str, key: Key, data: bytes) -> None:
         """Store an object. Replace an object that has this key."""
-        self.of(kind)[key] = Object(bytearray(data))
+        self.objects_of(kind)[key] = Object(bytearray(data))
 
     def patch(self, kind: str, key: Key, offset: int, data: bytes) -> None:
         """Store a part of an object. Bytes before it that do not exist yet are 0."""
-        stored = self.of(kind).setdefault(key, Object(bytearray()))
+        stored = self.objects_of(kind).setdefault(key, Object(bytearray()))
         # Packets that the device stores one by one leave a gap if one of them is lost.
         stored.data.extend(bytes(max(0, offset - len(stored.data))))
         stored.data[offset : offset + len(data)] = data
@@ -61,7 +61,7 @@ class Objects:
     def report(self, kind: str, key: Key) -> None:
         """Call ``on_write`` for an object."""
         if self.on_write:
-            self.on_write(kind, key, bytes(self.of(kind)[key].data))
+            self.on_write(kind, key, bytes(self.objects_of(kind)[key].data))
 
 
 def effect_of(procedure: Procedure) -> Effect:

@@ -199,7 +199,7 @@ class ProcedureRun:
 
     def about(self, key: Key, is_busy: bool) -> Iterator[tuple[NumberPlace, int]]:
         """Yield the numbers that describe an object."""
-        stored = self.device.objects.of(self.effect.kind).get(key)
+        stored = self.device.objects.objects_of(self.effect.kind).get(key)
         data = bytes(stored.data) if stored and not is_busy else b""
         numbers = dict(zip(self.names, key, strict=False)) | {
             "size": len(data),

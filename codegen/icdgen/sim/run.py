@@ -1,6 +1,6 @@
 """Construction and execution of a simulated device.
 
-`build` makes the device and its line from the options; `run` serves it until the user
+`build_device` makes the device and its line from the options; `run` serves it until the user
 stops it.
 """
 
@@ -91,7 +91,7 @@ def has_protocol(icd: Icd, node: Node) -> bool:
     return node_facts.framing is not None or node_facts.stream is not None
 
 
-def build(
+def build_device(
     icd: Icd,
     name: str | None,
     options: Options,
@@ -106,7 +106,7 @@ def build(
     storage = DeviceStorage(on_write=saver(options.uploads))
     for text in options.files:
         kind, key, file = read_file(icd, node, text)
-        storage.of(kind)[key] = file
+        storage.objects_of(kind)[key] = file
     settings = SimulationSettings(
         boot_ms=options.boot,
         busy_ms=options.busy,
@@ -145,7 +145,7 @@ def run(
 
     ``report`` and ``warn`` are called with lines for the user.
     """
-    line, controller = build(icd, name, options, warn)
+    line, controller = build_device(icd, name, options, warn)
     if line.keeps_packets and any(
         "udp" not in transport[:2] for transport in transports
     ):

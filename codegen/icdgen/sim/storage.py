@@ -26,7 +26,9 @@ class DeviceStorage(Objects):
         def index(of: str, key: Key) -> bytes | None:
             if form is None or of != kind or key[:1] != (form.file_type,):
                 return None
-            entries = [_entry(link, algorithm, *each) for each in self.of(of).items()]
+            entries = [
+                _entry(link, algorithm, *each) for each in self.objects_of(of).items()
+            ]
             return write_index(link, entries)
 
         self.computed = index

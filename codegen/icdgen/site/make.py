@@ -1,6 +1,6 @@
 """Rendering of the documentation site from ICD files.
 
-`make_site` loads and checks the ICDs and renders all pages in memory; `write` writes
+`make_site` loads and checks the ICDs and renders all pages in memory; `write_site` writes
 them to a folder, and `icdgen.site.serve` serves them.
 """
 
@@ -81,7 +81,7 @@ def _older(site: Site, previous: str, icds: list[Path]) -> ComparisonSide:
     return side
 
 
-def write(site: Site, out: Path, check: bool = False) -> WritePlan:
+def write_site(site: Site, out: Path, check: bool = False) -> WritePlan:
     """Write the site to a folder, or only compare with ``check``.
 
     Returns the changes. Raises `UserError`.
