@@ -146,11 +146,7 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
     for why, rows in _single_requests(form, sample) if form.telecommands else ():
         yield (
             f"client: {why}",
-            {
-                "op": "stream_client",
-                "settings": SETTINGS,
-                "script": rows,
-            },
+            {"op": "stream_client", "settings": SETTINGS, "script": rows},
         )
     for why, rows in _simultaneous_requests(form, sample) if form.telecommands else ():
         for requests in (1, 2, 3):
@@ -237,33 +233,20 @@ def _single_requests(form: Stream, s: StreamSample) -> Iterator[tuple[str, Scrip
     if silent:
         yield (
             "without a reply it is done when it is sent",
-            [
-                s.ask(0, silent),
-                {"at": 500},
-                s.ask(500, silent),
-            ],
+            [s.ask(0, silent), {"at": 500}, s.ask(500, silent)],
         )
     for frame in form.telemetry[:1]:
         reply_argument: dict[str, object] = {"reply": frame.id}
         yield (
             "what comes unasked",
-            [
-                s.come(0, frame),
-                s.come(1, frame),
-                s.come(2, frame, lost=3),
-            ],
+            [s.come(0, frame), s.come(1, frame), s.come(2, frame, lost=3)],
         )
         yield from _requests_with_reply(form, s, row, frame, reply_argument)
     for frame in form.telemetry:
         asks = {"telemetry": frame.id}
         yield (
             f"{frame.name} is requested",
-            [
-                {"at": 0, **asks},
-                s.come(30, frame),
-                {"at": 31, **asks},
-                {"at": 131},
-            ],
+            [{"at": 0, **asks}, s.come(30, frame), {"at": 31, **asks}, {"at": 131}],
         )
         yield (
             f"{frame.name} never comes",
@@ -297,20 +280,11 @@ def _requests_with_reply(
     bad[-1 if form.delimited_by in ("length", "datagram") else len(bad) // 2] ^= 1
     yield (
         "the reply comes",
-        [
-            s.ask(0, row, **reply),
-            s.come(30, frame),
-            s.come(31, frame),
-            {"at": 500},
-        ],
+        [s.ask(0, row, **reply), s.come(30, frame), s.come(31, frame), {"at": 500}],
     )
     yield (
         "another message comes first",
-        [
-            s.ask(0, row, **reply),
-            s.come(5, other),
-            s.come(6, frame),
-        ],
+        [s.ask(0, row, **reply), s.come(5, other), s.come(6, frame)],
     )
     yield "the reply is damaged, then right", [
         s.ask(0, row, **reply), {"at": 5, "receive": bad.hex()}, s.come(6, frame), s.come(7, frame), s.come(8, frame),

@@ -116,10 +116,7 @@ def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]
 
     def reply(at: int, message: Message, more: int = 0) -> dict[str, Any]:
         data = s.source.randbytes(message.length + more)
-        return {
-            "at": at,
-            "receive": s.line(bytes([message.telemetry_id or 0]) + data),
-        }
+        return {"at": at, "receive": s.line(bytes([message.telemetry_id or 0]) + data)}
 
     plain, frame, framing = s.plain, s.frame, need(facts.framing, "uart")
     other = next(
@@ -130,24 +127,14 @@ def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]
     begin, finish = f"{escape}{framing.start:02x}", f"{escape}{framing.end:02x}"
     yield (
         "a telecommand and its acknowledge",
-        [
-            s.ask(0, plain),
-            ack(30, plain),
-            s.ask(30, plain),
-            ack(40, plain),
-        ],
+        [s.ask(0, plain), ack(30, plain), s.ask(30, plain), ack(40, plain)],
     )
     for name, code in facts.reasons.items():
         yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
     yield "refused with a code that has no name", [s.ask(0, plain), ack(30, plain, 200)]
     yield (
         "the next before the acknowledge",
-        [
-            s.ask(0, plain),
-            s.ask(5, plain),
-            s.request(5, frame),
-            ack(30, plain),
-        ],
+        [s.ask(0, plain), s.ask(5, plain), s.request(5, frame), ack(30, plain)],
     )
     yield (
         "no acknowledge",
@@ -180,29 +167,16 @@ def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]
     yield from _many_late(s, reply)
     yield (
         "an unexpected acknowledge",
-        [
-            ack(0, plain),
-            s.request(1, frame),
-            ack(2, plain),
-            reply(3, frame),
-        ],
+        [ack(0, plain), s.request(1, frame), ack(2, plain), reply(3, frame)],
     )
     yield (
         "the acknowledge of another telecommand",
-        [
-            s.ask(0, plain),
-            ack(1, other),
-            ack(2, plain),
-        ],
+        [s.ask(0, plain), ack(1, other), ack(2, plain)],
     )
     yield "a frame", [s.request(0, frame), reply(30, frame)]
     yield (
         "the longest frame and the longest telecommand",
-        [
-            s.request(0, s.wide),
-            reply(90, s.wide),
-            s.ask(91, s.long),
-        ],
+        [s.request(0, s.wide), reply(90, s.wide), s.ask(91, s.long)],
     )
     pieces = reply(1, frame)["receive"]
     # The last cut is between the escape byte and the end of the frame.
@@ -212,46 +186,23 @@ def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]
     ]  # fmt: skip
     yield (
         "a frame that comes at the third try",
-        [
-            s.request(0, frame),
-            {"at": 100},
-            {"at": 200},
-            reply(250, frame),
-        ],
+        [s.request(0, frame), {"at": 100}, {"at": 200}, reply(250, frame)],
     )
     yield (
         "a frame that never comes",
-        [
-            s.request(0, frame),
-            {"at": 100},
-            {"at": 200},
-            {"at": 300},
-        ],
+        [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}],
     )
     yield (
         "time stands still, then jumps",
-        [
-            s.request(0, frame),
-            {"at": 5000},
-            {"at": 5000},
-            reply(5001, frame),
-        ],
+        [s.request(0, frame), {"at": 5000}, {"at": 5000}, reply(5001, frame)],
     )
     yield (
         "a frame that is too long",
-        [
-            s.request(0, frame),
-            reply(1, frame, 1),
-            reply(2, frame),
-        ],
+        [s.request(0, frame), reply(1, frame, 1), reply(2, frame)],
     )
     yield (
         "a frame that was not asked for",
-        [
-            s.request(0, frame),
-            reply(1, s.wide),
-            reply(2, frame),
-        ],
+        [s.request(0, frame), reply(1, s.wide), reply(2, frame)],
     )
     yield "errors in the stream", [
         s.request(0, frame), {"at": 1, "receive": f"{begin}90{escape}00"},
@@ -274,11 +225,7 @@ def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]
     if s.setting:
         yield (
             "a setting is repeated",
-            [
-                s.ask(0, s.setting),
-                {"at": 100},
-                ack(110, s.setting),
-            ],
+            [s.ask(0, s.setting), {"at": 100}, ack(110, s.setting)],
         )
     if s.silent:
         yield (
@@ -295,10 +242,7 @@ def _uart(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]
     unknown = next(id for id in range(256) if id not in facts.telecommands)
     yield (
         "an unknown id",
-        [
-            {"at": 0, "telecommand": unknown, "bytes": ""},
-            {"at": 0, "telemetry": 0},
-        ],
+        [{"at": 0, "telecommand": unknown, "bytes": ""}, {"at": 0, "telemetry": 0}],
     )
     yield (
         "a wrong length",
@@ -349,18 +293,11 @@ def _checked(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, A
     good = {"receive": s.acknowledge(s.plain)}
     yield (
         "sent again after a wrong checksum",
-        [
-            s.ask(0, s.plain),
-            {"at": 1, **bad},
-            {"at": 2, **good},
-        ],
+        [s.ask(0, s.plain), {"at": 1, **bad}, {"at": 2, **good}],
     )
     yield (
         "always a wrong checksum",
-        [
-            s.ask(0, s.plain),
-            *({"at": at, **bad} for at in range(1, 5)),
-        ],
+        [s.ask(0, s.plain), *({"at": at, **bad} for at in range(1, 5))],
     )
 
 
@@ -376,19 +313,11 @@ def _checked_frames(
     yield "a frame with its checksum", [s.request(0, s.frame), {"at": 1, **good}]
     yield (
         "a wrong checksum, then the right one",
-        [
-            s.request(0, s.frame),
-            {"at": 1, **bad},
-            {"at": 2, **good},
-        ],
+        [s.request(0, s.frame), {"at": 1, **bad}, {"at": 2, **good}],
     )
     yield (
         "a frame without its checksum, then with it",
-        [
-            s.request(0, s.frame),
-            {"at": 1, **missing},
-            {"at": 2, **good},
-        ],
+        [s.request(0, s.frame), {"at": 1, **missing}, {"at": 2, **good}],
     )
     yield (
         "always a wrong checksum",
@@ -405,11 +334,7 @@ def _checked_frames(
     }
     yield (
         "more than a checksum behind a frame",
-        [
-            s.request(0, s.frame),
-            {"at": 1, **longer},
-            {"at": 2, **good},
-        ],
+        [s.request(0, s.frame), {"at": 1, **longer}, {"at": 2, **good}],
     )
 
 
@@ -448,12 +373,7 @@ def _i2c(
     for name, code in {"none": success, **facts.reasons}.items():
         yield (
             f"outcome {name}",
-            [
-                s.ask(0, plain),
-                written,
-                {"at": 11},
-                state(12, plain, 1, code),
-            ],
+            [s.ask(0, plain), written, {"at": 11}, state(12, plain, 1, code)],
         )
     yield "never processed", [
         s.ask(0, plain), written, *(row for at in range(11, 100, 11) for row in ({"at": at}, state(at + 1, plain, 0))),
@@ -498,20 +418,12 @@ def _i2c(
         broken = bytes([1]).hex() + frame(wide, bytes(wide.length))[2:]
         yield (
             "a frame with a wrong checksum",
-            [
-                s.request(0, wide),
-                *({"at": at, "receive": broken} for at in (1, 12)),
-            ],
+            [s.request(0, wide), *({"at": at, "receive": broken} for at in (1, 12))],
         )
     if s.silent:
         yield (
             "not acknowledged",
-            [
-                s.ask(0, s.silent),
-                written,
-                s.ask(2, s.silent),
-                {"at": 3, "receive": ""},
-            ],
+            [s.ask(0, s.silent), written, s.ask(2, s.silent), {"at": 3, "receive": ""}],
         )
     yield "a transfer that was not asked for", [{"at": 0, "receive": "00"}]
     second = next(
@@ -519,13 +431,7 @@ def _i2c(
         other,
     )
     # Until all attempts of a request are used.
-    quiet = [
-        {"at": 100},
-        {"at": 110},
-        {"at": 210},
-        {"at": 220},
-        {"at": 320},
-    ]
+    quiet = [{"at": 100}, {"at": 110}, {"at": 210}, {"at": 220}, {"at": 320}]
     near = next(
         (
             m
@@ -593,32 +499,20 @@ def _can(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]]
     id, frame_id = plain.telecommand_id, frame.telemetry_id
     yield (
         "a telecommand and its acknowledge",
-        [
-            s.ask(0, plain),
-            *come(5, "acknowledge", id),
-        ],
+        [s.ask(0, plain), *come(5, "acknowledge", id)],
     )
     yield (
         "a long telecommand",
-        [
-            s.ask(0, s.long),
-            *come(5, "acknowledge", s.long.telecommand_id),
-        ],
+        [s.ask(0, s.long), *come(5, "acknowledge", s.long.telecommand_id)],
     )
     yield "refused", [s.ask(0, plain), *come(5, "refusal", id)]
     yield (
         "a request refused",
-        [
-            s.request(0, frame),
-            *come(5, "request_refusal", frame_id),
-        ],
+        [s.request(0, frame), *come(5, "request_refusal", frame_id)],
     )
     yield (
         "a frame",
-        [
-            s.request(0, frame),
-            *come(5, "reply", frame_id, bytes(frame.length)),
-        ],
+        [s.request(0, frame), *come(5, "reply", frame_id, bytes(frame.length))],
     )
     data = s.source.randbytes(wide.length)
     packets = come(5, "reply", wide.telemetry_id, data)
@@ -628,20 +522,11 @@ def _can(facts: Facts, s: BusSample) -> Iterator[tuple[str, list[dict[str, Any]]
         repeated = [{**row, "at": 105} for row in packets]
         yield (
             "a lost packet, and the repeated frame",
-            [
-                s.request(0, wide),
-                *packets[1:],
-                {"at": 100},
-                *repeated,
-            ],
+            [s.request(0, wide), *packets[1:], {"at": 100}, *repeated],
         )
     yield (
         "a frame that is too short",
-        [
-            s.request(0, frame),
-            *come(5, "reply", frame_id, bytes(1)),
-            {"at": 100},
-        ],
+        [s.request(0, frame), *come(5, "reply", frame_id, bytes(1)), {"at": 100}],
     )
     yield (
         "from another node",

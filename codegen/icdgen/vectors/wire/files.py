@@ -36,10 +36,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         for date in dates:
             yield (
                 "a date",
-                {
-                    "op": "dos_time",
-                    **dict(zip(DosTime._fields, date, strict=True)),
-                },
+                {"op": "dos_time", **dict(zip(DosTime._fields, date, strict=True))},
             )
     if facts.index:
         index = facts.index
@@ -53,24 +50,15 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         for size in (0, 1, index.entry_bytes, len(data) - 1, len(data)):
             yield (
                 f"{size} of {len(data)} bytes",
-                {
-                    "op": "index_decode",
-                    "bytes": data[:size].hex(),
-                },
+                {"op": "index_decode", "bytes": data[:size].hex()},
             )
         yield (
             "meta-data that are too short",
-            {
-                "op": "index_encode",
-                "entries": [{**entries[0], "meta": "00"}],
-            },
+            {"op": "index_encode", "entries": [{**entries[0], "meta": "00"}]},
         )
         yield (
             "a number that does not fit",
-            {
-                "op": "index_encode",
-                "entries": [{**entries[0], "counter": 256}],
-            },
+            {"op": "index_encode", "entries": [{**entries[0], "counter": 256}]},
         )
 
 

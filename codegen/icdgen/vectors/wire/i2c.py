@@ -29,12 +29,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         for checked in (False, True) if facts.checksum else (False,):
             yield (
                 f"telemetry {id}",
-                {
-                    "op": "i2c_request",
-                    "kind": "telemetry",
-                    "id": id,
-                    "crc": checked,
-                },
+                {"op": "i2c_request", "kind": "telemetry", "id": id, "crc": checked},
             )
             # `i2c_write` begins with the id, which a reply does not repeat.
             data = i2c_write(link, id, frame, checked)[1:]
@@ -43,10 +38,7 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             yield f"telemetry {id}, too short", {**about, "bytes": data[:-1].hex()}
             yield (
                 f"telemetry {id}, one bit wrong",
-                {
-                    **about,
-                    "bytes": (bytes([data[0] ^ 1]) + data[1:]).hex(),
-                },
+                {**about, "bytes": (bytes([data[0] ^ 1]) + data[1:]).hex()},
             )
     step = facts.identification
     if step:

@@ -59,29 +59,19 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
             ):
                 yield (
                     f"{size} of {len(file)} bytes",
-                    {
-                        "op": "log_decode",
-                        "bytes": file[:size].hex(),
-                    },
+                    {"op": "log_decode", "bytes": file[:size].hex()},
                 )
         if facts.log_message:
             message = LogMessage.encode(link, mask, data[0])
             frames = [frame.hex() for frame in data[0]]
             yield (
                 "an unsolicited log",
-                {
-                    "op": "log_message_encode",
-                    "mask": mask.hex(),
-                    "frames": frames,
-                },
+                {"op": "log_message_encode", "mask": mask.hex(), "frames": frames},
             )
             for size in (len(message), len(message) - 1, 3):
                 yield (
                     f"{size} of {len(message)} bytes",
-                    {
-                        "op": "log_message_decode",
-                        "bytes": message[:size].hex(),
-                    },
+                    {"op": "log_message_decode", "bytes": message[:size].hex()},
                 )
     mask_of_one = (
         (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()

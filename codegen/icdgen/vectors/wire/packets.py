@@ -62,20 +62,11 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
         for size in (most, most + 1):
             yield (
                 f"{size} bytes",
-                {
-                    "op": "can_split",
-                    **about,
-                    "bytes": source.randbytes(size).hex(),
-                },
+                {"op": "can_split", **about, "bytes": source.randbytes(size).hex()},
             )
         yield (
             "data where none is expected",
-            {
-                "op": "can_split",
-                **about,
-                "kind": "request",
-                "bytes": "00",
-            },
+            {"op": "can_split", **about, "kind": "request", "bytes": "00"},
         )
         yield from _joins(link, facts, source, other, third)
 
@@ -157,27 +148,17 @@ def _joins(
         )
     yield (
         "no receiver for them",
-        {
-            "op": "can_join",
-            "address": node ^ 1,
-            "packets": [_row(p) for p in first],
-        },
+        {"op": "can_join", "address": node ^ 1, "packets": [_row(p) for p in first]},
     )
     paused = [_row(packet, late - 1) for packet in first[1:]]
     yield (
         "a pause just short enough",
-        {
-            "op": "can_join",
-            "packets": [_row(first[0]), *paused],
-        },
+        {"op": "can_join", "packets": [_row(first[0]), *paused]},
     )
     paused = [_row(packet, late) for packet in first]
     yield (
         "a pause that is too long",
-        {
-            "op": "can_join",
-            "packets": [_row(first[0]), *paused],
-        },
+        {"op": "can_join", "packets": [_row(first[0]), *paused]},
     )
     # One sender more than a joiner can handle by default.
     crowd = [sent(sender, str(sender)) for sender in range(5)]

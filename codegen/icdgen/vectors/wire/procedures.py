@@ -368,9 +368,7 @@ class _Scripts:
                 respond=self._repeating(call, receive),
             )
         yield self.case(
-            "there is nothing",
-            call,
-            RecordedDevice(self.facts, UART, Random(0)),
+            "there is nothing", call, RecordedDevice(self.facts, UART, Random(0))
         )
 
     @property

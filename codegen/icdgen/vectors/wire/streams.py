@@ -68,13 +68,7 @@ def encoded(link: AnyLink, facts: Facts, source: Random) -> Requests:
     yield "no id", {"op": "uart_encode", "bytes": ""}
     for why, message in _messages(facts, source):
         yield why, {"op": "uart_encode", "bytes": message.hex()}
-        yield (
-            why,
-            {
-                "op": "uart_decode",
-                "bytes": uart_encode(link, message).hex(),
-            },
-        )
+        yield (why, {"op": "uart_decode", "bytes": uart_encode(link, message).hex()})
 
 
 def streams(link: AnyLink, facts: Facts, source: Random) -> Requests:
@@ -121,10 +115,7 @@ def streams(link: AnyLink, facts: Facts, source: Random) -> Requests:
         for how, chunks in pieces(why, stream, source):
             yield (
                 how,
-                {
-                    "op": "uart_events",
-                    "chunks": [chunk.hex() for chunk in chunks],
-                },
+                {"op": "uart_events", "chunks": [chunk.hex() for chunk in chunks]},
             )
     # Ten bytes after unescaping: one more than the smaller buffer.
     long = line(0x90, *range(1, 9), escape)
@@ -133,28 +124,15 @@ def streams(link: AnyLink, facts: Facts, source: Random) -> Requests:
         cut = [(long + good[:-2]).hex(), finish.hex()]
         yield (
             f"ten bytes in a buffer of {limit}",
-            {
-                "op": "uart_events",
-                "limit": limit,
-                "chunks": cut,
-            },
+            {"op": "uart_events", "limit": limit, "chunks": cut},
         )
     too_long = uart_encode(link, bytes([0x90]) * (facts.longest + 1))
     yield (
         "a message that is too long by one",
-        {
-            "op": "uart_events",
-            "chunks": [(too_long + good).hex()],
-        },
+        {"op": "uart_events", "chunks": [(too_long + good).hex()]},
     )
     for why, message in _kinds(link, facts, source):
-        yield (
-            why,
-            {
-                "op": "uart_events",
-                "chunks": [uart_encode(link, message).hex()],
-            },
-        )
+        yield (why, {"op": "uart_events", "chunks": [uart_encode(link, message).hex()]})
 
 
 def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
