@@ -83,27 +83,23 @@ def generate(
         )
     if out is None:
         base = config.out or Path("generated")
+        is_single = len(set(languages_to_generate)) == 1
         # A single language has its own folder; several languages get subfolders of
         # `base`.
-        out = (
-            base / languages_to_generate[0]
-            if len(set(languages_to_generate)) == 1
-            else base
-        )
-    with progress.items(
-        ", ".join(dict.fromkeys(languages_to_generate)), "files"
-    ) as watch:
+        out = base / languages_to_generate[0] if is_single else base
+    what = ", ".join(dict.fromkeys(languages_to_generate))
+    with progress.items(what, "files") as watch:
         job = Job(
-            languages_to_generate,
-            out,
-            paths,
-            templates or config.templates,
-            depfile,
-            check,
-            measured,
-            packages,
-            config.looked_at,
-            watch,
+            languages=languages_to_generate,
+            out=out,
+            icds=paths,
+            templates=templates or config.templates,
+            depfile=depfile,
+            check=check,
+            measured=measured,
+            packages=packages,
+            configs=config.looked_at,
+            watch=watch,
         )
         outcome = run(job)
     if outcome.loaded.findings:
@@ -115,11 +111,11 @@ def generate(
 
         say(short_diff(outcome.plans).rstrip("\n"))
         sys.exit(1)
-    for name in (plan.out / name for plan in outcome.plans for name in plan.edited):
-        say(
-            f"icdgen: warning: {name} is no longer generated, but was edited: kept",
-            err=True,
-        )
+    for plan in outcome.plans:
+        for name in plan.edited:
+            path = plan.out / name
+            text = f"{path} is no longer generated, but was edited: kept"
+            say(f"icdgen: warning: {text}", err=True)
     note = "" if quiet else _summary(job, outcome)
     if note:
         say(note)
@@ -134,15 +130,17 @@ def generate(
 
 
 def _summary(job: Job, outcome: GenerationOutcome) -> str:
+    """Return the numbers of written and removed files in words."""
     written = sum(len(plan.write) for plan in outcome.plans)
     removed = sum(len(plan.remove) for plan in outcome.plans)
     if not written and not removed:
         return _current(job, outcome)
     total = sum(len(plan.files) for plan in outcome.plans)
-    parts = [f"{written} of {total} files written"] + (
-        [f"{removed} removed"] if removed else []
-    )
-    return f"{job.out}: {', '.join(parts)} ({', '.join(plan.language for plan in outcome.plans)})"
+    counts = f"{written} of {total} files written"
+    if removed:
+        counts += f", {removed} removed"
+    languages = ", ".join(plan.language for plan in outcome.plans)
+    return f"{job.out}: {counts} ({languages})"
 
 
 def _current(job: Job, outcome: GenerationOutcome) -> str:

@@ -228,11 +228,9 @@ def _definitions(
     definitions: dict[Path, tuple[Path, Reader]] = {}
     for path in files:
         if path.is_dir():
-            inside = [
-                definition
-                for definition in kinds.within(path)
-                if requested is None or definition[1].name == requested.name
-            ]
+            inside = kinds.within(path)
+            if requested is not None:
+                inside = [each for each in inside if each[1].name == requested.name]
             if not inside:
                 of_kind = f" of the kind {requested.name}" if requested else ""
                 help = f"kinds are {', '.join(kinds.names())}; import a manual, or a file that --kind names, by its own name"
@@ -244,9 +242,9 @@ def _definitions(
             if reader is None and len(files) == 1:
                 return []
             if reader is None:
-                reason = (
-                    "is not a known definition" if path.exists() else "does not exist"
-                )
+                reason = "does not exist"
+                if path.exists():
+                    reason = "is not a known definition"
                 raise UserError(
                     f"{path} {reason}",
                     "import manuals one by one; --kind names the kind of definitions",
@@ -266,9 +264,8 @@ def _define(
     from icdgen.import_results import targets
 
     try:
-        with progress.working(
-            f"reading {files[0][0] if len(files) == 1 else f'{len(files)} definitions'}"
-        ):
+        what = files[0][0] if len(files) == 1 else f"{len(files)} definitions"
+        with progress.working(f"reading {what}"):
             reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
         trees = {name: tree for read in reads for name, tree in read.trees.items()}
         aimed = targets.prepare(trees, out, update, dry_run, run.TOLD)

@@ -121,6 +121,7 @@ def _split_arguments(
 
 
 def _form_of(out: Path | None) -> str | None:
+    """Return the format of a file by its extension. Raises `UserError`."""
     if out is None:
         return None
     if out.suffix.lower() not in _SUFFIXES:

@@ -100,12 +100,10 @@ class Screen:
             # The titles, the footer, and the line of the cursor.
             self.page = max(1, console.size.height - 3)
             if not self.keyboard.is_open:
+                # Without keys, the pages follow each other.
                 pages = -(-len(body) // self.page)
-                self.top = (
-                    int((time.monotonic() - self.begin) / PAGE_SECONDS)
-                    % pages
-                    * self.page
-                )
+                turns = int((time.monotonic() - self.begin) / PAGE_SECONDS)
+                self.top = turns % pages * self.page
             self.top = max(0, min(self.top, len(body) - self.page))
             last = min(self.top + self.page, len(body))
             keys = "; up, down, PgUp, PgDn, Home, End" if self.keyboard.is_open else ""

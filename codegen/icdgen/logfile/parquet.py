@@ -1,6 +1,7 @@
 """Conversion to Parquet with numpy and pyarrow.
 
-One thread decodes while another writes.
+One thread decodes while another writes. `ColumnReader` reads one column of many entries
+at once; `icdgen.logfile.rows` is the same for single entries without these libraries.
 """
 
 from __future__ import annotations
@@ -246,13 +247,16 @@ class ColumnReader:
         return columns_on_curve(np, column.curve.pieces, raw) if column.curve else raw
 
     def _named(self, values: Iterable[int]) -> list[str]:
+        """Return the names of raw values of an enumeration."""
         enum = self.column.field.enum if self.column.field else None
-        members = ((value, enum.member_of(value) if enum else None) for value in values)
-        return [
-            member.name if member else f"unknown {value}" for value, member in members
-        ]
+        names = []
+        for value in values:
+            member = enum.member_of(value) if enum else None
+            names.append(member.name if member else f"unknown {value}")
+        return names
 
     def _raw(self, data: bytes) -> np.ndarray:
+        """Return the raw integers of a field."""
         import numpy as np
 
         column, field = self.column, self.column.field
@@ -277,9 +281,8 @@ class ColumnReader:
         else:
             value = np.zeros(len(data) // self.stride, np.uint64)
             for piece in column.pieces:
-                part = (
-                    numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask
-                ) >> piece.shift
+                octets = numbers_at(data, self.stride, piece.byte, 1, True)
+                part = (octets & piece.mask) >> piece.shift
                 value |= part.astype(np.uint64) << np.uint64(piece.at)
         if field.is_signed:
             # Shift to the top of a word and back, which copies the sign to the upper
@@ -307,6 +310,5 @@ class ColumnReader:
         # Numbers this large need Python's integers. Compute each different value only
         # once.
         different, where = np.unique(raw, return_inverse=True)
-        return np.array(
-            [(int(raw_value) * a + b) / d for raw_value in different], np.float64
-        )[where]
+        physical = [(int(raw_value) * a + b) / d for raw_value in different]
+        return np.array(physical, np.float64)[where]
