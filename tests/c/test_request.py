@@ -1,19 +1,17 @@
-"""The example that talks to a node over TCP."""
+"""The example in C that talks to a node over TCP: nodes that do not answer at once."""
 
 from __future__ import annotations
 
 import socket
 import subprocess
 import threading
-from urllib.parse import urlsplit
 
 import pytest
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from tests import documents, links
+from tests import links
 from tests.c import harness
 from tests.conformance import ROOT
-from tests.sim.device import simulator
 
 EXAMPLE = ROOT / "examples" / "request.c"
 FRAME = bytes.fromhex("1f1f0a00ff7f")  # full of escape bytes
@@ -83,25 +81,6 @@ def test_the_example_gives_up_when_nobody_answers(program):
         "",
         "no telemetry, attempts: 4\n",
     )
-
-
-def test_the_guide_shows_the_example():
-    code = EXAMPLE.read_text(encoding="utf-8").partition("*/\n")[2]
-    assert code in documents.text("guides/driver-in-c")
-
-
-def test_the_example_talks_to_the_simulator(program):
-    with simulator(
-        "--node",
-        "cubeacp",
-        "--tcp",
-        "0",
-        "--set",
-        "Estimated Attitude Angles",
-        "roll=12.5",
-    ) as (place, _):
-        done = ask(program, urlsplit(place).port)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "roll 12.50 deg\n", "")
 
 
 def test_the_example_says_that_nobody_listens(program):

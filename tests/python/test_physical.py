@@ -22,29 +22,7 @@ def distinct(package, widest: int):
     return found.values()
 
 
-def test_every_value_of_every_narrow_scale_is_exact_and_comes_back(shipped):
-    checked = 0
-    for case, field in distinct(shipped, 16):
-        info = case.infos[field.name]
-        read, write = (
-            getattr(case.cls, info.physical).fget,
-            getattr(case.cls, info.physical).fset,
-        )
-        p, c, q = info.scale
-        assert Fraction(p, q) == field.scale.factor
-        assert Fraction(c, q) == field.scale.offset
-        message = case.cls()
-        for raw in range(field.raw_min, field.raw_max + 1):
-            setattr(message, info.attribute, raw)
-            physical = read(message)
-            assert physical == (raw * p + c) / q  # int / int rounds correctly
-            write(message, physical)
-            assert getattr(message, info.attribute) == raw
-            checked += 1
-    assert checked > 500_000
-
-
-@pytest.mark.parametrize("name", ["shipped", "odd", "ordered"])
+@pytest.mark.parametrize("name", ["odd", "ordered"])
 def test_any_double_finds_the_raw_value_that_the_reference_finds(name, request):
     package = request.getfixturevalue(name)
     range_error = package.module().RangeError

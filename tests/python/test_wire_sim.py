@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from random import Random
-from urllib.parse import urlsplit
 
 import pytest
 
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Send
-from tests import documents
-from tests.conftest import ROOT
 from tests.python import packages
-from tests.sim.device import simulator
 from tests.sim.port import Port, Refusing
 
-EXAMPLE = ROOT / "examples" / "talk.py"
 RESETS = ("Reset", "Run Selected Program")
 
 
@@ -247,39 +239,3 @@ def test_logs_that_come_unasked_are_told(shipped, wire):
     port.line._send(0, "log", message)
     talking.get(acp.Identification)
     assert [type(event) for event in heard] == [wire.Log]
-
-
-def test_the_guide_shows_the_example():
-    _, code = EXAMPLE.read_text().split("\n\n", 1)
-    assert f"```python\n{code}```\n" in documents.text("guides/python")
-
-
-def test_the_example_talks_to_the_simulator_of_the_command_line(shipped, tmp_path):
-    code = EXAMPLE.read_text()
-    assert code.count("4000))") == 1
-    with simulator(
-        "--node",
-        "cubeacp",
-        "--tcp",
-        "0",
-        "--set",
-        "Estimated Attitude Angles",
-        "roll=-12.34",
-    ) as (
-        place,
-        _,
-    ):
-        program = tmp_path / "talk.py"
-        program.write_text(code.replace("4000))", f"{urlsplit(place).port}))"))
-        path = {
-            "PATH": os.environ["PATH"],
-            "PYTHONPATH": str(shipped.folder),
-        }  # without icdgen
-        done = subprocess.run(
-            [sys.executable, "-B", program],
-            capture_output=True,
-            text=True,
-            timeout=60,
-            env=path,
-        )
-    assert (done.returncode, done.stdout, done.stderr) == (0, "roll -12.34 deg\n", "")
