@@ -35,7 +35,11 @@ def on_terminal(arguments: list[str], folder, delay: float) -> tuple[int, str]:
     reading, terminal = pty.openpty()
     command = [sys.executable, "-c", RUN.format(delay), *arguments]
     process = subprocess.Popen(
-        command, cwd=folder, stdout=subprocess.DEVNULL, stderr=terminal
+        command,
+        cwd=folder,
+        env=os.environ | {"TERM": "xterm"},  # a dumb terminal gets no bars
+        stdout=subprocess.DEVNULL,
+        stderr=terminal,
     )
     os.close(terminal)
     received = b""
