@@ -62,7 +62,7 @@ def recall(kind: str, name: str) -> bytes | None:
         or not _is_private_folder(os.path.join(top, kind))
     ):
         return None
-    digest, _, body = _content(os.path.join(top, kind, name)).partition(b"\n")
+    digest, _, body = _read_private_file(os.path.join(top, kind, name)).partition(b"\n")
     if digest != sha256(body).hexdigest().encode():
         return None
     head, _, data = body.partition(b"\0")
@@ -96,7 +96,7 @@ def remember(kind: str, name: str, data: bytes, files: dict[str, str]) -> None:
             _make(place)
             if not _is_private_folder(place):
                 return
-        _write(
+        _write_atomically(
             os.path.join(top, kind, name),
             sha256(body).hexdigest().encode() + b"\n" + body,
         )
@@ -124,7 +124,7 @@ def _is_private_folder(path: str) -> bool:
     return stat.S_ISDIR(status.st_mode) and _is_private(status)
 
 
-def _content(path: str) -> bytes:
+def _read_private_file(path: str) -> bytes:
     """Return the bytes of a private file; empty for anything else, such as a link or a
     pipe.
     """
@@ -156,7 +156,7 @@ def _make(place: str) -> None:
         os.mkdir(place, 0o700)
 
 
-def _write(target: str, data: bytes) -> None:
+def _write_atomically(target: str, data: bytes) -> None:
     """Write a file atomically."""
     # Builds in parallel write the same record.
     part = f"{target}.{os.getpid()}"

@@ -85,12 +85,12 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
         elif field.scalar.present_if:
             optional.append(field)
         elif field.role != "derived":
-            raw[field.name] = _read(field, bits)
+            raw[field.name] = _read_field(field, bits)
     # A condition can name a field that comes later in the frame.
     for field in optional:
         if is_present(field, raw):
-            raw[field.name] = _read(field, bits)
-    return raw | derived(message, raw) if message.layout.derived else raw
+            raw[field.name] = _read_field(field, bits)
+    return raw | derived_values(message, raw) if message.layout.derived else raw
 
 
 def fields_of_frame(
@@ -106,7 +106,7 @@ def fields_of_frame(
     return [field for field in fields if field.name in raw]
 
 
-def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
+def derived_values(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
     """Return the derived values whose operands have raw values, each as the bits of a
     double.
     """
@@ -183,7 +183,7 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
     bits = int.from_bytes(frame, "little")
     fields = fixed_fields(layout, node.orders)
     return {
-        field.name: _number(_read(field, bits))
+        field.name: _number(_read_field(field, bits))
         for field in fields
         if field.name in names
     }
@@ -234,9 +234,9 @@ def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
     """Return a copy of a frame with new values of some numbers."""
     bits = int.from_bytes(frame, "little")
     for field, value in values.items():
-        # All bits of the field, as a value in its range: `_written` checks values.
-        mask = _written(field, -1 if field.is_signed else (1 << field.bits) - 1)
-        bits = bits & ~mask | _written(field, value)
+        # All bits of the field, as a value in its range: `_bits_in_frame` checks values.
+        mask = _bits_in_frame(field, -1 if field.is_signed else (1 << field.bits) - 1)
+        bits = bits & ~mask | _bits_in_frame(field, value)
     return bits.to_bytes(len(frame), "little")
 
 
@@ -274,7 +274,7 @@ def message_of_frame(
         if len(frame) not in message.layout.lengths:
             continue
         if all(
-            _read(field, bits) == field.const
+            _read_field(field, bits) == field.const
             for place, field in own.items()
             if place not in shared
         ):
@@ -354,7 +354,7 @@ def initial_value(message: Message, field: FrameField) -> Raw:
     )
 
 
-def new(node: Node, message: Message) -> dict[str, Raw]:
+def initial_object_values(node: Node, message: Message) -> dict[str, Raw]:
     """Return the raw values of the longest frame for a new message.
 
     Generated code sets constants also in absent elements of variable-length nodes,
@@ -390,7 +390,7 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
                     f"{field.name!r} takes {field.scalar.length.most} bytes"
                 )
             value = value[: field.bits // 8]
-        bits |= _written(field, value)
+        bits |= _bits_in_frame(field, value)
     return bits.to_bytes(layout.size_of_frame(sizes), "little")
 
 
@@ -583,7 +583,7 @@ def _runs(
     return tuple(runs)
 
 
-def _read(field: FrameField, frame: int) -> Raw:
+def _read_field(field: FrameField, frame: int) -> Raw:
     """Return the raw value of a field from a frame."""
     scalar = field.scalar
     if scalar.is_bytes:
@@ -599,7 +599,7 @@ def _read(field: FrameField, frame: int) -> Raw:
     return value
 
 
-def _written(field: FrameField, value: Raw) -> int:
+def _bits_in_frame(field: FrameField, value: Raw) -> int:
     """Return the bits of the frame that a value sets.
 
     Raises `CodecError` if the value is invalid.

@@ -48,7 +48,7 @@ def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     known = [word for word in _longest_first(vocabulary) if word in text]
     parts: list[str] = []
     for chunk in _SEPARATORS.split(text):
-        parts += _split(chunk, known) if known else _humps(chunk)
+        parts += _split_by_vocabulary(chunk, known) if known else _humps(chunk)
     return tuple(parts)
 
 
@@ -92,7 +92,7 @@ def _humps(chunk: str) -> tuple[str, ...]:
     return tuple(part.lower() for part in _HUMPS.split(chunk) if part)
 
 
-def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
+def _split_by_vocabulary(chunk: str, vocabulary: list[str]) -> Iterable[str]:
     """Yield the words of a text.
 
     Words of the vocabulary, with the digits after them, are not split.

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jinja2.runtime import Context
 
 
-class Named(Protocol):
+class TemplateOwner(Protocol):
     """A backend, as far as `Renderer` needs it.
 
     It can also have the attributes ``templates`` and ``runtime``.
@@ -59,7 +59,7 @@ class Renderer:
             loader=_loader(
                 self._own, templates or shipped.templates() / backend, self.looked_at
             ),
-            bytecode_cache=_compiled(),
+            bytecode_cache=_bytecode_cache(),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: (
                 template is not None and template.endswith((".html.j2", ".xml.j2"))
@@ -73,7 +73,7 @@ class Renderer:
         self._environment.context_class = _context_class()
 
     @classmethod
-    def of(cls, backend: Named, override: Path | None = None) -> Renderer:
+    def of(cls, backend: TemplateOwner, override: Path | None = None) -> Renderer:
         """Return the renderer of a backend, with its own folders of templates and
         runtime if it has them.
         """
@@ -99,12 +99,12 @@ class Renderer:
             ) from None
         except TemplateError as error:
             raise UserError(
-                f"{_where(error, template)}: {error.message or type(error).__name__}",
+                f"{_place_of_error(error, template)}: {error.message or type(error).__name__}",
                 "correct the template",
             ) from None
         except Exception as error:  # an expression of a template can raise anything
             raise UserError(
-                f"{_where(error, template)}: {type(error).__name__}: {error}",
+                f"{_place_of_error(error, template)}: {type(error).__name__}: {error}",
                 "correct the template",
             ) from error
 
@@ -145,7 +145,7 @@ def _is_output_of_tools(name: str) -> bool:
     return name.startswith(".") or name in ("__pycache__", "target")
 
 
-def _where(error: Exception, template: str) -> str:
+def _place_of_error(error: Exception, template: str) -> str:
     """Return file and line of the innermost template in the traceback of an error."""
     place, trace = template, error.__traceback__
     while trace is not None:
@@ -199,7 +199,7 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseL
     return Loader([*own, shipped])
 
 
-def _compiled() -> BytecodeCache:
+def _bytecode_cache() -> BytecodeCache:
     """Return the cache of compiled templates."""
     import jinja2
 

@@ -39,7 +39,7 @@ def width_of(stream: TextIO | None) -> int | None:
         return None
 
 
-def render(
+def render_table(
     columns: Sequence[Column], rows: Iterable[Sequence[str]], width: int | None = None
 ) -> str:
     """Return a table as text. With ``width``, cells are wrapped to fit, if possible.
@@ -47,7 +47,7 @@ def render(
     Columns that are empty in all rows are omitted. Control characters in cells are
     shown as escapes.
     """
-    cells = [[clean(cell) for cell in row] for row in rows]
+    cells = [[printable_text(cell) for cell in row] for row in rows]
     used = [index for index in range(len(columns)) if any(row[index] for row in cells)]
     columns = [columns[index] for index in used]
     cells = [[row[index] for index in used] for row in cells]
@@ -73,7 +73,7 @@ def render(
     return "".join(_line(line, columns, widths) for line in lines)
 
 
-def clean(text: str) -> str:
+def printable_text(text: str) -> str:
     """Return a text with escapes for all characters that can move the cursor or change
     colours.
     """

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from icdgen import codec
-from icdgen.icd.curve import Curve, of_plain
+from icdgen.icd.curve import Curve, curve_of_plain
 from icdgen.icd.layout import Scalar
 from icdgen.vectors.ids import test_ids
 from icdgen.vectors.write import raw_json
@@ -536,7 +536,7 @@ def nearest_double(exact: str) -> str:
 
 def nearest(field: dict, bits: str) -> int | str | None:
     """The raw value nearest to a physical one, ties to even; None if it does not fit."""
-    if (curve := of_plain(field)) is not None:
+    if (curve := curve_of_plain(field)) is not None:
         return _on_curve(field, curve, bits)
     value = Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])
     raw = round((value - Fraction(field["offset"])) / Fraction(field["factor"]))

@@ -168,7 +168,7 @@ class Reference:
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
         default, fields = (
-            codec.new(node, message),
+            codec.initial_object_values(node, message),
             frame_fields(message.layout, node.orders),
         )
         return {

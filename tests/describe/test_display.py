@@ -24,8 +24,8 @@ from icdgen.icd.model import Icd
 from icdgen.icd.places import NodePlace
 from icdgen.show.machine import SCHEMA, to_json
 from icdgen.show.people import to_text
-from icdgen.values.entry import from_physical
-from icdgen.values.frame import Row
+from icdgen.values.entry import parse_physical
+from icdgen.values.frame import FieldValue
 from tests.conformance.build import renderer
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
@@ -74,7 +74,7 @@ def fields(tmp_path_factory) -> dict[str, NodePlace]:
 
 
 def float_raw(field: NodePlace, number: float) -> int:
-    value = from_physical(field, repr(number))
+    value = parse_physical(field, repr(number))
     assert isinstance(value, int)
     return value
 
@@ -98,21 +98,28 @@ def float_raw(field: NodePlace, number: float) -> int:
     ],
 )
 def test_values_have_the_digits_that_their_resolution_warrants(fields, name, raw, text):
-    assert Row(fields[name], raw).text == text
+    assert FieldValue(fields[name], raw).text == text
 
 
 def test_digits_of_the_arithmetic_in_doubles_are_not_shown(fields):
     assert (
-        Row(fields["Double Float"], float_raw(fields["Double Float"], 30.013888)).text
+        FieldValue(
+            fields["Double Float"], float_raw(fields["Double Float"], 30.013888)
+        ).text
         == "30.013888"
     )
-    assert Row(fields["Single Float"], float_raw(fields["Single Float"], 1)).text == "1"
-    assert Row(fields["Plain"], float_raw(fields["Plain"], 0.1)).text == "0.1"
+    assert (
+        FieldValue(fields["Single Float"], float_raw(fields["Single Float"], 1)).text
+        == "1"
+    )
+    assert FieldValue(fields["Plain"], float_raw(fields["Plain"], 0.1)).text == "0.1"
 
 
 def test_json_has_the_full_precision(fields):
     field = fields["Quadratic"]
-    assert Row(field, 13001).to_json()["value"] == codec.physical_double(field, 13001)
+    assert FieldValue(field, 13001).to_json()["value"] == codec.physical_double(
+        field, 13001
+    )
 
 
 @pytest.mark.parametrize("name", BY_NUMBER)
@@ -123,7 +130,7 @@ def test_a_value_that_is_shown_leads_back_to_its_raw_value(fields, name):
         min(field.raw_max, field.settable_raws[1]),
     )
     for raw in Random(1).sample(range(low, high + 1), min(500, high - low + 1)):
-        assert from_physical(field, Row(field, raw).text) == raw
+        assert parse_physical(field, FieldValue(field, raw).text) == raw
 
 
 def in_page(function: str, argument: object) -> Any:
@@ -159,7 +166,11 @@ def test_the_page_shows_the_same_digits(tmp_path):
     for frame in frames:
         raw = codec.decode(icd.nodes[0], message, frame)
         expected.append(
-            [Row(one, raw[one.name]).text for one in message.fields if one.has_formula]
+            [
+                FieldValue(one, raw[one.name]).text
+                for one in message.fields
+                if one.has_formula
+            ]
         )
     shown = """(([plan, frames]) => frames.map((hex) => codec.decode(plan, Uint8Array.from(Buffer.from(hex, "hex")))
       .map((raw, at) => [plan.fields[at], raw]).filter(([field]) => field.scale || field.curve)
@@ -241,15 +252,16 @@ def test_a_value_is_displayed_in_the_format_that_its_field_states(
     charger, name, number, text
 ):
     field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
-    assert Row(field, raw_of(field, number)).text == text
+    assert FieldValue(field, raw_of(field, number)).text == text
 
 
 def test_json_has_the_full_precision_whatever_the_display_format(charger):
     fields = {one.name: one for one in charger.nodes[0].messages[0].fields}
-    assert Row(fields["Voltage"], 65).to_json()["physical"] == 65 / 3
-    assert Row(fields["Faults"], 0xF1).to_json()["value"] == 0xF1
+    assert FieldValue(fields["Voltage"], 65).to_json()["physical"] == 65 / 3
+    assert FieldValue(fields["Faults"], 0xF1).to_json()["value"] == 0xF1
     assert (
-        Row(fields["Bias"], raw_of(fields["Bias"], -0.04)).to_json()["value"] == -0.04
+        FieldValue(fields["Bias"], raw_of(fields["Bias"], -0.04)).to_json()["value"]
+        == -0.04
     )
 
 
@@ -258,7 +270,7 @@ def test_json_has_the_full_precision_whatever_the_display_format(charger):
 )
 def test_a_displayed_bit_pattern_can_be_entered_again(charger, name, number):
     field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
-    assert from_physical(field, Row(field, number).text) == number
+    assert parse_physical(field, FieldValue(field, number).text) == number
 
 
 def test_the_site_displays_values_in_the_format_of_their_fields(charger):

@@ -21,7 +21,7 @@ from icdgen.icd.layout_copies import (
     with_struct_layout,
 )
 from icdgen.icd.meanings import Limits, Special
-from icdgen.icd.model import Enum, Icd, Member, Message, Part
+from icdgen.icd.model import ContainedMessage, Enum, Icd, Member, Message
 from icdgen.icd.units import STANDARD
 from icdgen.loading import load
 from tests.icd.files import write
@@ -166,7 +166,7 @@ OF_MESSAGE = {
     "requested": False,
     "period_ms": 250,
     "hazard": "It burns.",
-    "contains": (Part("Status", 0),),
+    "contains": (ContainedMessage("Status", 0),),
     "reserved": 2,
     "may_end_early": "zeros",
     "aliases": ("Also This",),

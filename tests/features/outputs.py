@@ -38,7 +38,7 @@ from icdgen.sim.settings import SimulationSettings
 from icdgen.sim.storage import DeviceStorage
 from icdgen.values import text as values_text
 from icdgen.values.encode import encode
-from icdgen.values.frame import frame
+from icdgen.values.frame import decoded_frame
 from icdgen.vectors.make import make_vectors
 from tests import links
 from tests.conformance.build import renderer
@@ -268,7 +268,7 @@ def words_of(icd: Icd, frames: dict[str, list[bytes]]) -> dict[str, list[list[st
     node, found = icd.nodes[-1], {}
     for message in node.messages:
         rows = [
-            frame(icd, node, message, data).rows
+            decoded_frame(icd, node, message, data).rows
             for data in _some(frames[message.name], WORDS)
         ]
         found[message.name] = [

@@ -17,7 +17,7 @@ from icdgen.logfile import parquet, text
 from icdgen.logfile.log import open_log
 from icdgen.logfile.source import open_source
 from icdgen.runtime_objects.links import link_of
-from icdgen.values.frame import Row
+from icdgen.values.frame import FieldValue
 from tests import links
 
 COUNT = 300
@@ -35,12 +35,14 @@ def expected(icd, known, entries) -> list[list[object]]:
                 continue
             assert len(frame.data) == message.length
             raw = codec.decode(icd.node(message.node), message, frame.data)
-            row += [value_of(Row(field, raw[field.name])) for field in message.fields]
+            row += [
+                value_of(FieldValue(field, raw[field.name])) for field in message.fields
+            ]
         rows.append(row)
     return rows
 
 
-def value_of(row: Row) -> object:
+def value_of(row: FieldValue) -> object:
     if row.field.type == "enum":
         return row.text
     if row.field.type == "bool":

@@ -22,7 +22,7 @@ from icdgen.loading import load
 from icdgen.logfile.recording import Recording
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
-from icdgen.values.frame import frame
+from icdgen.values.frame import decoded_frame
 from icdgen.vectors.make import make_vectors
 from tests.conftest import ROOT
 from tests.features.framed import recorded
@@ -315,7 +315,7 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     (tmp_path / "sent").write_bytes(sent)
     wanted = []
     for message, data in frames:
-        rows = frame(icd, node, message, data).rows
+        rows = decoded_frame(icd, node, message, data).rows
         wanted.append((message.name, [_same(value_of(row)) for row in rows]))
     assert len({name for name, _ in wanted}) == 11 and len(wanted) > 100
     icd_option = ("--icd", tmp_path / "odd.yaml")

@@ -10,7 +10,7 @@ from icdgen.loading import load
 from icdgen.show.people import to_text
 from icdgen.values.errors import NotFound
 from icdgen.values.find import find_message
-from icdgen.values.frame import frame
+from icdgen.values.frame import decoded_frame
 from icdgen.values.text import to_text as values_text
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT
@@ -156,7 +156,7 @@ def test_ids_of_several_bytes_are_shown_as_decode_shows_them():
     clock = to_text(icd, ["receiver", "Navigation Clock"])
     assert clock.startswith("receiver: Navigation Clock\ntelemetry 01 22; ")
     assert "(telemetry 01 22)" in values_text(
-        frame(
+        decoded_frame(
             icd,
             icd.node("receiver"),
             find_message(icd, "receiver", "Navigation Clock"),

@@ -6,7 +6,7 @@ import io
 import subprocess
 import sys
 
-from icdgen.tables import Column, clean, render, width_of
+from icdgen.tables import Column, printable_text, render_table, width_of
 
 COLUMNS = [
     Column("name"),
@@ -21,7 +21,7 @@ ROWS = [
 
 
 def test_in_a_pipe_nothing_is_cut_and_no_line_ends_in_spaces():
-    assert render(COLUMNS, ROWS) == (
+    assert render_table(COLUMNS, ROWS) == (
         "name   value  remark\n"
         "-----  -----  -----------------------------------------------\n"
         "alpha      1  a remark that is rather long and has many words\n"
@@ -30,31 +30,31 @@ def test_in_a_pipe_nothing_is_cut_and_no_line_ends_in_spaces():
 
 
 def test_what_fits_looks_the_same_on_a_terminal():
-    assert render(COLUMNS, ROWS, 120) == render(COLUMNS, ROWS)
+    assert render_table(COLUMNS, ROWS, 120) == render_table(COLUMNS, ROWS)
 
 
 def test_on_a_narrow_terminal_words_are_wrapped():
-    text = render(COLUMNS, ROWS, 40)
+    text = render_table(COLUMNS, ROWS, 40)
     assert all(len(line) <= 40 and line == line.rstrip() for line in text.splitlines())
     assert " ".join(line[14:].strip() for line in text.splitlines()[1:-1]) == ROWS[0][3]
 
 
 def test_nothing_to_show_is_no_text():
-    assert render(COLUMNS, []) == ""
-    assert render([], [(), ()]) == ""
+    assert render_table(COLUMNS, []) == ""
+    assert render_table([], [(), ()]) == ""
 
 
 def test_markup_and_control_characters_are_shown_not_obeyed():
     row = ("[bold]x[/bold]", "\x1b[31m1", "", "a\x07\u202eb " * 30)
     for width in (None, 60):
-        text = render(COLUMNS, [row], width)
+        text = render_table(COLUMNS, [row], width)
         assert "[bold]x" in text and "\\u{1b}[31m1" in text
         assert all(c.isprintable() for c in text.replace("\n", ""))
-    assert clean("a\tb\nc\x00") == "a b c\\u{0}"
+    assert printable_text("a\tb\nc\x00") == "a b c\\u{0}"
 
 
 def test_wide_characters_keep_columns_aligned():
-    lines = render(
+    lines = render_table(
         [Column("a"), Column("b")], [("日本", "x"), ("e\u0301", "y")]
     ).splitlines()
     assert lines[2:] == ["日本  x", "e\u0301     y"]

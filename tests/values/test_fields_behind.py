@@ -7,7 +7,7 @@ import pytest
 from icdgen.loading import load
 from icdgen.values import encode
 from icdgen.values.errors import BadValue
-from icdgen.values.frame import frame
+from icdgen.values.frame import decoded_frame
 from tests.conformance import odd
 
 
@@ -32,7 +32,7 @@ def test_a_field_is_sent_behind_the_elements_that_are_given(
 ):
     given = encode.encode(icd, "behind", message, values)
     assert given.data == bytes.fromhex(expected)
-    assert frame(icd, given.node, given.message, given.data).rows == given.rows
+    assert decoded_frame(icd, given.node, given.message, given.data).rows == given.rows
 
 
 def test_a_field_behind_must_be_given(icd):

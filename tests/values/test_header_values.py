@@ -7,7 +7,7 @@ import pytest
 from icdgen.errors import UserError
 from icdgen.loading import load
 from icdgen.protocol import facts
-from icdgen.values.chosen import values_of
+from icdgen.values.chosen import chosen_values
 from tests.conftest import ROOT
 from tests.limits import assert_limits
 
@@ -17,7 +17,7 @@ FACTS = facts.of(ICD, ICD.nodes[0])
 
 def is_accepted(*texts: str) -> bool:
     try:
-        values_of(FACTS, texts)
+        chosen_values(FACTS, texts)
     except UserError:
         return False
     return True
@@ -25,8 +25,8 @@ def is_accepted(*texts: str) -> bool:
 
 def test_values_are_numbers_in_any_notation():
     chosen = ("source=9", " flags = 0x0A")
-    assert values_of(FACTS, chosen) == {"source": 9, "flags": 10}
-    assert values_of(FACTS, ()) == {}
+    assert chosen_values(FACTS, chosen) == {"source": 9, "flags": 10}
+    assert chosen_values(FACTS, ()) == {}
 
 
 def test_a_value_has_the_range_of_its_bits():
@@ -45,4 +45,4 @@ def test_a_value_has_the_range_of_its_bits():
 )
 def test_a_value_that_the_header_cannot_have_is_refused(text, words):
     with pytest.raises(UserError, match=words):
-        values_of(FACTS, [text])
+        chosen_values(FACTS, [text])

@@ -22,7 +22,7 @@ from icdgen.reports.excerpt import printable
 from icdgen.wording import listing
 
 if TYPE_CHECKING:
-    from icdgen.values.frame import Frame
+    from icdgen.values.frame import DecodedFrame
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -124,7 +124,7 @@ def format_option(*forms: str) -> Callable[[Command], Command]:
     )
 
 
-def print_frame(frame: Frame) -> None:
+def print_frame(frame: DecodedFrame) -> None:
     """Print a frame as a table."""
     from icdgen import tables
     from icdgen.values.text import to_text

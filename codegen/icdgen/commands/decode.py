@@ -152,9 +152,9 @@ def _is_message(
     """Return whether the first word is the name or id of a message, and not part of the
     frame.
     """
-    from icdgen.values.find import by_name
+    from icdgen.values.find import items_by_name
 
-    if not _is_bytes(words[0]) and by_name(messages, words[0], vocabulary):
+    if not _is_bytes(words[0]) and items_by_name(messages, words[0], vocabulary):
         return True
     return _is_id(words) and any(int(words[0]) in message.ids for message in messages)
 

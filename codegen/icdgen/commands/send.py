@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from icdgen.icd.model import Icd, Node
     from icdgen.protocol.facts import Facts
-    from icdgen.values.frame import Frame
+    from icdgen.values.frame import DecodedFrame
 
 # Exit status of each outcome. 2 is wrong usage, as of all commands. The classes are
 # named, because importing the runtime takes time that `--help` does not need.
@@ -98,7 +98,7 @@ def send(
     sys.exit(status)
 
 
-def _is_confirmed(frame: Frame) -> bool:
+def _is_confirmed(frame: DecodedFrame) -> bool:
     """Show a dangerous telecommand and ask for confirmation.
 
     Raises `UserError` without a terminal.
@@ -113,7 +113,7 @@ def _is_confirmed(frame: Frame) -> bool:
     return click.confirm("Send it?", err=True)
 
 
-def _sent(frame: Frame) -> str:
+def _sent(frame: DecodedFrame) -> str:
     """Return the message with its constants, such as magic numbers, which the user did
     not enter.
     """
@@ -129,28 +129,28 @@ def _sent(frame: Frame) -> str:
     return f"{frame.message.name} with {', '.join(constants)}"
 
 
-def _response(icd: Icd, node: Node, outcome: Outcome) -> Frame | None:
+def _response(icd: Icd, node: Node, outcome: Outcome) -> DecodedFrame | None:
     """Return the telemetry that completed or refused a telecommand on a framed link;
     None without one.
     """
     from icdgen_runtime.wire.events import Done, Refused
 
-    from icdgen.values.frame import frame
+    from icdgen.values.frame import decoded_frame
 
     if not isinstance(outcome, Done | Refused) or outcome.type is None:
         return None
     name = outcome.type.NAME
     message = next(each for each in icd.messages_of(node) if each.name == name)
-    return frame(icd, node, message, outcome.data)
+    return decoded_frame(icd, node, message, outcome.data)
 
 
 def _outcome_text(
     icd: Icd,
     node: Node,
     protocol_facts: Facts,
-    frame: Frame,
+    frame: DecodedFrame,
     outcome: Outcome,
-    response: Frame | None,
+    response: DecodedFrame | None,
 ) -> str:
     """Return the outcome of a telecommand in words."""
     from icdgen_runtime.wire.events import Busy, Done, Refused, Timeout

@@ -24,4 +24,6 @@ def units() -> None:
         (u.symbol, u.identifier, u.quantity, ", ".join(spellings.get(u.symbol, [])))
         for u in STANDARD.values()
     ]
-    click.echo(tables.render(columns, rows, tables.width_of(sys.stdout)), nl=False)
+    click.echo(
+        tables.render_table(columns, rows, tables.width_of(sys.stdout)), nl=False
+    )

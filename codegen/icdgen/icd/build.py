@@ -51,7 +51,7 @@ from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD, Unit
 
 
-class Scope:
+class NodeScope:
     """Enumerations, structs, units and vocabulary that a node and the nodes it includes
     declare.
     """
@@ -68,7 +68,7 @@ class Scope:
             self.vocabulary += node.vocabulary
 
 
-class Builder:
+class NodeBuilder:
     """Builds one node.
 
     ``broken`` has the `id()` of each mapping that violates the schema; the model omits
@@ -76,7 +76,7 @@ class Builder:
     """
 
     def __init__(
-        self, tree: Map, applied: Applied, broken: set[int], scope: Scope
+        self, tree: Map, applied: Applied, broken: set[int], scope: NodeScope
     ) -> None:
         self.tree, self.applied, self.broken, self.scope = tree, applied, broken, scope
         self.name = ""
@@ -253,7 +253,7 @@ class Builder:
                 (key, str(why)) for key, why in (item.get("assumptions") or {}).items()
             ),
             contains=tuple(
-                model.Part(part["message"], part["at"])
+                model.ContainedMessage(part["message"], part["at"])
                 for part in self.items("contains", item)
             ),
             reserved=item.get("reserved", 0),

@@ -32,7 +32,7 @@ OUTSIDE = (CLAMP, EXTRAPOLATE, REFUSE)
 Points = tuple[tuple[float, float], ...]
 
 
-class Piece(NamedTuple):
+class CurvePiece(NamedTuple):
     """Polynomial from raw value ``start`` on: terms[0] + t*(terms[1] + t*(...)), where
     t = raw - start.
 
@@ -46,7 +46,7 @@ class Piece(NamedTuple):
 class Curve(NamedTuple):
     """Conversion of raw values to physical values in doubles."""
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[CurvePiece, ...]
     points: Points = ()  # of a lookup table: (raw, physical)
     # Of a lookup table: CLAMP, EXTRAPOLATE, REFUSE, or empty if no raw value is
     # outside.
@@ -59,7 +59,7 @@ class Curve(NamedTuple):
 
     @property
     def plain(self) -> dict[str, Any]:
-        """All attributes as values for JSON; `of_plain` converts them back."""
+        """All attributes as values for JSON; `curve_of_plain` converts them back."""
         if self.points:
             return {"points": list(map(list, self.points))} | (
                 {"outside": self.outside} if self.outside else {}
@@ -141,7 +141,7 @@ _START = itemgetter(0)
 
 def polynomial(coefficients: Sequence[float]) -> Curve:
     """Return the curve of a polynomial with these coefficients, the constant first."""
-    return Curve((Piece(0.0, tuple(coefficients)),))
+    return Curve((CurvePiece(0.0, tuple(coefficients)),))
 
 
 def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
@@ -167,7 +167,7 @@ def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
                 f"{problem}: list points in the order of their raw values, each once"
             )
     lines = [
-        Piece(x0, (y0, _slope(x0, y0, x1, y1)))
+        CurvePiece(x0, (y0, _slope(x0, y0, x1, y1)))
         for (x0, y0), (x1, y1) in pairwise(points)
     ]
     # The pieces outside of the points are a constant (clamp), nothing (refuse), or
@@ -177,19 +177,22 @@ def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
     # point itself the later piece applies. The last point is valid itself, so refused
     # values begin at the next double.
     (first, low), (last, high) = points[0], points[-1]
-    before_first: dict[str, list[Piece]] = {
-        CLAMP: [Piece(first, (low,))],
-        REFUSE: [Piece(first, ())],
+    before_first: dict[str, list[CurvePiece]] = {
+        CLAMP: [CurvePiece(first, (low,))],
+        REFUSE: [CurvePiece(first, ())],
     }
     behind_last = {
-        CLAMP: [Piece(last, (high,))],
-        REFUSE: [Piece(last, (high,)), Piece(math.nextafter(last, math.inf), ())],
+        CLAMP: [CurvePiece(last, (high,))],
+        REFUSE: [
+            CurvePiece(last, (high,)),
+            CurvePiece(math.nextafter(last, math.inf), ()),
+        ],
     }
-    end = behind_last.get(outside, [Piece(last, (high, lines[-1].terms[1]))])
+    end = behind_last.get(outside, [CurvePiece(last, (high, lines[-1].terms[1]))])
     return Curve((*before_first.get(outside, []), *lines, *end), tuple(points), outside)
 
 
-def of_plain(plain: Mapping[str, Any]) -> Curve | None:
+def curve_of_plain(plain: Mapping[str, Any]) -> Curve | None:
     """Return the curve from the result of `Curve.plain`; None if it has no curve.
 
     Raises `icdgen.icd.formula.FormulaError`.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from icdgen import fingerprints
 from icdgen.diagnostics import Finding, Findings, Fix, Lines, Place, in_order
 from icdgen.icd import errata, folders, source
-from icdgen.icd.build import Builder, Scope
+from icdgen.icd.build import NodeBuilder, NodeScope
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node, closure
@@ -163,8 +163,8 @@ class _Loader:
         for included_node in included:
             digest.update(included_node.digest.encode())
         names = tuple(dict.fromkeys(included_node.name for included_node in included))
-        node = Builder(
-            tree, applied, self.broken, Scope(closure(self.nodes, names))
+        node = NodeBuilder(
+            tree, applied, self.broken, NodeScope(closure(self.nodes, names))
         ).node(names, digest.hexdigest())
         if node is not None:
             self.nodes.append(node)

@@ -61,7 +61,7 @@ class Struct:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ContainedMessage:
     """A message whose frame a composite message contains, from bit ``at`` on."""
 
     message: str
@@ -94,7 +94,7 @@ class Message:
     repeat: bool = False
     hazard: str = ""  # irreversible effect of sending the message
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of each assumption
-    contains: tuple[Part, ...] = ()
+    contains: tuple[ContainedMessage, ...] = ()
     requested: bool = True  # telemetry: whether a packet with its id requests it
     period_ms: int | None = None  # nominal, of telemetry that is sent unasked
     reserved: int = 0  # reserved bytes at the end
@@ -255,7 +255,7 @@ def merged_protocols(protocols: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     for protocol in protocols:
         both = {
             key: merge(merged[key], protocol[key])
-            for key, merge in (("link", _merged_links), ("procedures", _by_name))
+            for key, merge in (("link", _merged_links), ("procedures", _merged_by_name))
             if key in merged and key in protocol
         }
         merged |= {**protocol, **both}
@@ -270,14 +270,14 @@ def _merged_links(earlier: Any, later: Any) -> Any:
             key: earlier[key] for key in ("client", "checksums") if key in earlier
         }
     both = {
-        key: _by_name(earlier[key], later[key])
+        key: _merged_by_name(earlier[key], later[key])
         for key in ("checksums", "buses", "packets")
         if key in earlier and key in later
     }
     return {**earlier, **later, **both}
 
 
-def _by_name(earlier: Any, later: Any) -> Any:
+def _merged_by_name(earlier: Any, later: Any) -> Any:
     is_mapping = isinstance(earlier, dict) and isinstance(later, dict)
     return {**earlier, **later} if is_mapping else later
 

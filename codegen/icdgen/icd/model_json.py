@@ -18,12 +18,12 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.icd import layout, model
-from icdgen.icd.curve import Curve, Piece
+from icdgen.icd.curve import Curve, CurvePiece
 from icdgen.icd.derived import Derivation, Operation
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
-_TUPLES = (Scale, Curve, Piece, Derivation, Operation, Unit)
+_TUPLES = (Scale, Curve, CurvePiece, Derivation, Operation, Unit)
 _SCALARS = frozenset((str, int, bool, float, type(None)))
 _CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind

@@ -189,7 +189,7 @@ class NodePlace(OfScalar):
             f"{self.name} is not a single struct"
         )
         return tuple(
-            _place(node, self.declared_orders, self.at, self.steps)
+            _place_of_node(node, self.declared_orders, self.at, self.steps)
             for node in self.struct.fixed
         )
 
@@ -256,15 +256,15 @@ def places_of(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
 def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
     orders = layout.orders.within(outer)
     places = [
-        _place(node, orders, smallest_raw=layout.smallest_raw(node.name))
+        _place_of_node(node, orders, smallest_raw=layout.smallest_raw(node.name))
         for node in layout.fixed
     ]
     end, parts = 8 * layout.length, iter(layout.parts)
     for node in layout.sequence:
         if not is_variable(node):
             # In the ICD, `at` of these nodes is the end of the fixed part, which
-            # `_place` adds.
-            places.append(_place(node, orders, end - node.at))
+            # `_place_of_node` adds.
+            places.append(_place_of_node(node, orders, end - node.at))
             end += bits_of_node(node)
             continue
         part, size, at = next(parts), size_of(node), end
@@ -289,11 +289,13 @@ def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
                     is_count=True,
                 )
             )
-    places += (_place(node, UNDECLARED, 8 * layout.longest) for node in layout.derived)
+    places += (
+        _place_of_node(node, UNDECLARED, 8 * layout.longest) for node in layout.derived
+    )
     return tuple(places)
 
 
-def _place(
+def _place_of_node(
     node: LayoutNode,
     orders: Orders,
     begin: int = 0,

@@ -32,7 +32,7 @@ from icdgen.link.outcomes import failure_text, outcome_report
 from icdgen.protocol import facts
 from icdgen.tables import Column
 from icdgen.values.find import find_message, find_node
-from icdgen.values.frame import Frame, frame
+from icdgen.values.frame import DecodedFrame, decoded_frame
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Event
@@ -221,7 +221,7 @@ class Monitor:
         reports, self._reports = self._reports, []
         return reports
 
-    def frames(self) -> Iterator[Frame]:
+    def frames(self) -> Iterator[DecodedFrame]:
         """Return the received frames of messages that are not silent."""
         yield from (
             self._frame(name, self.last[name])
@@ -229,9 +229,9 @@ class Monitor:
             if name in self.last and name not in self.silent
         )
 
-    def _frame(self, name: str, data: bytes) -> Frame:
+    def _frame(self, name: str, data: bytes) -> DecodedFrame:
         message = next(m for m in self.icd.messages_of(self.node) if m.name == name)
-        return frame(self.icd, self.node, message, data)
+        return decoded_frame(self.icd, self.node, message, data)
 
     def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
         """Return message, field, value, unit and remarks of each row.
@@ -269,7 +269,9 @@ class Monitor:
         """Return the table for a pipe, or for a single round."""
         columns = [Column(title, right=title == "value") for title in COLUMNS]
         rows = list(self.rows())
-        table = tables.render(columns, rows, tables.width_of(sys.stdout)).rstrip("\n")
+        table = tables.render_table(columns, rows, tables.width_of(sys.stdout)).rstrip(
+            "\n"
+        )
         if not rows:
             table = "nothing came"
         return "\n".join(filter(None, (table, self.statistics.text())))

@@ -14,7 +14,7 @@ import click
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd
-from icdgen.values.chosen import values_of
+from icdgen.values.chosen import chosen_values
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.session import BusSession
@@ -108,7 +108,7 @@ def open_session(
     settings = link.settings._replace(
         **{key: value for key, value in options.items() if value is not None}
     )
-    values = values_of(facts, chosen)
+    values = chosen_values(facts, chosen)
     with session(
         link,
         open_port(port, icd.protocol_of(node)),

@@ -8,7 +8,7 @@ from icdgen_runtime.wire.events import Busy, Outcome, Refused, Timeout
 
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.responses import declared_responses, echoes_of, reason_of
-from icdgen.values.frame import Frame
+from icdgen.values.frame import DecodedFrame
 
 
 def failure_text(outcome: Refused | Busy) -> str:
@@ -25,7 +25,7 @@ def failure_text(outcome: Refused | Busy) -> str:
 
 
 def outcome_report(
-    message: str, outcome: Outcome, response: Frame | None
+    message: str, outcome: Outcome, response: DecodedFrame | None
 ) -> dict[str, Any]:
     """Return the outcome of a request of ``message`` as JSON, without the keys that this
     kind of outcome does not have.

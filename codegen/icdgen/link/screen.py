@@ -16,7 +16,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from icdgen.link.live import COLUMNS, Monitor
-from icdgen.tables import clean
+from icdgen.tables import printable_text
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions
@@ -126,7 +126,7 @@ class Screen:
         for row in list(self.monitor.rows()):
             name = row[0] or name
             style = "red" if name in self.monitor.silent else ""
-            table.add_row(*(Text(clean(cell), style=style) for cell in row))
+            table.add_row(*(Text(printable_text(cell), style=style) for cell in row))
         return table
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from icdgen.describe.numbers import byte_count
 from icdgen.logfile.recording import Recording, Tally
 from icdgen.logfile.source import LogSource, time_text
-from icdgen.tables import Column, clean, render
+from icdgen.tables import Column, printable_text, render_table
 
 _NAMES = ("frame", "message")
 _COLUMNS = [
@@ -39,9 +39,9 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
     times = sum(tally.messages.values())
     messages = f"{times:,} message{'' if times == 1 else 's'}"
     head = f"{recording.path}: {recording.direction} of {owner}, {size}, {messages}"
-    text = clean(head) + "\n"
+    text = printable_text(head) + "\n"
     if rows:
-        text += "\n" + render(_MESSAGES, rows, width)
+        text += "\n" + render_table(_MESSAGES, rows, width)
     return text + "".join(f"\nnote: {note}\n" for note in tally.notes())
 
 
@@ -70,9 +70,11 @@ def to_text(source: LogSource, width: int | None) -> str:
                 str(fields),
             )
         )
-    text = "".join(clean(line) + "\n" for line in lines)
+    text = "".join(printable_text(line) + "\n" for line in lines)
     text += "\n"
-    text += render(_COLUMNS, rows, width) if rows else "The mask selects no frame.\n"
+    text += (
+        render_table(_COLUMNS, rows, width) if rows else "The mask selects no frame.\n"
+    )
     return text + "".join(
         f"\nnote: {note}\n" for note in source.notes(source.integrity)
     )

@@ -23,7 +23,7 @@ from icdgen.recognize.selected import selected_message
 from icdgen.recognize.selection import Selection, selection_of
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
 from icdgen.values.find import KINDS, find_node
-from icdgen.values.frame import frame
+from icdgen.values.frame import decoded_frame
 
 
 def recognize(
@@ -321,7 +321,7 @@ def _decoded(icd: Icd, reading: FrameReading) -> FrameReading:
     """Return a reading with its decoded frame, if it has data."""
     if reading.what not in KINDS:
         return reading
-    decoded = frame(icd, reading.endpoint.node, reading.message, reading.data)
+    decoded = decoded_frame(icd, reading.endpoint.node, reading.message, reading.data)
     return replace(
         reading, frame=replace(decoded, remarks=(*reading.remarks, *decoded.remarks))
     )

@@ -30,7 +30,7 @@ from icdgen.recognize.reading import (
 from icdgen.recognize.selection import Selection
 from icdgen.runtime_objects.links import responses_on
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
-from icdgen.values.find import KINDS, describe
+from icdgen.values.find import KINDS, kind_and_ids
 
 T = TypeVar("T")
 SplitId = tuple[Endpoint, tuple[int, bytes]]  # an id, and the bytes after it
@@ -271,7 +271,7 @@ def data_error(parts: Sequence[SplitId], unknown: NotFound) -> BadLength | NotFo
             if error is not None:
                 return error
     listed = " or ".join(
-        f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}"
+        f"`{m.name}` ({kind_and_ids(m, s.facts.stream)}) has {length_text(m)}"
         for s, m, _, _ in candidates.values()
     )
     _, first, id, data = next(iter(candidates.values()))
@@ -290,7 +290,7 @@ def data_error(parts: Sequence[SplitId], unknown: NotFound) -> BadLength | NotFo
 def no_shared_message_error(messages: Sequence[Message], data: str) -> NotFound:
     """Return the error for data that matches none of several messages that share an id."""
     listed = ", ".join(
-        f"`{message.name}` ({describe(message)}, {length_text(message)})"
+        f"`{message.name}` ({kind_and_ids(message)}, {length_text(message)})"
         for message in messages
     )
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"

@@ -19,8 +19,8 @@ from icdgen.icd.variants import Ids, ids_of
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
 from icdgen.runtime_objects.links import link_of, responses_on
-from icdgen.values.find import KINDS, describe
-from icdgen.values.frame import Frame
+from icdgen.values.find import KINDS, kind_and_ids
+from icdgen.values.frame import DecodedFrame
 
 TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = (
     "telecommand",
@@ -89,7 +89,7 @@ class FrameReading:
     message: Message
     id: int | None = None
     data: bytes = b""
-    frame: Frame | None = None
+    frame: DecodedFrame | None = None
     error: int | None = None
     checked: bool = False
     remarks: tuple[str, ...] = ()
@@ -112,8 +112,8 @@ class FrameReading:
     def title(self) -> str:
         """Description for a report, such as ``request for Attitude (telemetry 146)``."""
         endpoint = self.endpoint
-        kind_and_ids = describe(self.message, endpoint.facts.stream)
-        described = f"`{self.message.name}` ({kind_and_ids}) of {endpoint.node.name}"
+        description = kind_and_ids(self.message, endpoint.facts.stream)
+        described = f"`{self.message.name}` ({description}) of {endpoint.node.name}"
         if self.what in KINDS:
             return described
         text = f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"

@@ -25,7 +25,7 @@ from icdgen.icd.layout import Array, Counted, VariablePart
 from icdgen.icd.lines import Line, lines
 from icdgen.icd.model import Message, Node, Struct
 from icdgen.icd.places import NodePlace
-from icdgen.tables import Column, render
+from icdgen.tables import Column, render_table
 
 _COLUMNS = [
     *(Column(title, right=True, fixed=True) for title in ("offset", "bits")),
@@ -49,7 +49,9 @@ def field_table(message: Message | Struct, node: Node, width: int | None = None)
         (gap.at, (str(gap.at), str(gap.bits), *reserved))
         for gap in frame_bits.reserved_bits(message, node)
     ]
-    return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
+    return render_table(
+        _COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width
+    )
 
 
 def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:

@@ -31,9 +31,15 @@ from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.protocol import facts as protocol_facts
 from icdgen.show.fields import field_table
-from icdgen.tables import Column, clean, render
+from icdgen.tables import Column, printable_text, render_table
 from icdgen.values.errors import NotFound
-from icdgen.values.find import by_name, describe, find_message, find_named, find_node
+from icdgen.values.find import (
+    find_message,
+    find_named,
+    find_node,
+    items_by_name,
+    kind_and_ids,
+)
 from icdgen.wording import count
 
 _RESPONSES = {
@@ -94,7 +100,7 @@ def to_text(
 
 def _nodes(icd: Icd, width: int | None) -> str:
     """Return the table of all nodes."""
-    return render(_NODES, [_row_of_node(node) for node in icd.nodes], width)
+    return render_table(_NODES, [_row_of_node(node) for node in icd.nodes], width)
 
 
 def _row_of_node(node: Node) -> tuple[str, ...]:
@@ -153,7 +159,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
                 message.node if message.node != node.name else "",
             )
         )
-    text += "\n" + render(_MESSAGES, rows, width) if rows else ""
+    text += "\n" + render_table(_MESSAGES, rows, width) if rows else ""
     if node.enums:
         text += "\n" + _lines(
             [f"Enumerations: {', '.join(enum.name for enum in node.enums)}"], width
@@ -182,8 +188,8 @@ def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) 
             enums += owner.enums
             structs += owner.structs
             errata += owner.errata
-        enums = by_name(enums, name, node.vocabulary)
-        structs = by_name(structs, name, node.vocabulary)
+        enums = items_by_name(enums, name, node.vocabulary)
+        structs = items_by_name(structs, name, node.vocabulary)
         errata = [each for each in errata if each.id.casefold() == name.casefold()]
         if enums:
             texts = [_enum(enum, width) for enum in enums]
@@ -223,7 +229,7 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
     # An id that is written as its bytes, `01 35`, is hexadecimal already.
     in_hex = "/".join(f"{id:0{2 * size(node.id_bits)}X}" for id in message.ids)
     facts = [
-        describe(message, form) + ("" if pair_bytes(form) else f" (hex {in_hex})"),
+        kind_and_ids(message, form) + ("" if pair_bytes(form) else f" (hex {in_hex})"),
         length_text(message),
         f"the last {message.reserved} reserved" if message.reserved else "",
         f"table {message.table}" if message.table else "",
@@ -279,7 +285,7 @@ def _enum(enum: Enum, width: int | None) -> str:
         (member.values, ", ".join((member.name, *member.aliases)), member.summary)
         for member in enum.members
     ]
-    table = render(
+    table = render_table(
         [Column("value", right=True, fixed=True), Column("name"), Column("meaning")],
         members,
         width,
@@ -327,7 +333,7 @@ def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
     omitted.
     """
     text = ""
-    for paragraph in map(clean, filter(None, lines)):
+    for paragraph in map(printable_text, filter(None, lines)):
         wrapped = [paragraph]
         if width is not None:
             wrapped = textwrap.wrap(paragraph, max(width - len(indent), 20)) or wrapped

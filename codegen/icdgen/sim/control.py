@@ -22,10 +22,10 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.values import raw_of
-from icdgen.values.encode import listed
-from icdgen.values.entry import typed
+from icdgen.values.encode import texts_of_elements
+from icdgen.values.entry import parse_value
 from icdgen.values.errors import BadValue, NotFound
-from icdgen.values.find import by_name, find_array, find_field, find_message
+from icdgen.values.find import find_array, find_field, find_message, items_by_name
 
 Wave = Mapping[str, Any]  # keys of a script
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -166,7 +166,7 @@ def fields_of(
     vocabulary = icd.node(message.node).vocabulary
     fields = icd.longest_frame(message)
     elements = find_array(fields, key, vocabulary)
-    nodes = by_name(message.layout.sequence, key, vocabulary)
+    nodes = items_by_name(message.layout.sequence, key, vocabulary)
     node_of_array: LayoutNode | None = None
     if nodes:
         node_of_array = nodes[0]
@@ -181,7 +181,11 @@ def fields_of(
         return [(message, find_field(message, fields, key, vocabulary), value)]
     if isinstance(value, Mapping):
         return [(message, element, value) for element in elements]
-    texts = [] if is_none else listed(key, str(value), len(elements), part is not None)
+    texts = (
+        []
+        if is_none
+        else texts_of_elements(key, str(value), len(elements), part is not None)
+    )
     result: list[tuple[Message, FrameField, object]] = [
         (message, element, text) for element, text in zip(elements, texts, strict=False)
     ]
@@ -216,7 +220,7 @@ def raw_value_of(message: Message, field: FrameField, value: object) -> int | by
     text = str(value)
     if isinstance(value, bool):
         text = text.lower()  # `True` and `False` are no values of an ICD
-    raw = typed(field, text)
+    raw = parse_value(field, text)
     if (
         isinstance(raw, int)
         and field.type != "float"

@@ -21,7 +21,7 @@ from icdgen.protocol import facts
 from icdgen.protocol.procedures import Procedure, Send, Value
 from icdgen.runtime_objects.links import link_of
 from icdgen.sim.values import number_places
-from icdgen.values.entry import from_physical
+from icdgen.values.entry import parse_physical
 
 
 def read_file(icd: Icd, node: Node, text: str) -> tuple[str, Key, Object]:
@@ -79,7 +79,7 @@ def _number(icd: Icd, procedure: Procedure, register: int, text: str) -> int | N
             if put.value != Value(register, True):
                 continue
             index = number_places(icd, step.message).index(put.place)
-            number = from_physical(icd.longest_frame(step.message)[index], text)
+            number = parse_physical(icd.longest_frame(step.message)[index], text)
             assert isinstance(number, int)
             return number if 0 <= number < 1 << put.place.bits else None
     return None

@@ -26,7 +26,7 @@ from icdgen.sim.refusals import refusal_code
 from icdgen.sim.settings import SimulationSettings
 from icdgen.sim.storage import DeviceStorage
 from icdgen.sim.values import Values, number_places
-from icdgen.values.frame import violations
+from icdgen.values.frame import violations_of_value
 
 Raw = dict[str, "int | bytes"]
 
@@ -174,7 +174,7 @@ class Program:
                 continue  # bytes, or an absent optional field
             if self.settings.strict:
                 is_special = codec.special_of(field, value) is not None
-                is_invalid = bool(violations(field, value)) and not is_special
+                is_invalid = bool(violations_of_value(field, value)) and not is_special
             else:
                 is_invalid = field.const is not None and value != field.const
             if is_invalid:

@@ -27,7 +27,7 @@ from icdgen.sim.framed_line import FramedLine
 from icdgen.sim.line import UartLine
 from icdgen.sim.settings import SimulationSettings
 from icdgen.sim.storage import DeviceStorage
-from icdgen.values.chosen import values_of
+from icdgen.values.chosen import chosen_values
 from icdgen.values.find import find_node, is_part
 
 Transport = tuple[Any, ...]  # name of a function of `serve`, and its arguments
@@ -115,7 +115,7 @@ def build_device(
         every_ms=None if options.every is None else round(options.every * 1000),
     )
     line_faults = Faults(Random(options.seed), late_ms=options.late)
-    chosen = values_of(facts.of(icd, node), options.chosen)
+    chosen = chosen_values(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
     line: DeviceLine
     if computer.program.facts.stream:

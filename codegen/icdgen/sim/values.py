@@ -17,7 +17,7 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.responses import field_of
 from icdgen.protocol.exchange import NumberPlace
 from icdgen.protocol.responding import place_of
-from icdgen.values.frame import violations
+from icdgen.values.frame import violations_of_value
 
 
 def number_places(icd: Icd, message: Message) -> list[NumberPlace | None]:
@@ -126,7 +126,9 @@ def _allowed_value(message: Message, field: FrameField) -> int | bytes:
     if field.is_bytes:
         return bytes(field.bits // 8)
     for raw in _candidates(field):
-        if field.raw_min <= raw <= field.raw_max and not violations(field, raw):
+        if field.raw_min <= raw <= field.raw_max and not violations_of_value(
+            field, raw
+        ):
             return raw
     return codec.initial_value(message, field)
 

@@ -9,7 +9,7 @@ from icdgen.protocol.facts import Facts
 from icdgen.values import numbers
 
 
-def values_of(facts: Facts, chosen: Sequence[str]) -> dict[str, int]:
+def chosen_values(facts: Facts, chosen: Sequence[str]) -> dict[str, int]:
     """Return the values of fields of the framing by role, from texts ``ROLE=NUMBER``.
 
     Raises `icdgen.errors.UserError`.

@@ -17,10 +17,26 @@ from icdgen.icd.frames import FrameField
 from icdgen.icd.layout import VariablePart, is_variable, struct_layout_of
 from icdgen.icd.model import Icd, Message
 from icdgen.values import numbers
-from icdgen.values.entry import members, out_of_range, typed, without_unit
+from icdgen.values.entry import (
+    members_text,
+    out_of_range_text,
+    parse_value,
+    without_unit,
+)
 from icdgen.values.errors import BadValue
-from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
-from icdgen.values.frame import Frame, frame, outside, unlisted
+from icdgen.values.find import (
+    find_array,
+    find_field,
+    find_message,
+    find_node,
+    items_by_name,
+)
+from icdgen.values.frame import (
+    DecodedFrame,
+    decoded_frame,
+    reasons_not_listed,
+    reasons_out_of_limits,
+)
 
 _EACH = "give each field as name=value"
 
@@ -32,7 +48,7 @@ def encode(
     assignments: list[str],
     raw: bool = False,
     kind: str | None = None,
-) -> Frame:
+) -> DecodedFrame:
     """Return the frame of a message from ``name=value`` texts.
 
     Values are physical, or raw with ``raw``.
@@ -49,7 +65,7 @@ def encode(
     is_empty = False  # a variable-length array is explicitly empty
     for assignment in assignments:
         with errors.collect():
-            pairs = split(message, fields, assignment, node.vocabulary)
+            pairs = split_assignment(message, fields, assignment, node.vocabulary)
             is_empty = is_empty or not pairs
             for field, text in pairs:
                 if field.name in given:
@@ -78,24 +94,24 @@ def encode(
         elements = [field for field in fields if field.steps[0].node is part.node]
         missing = _without_elements(part, elements, missing, given, is_empty)
         with errors.collect():
-            _count(part, elements, given, values)
+            _set_counter(part, elements, given, values)
         for inner in part.inner:
             missing = [name for name in missing if name != inner.counter]
             with errors.collect():
-                _count_inner(part, inner, elements, given, values)
+                _set_inner_counter(part, inner, elements, given, values)
     # A field that seems to be missing may have been given under a wrong name.
     if not has_wrong_names:
         with errors.collect():
-            _require(missing)
+            _require_values(missing)
     errors.report(
         f"`icdgen show {node.name} {shlex.quote(message.name)}` lists the values of each field"
     )
-    return frame(
+    return decoded_frame(
         icd, node, message, codec.encode(icd.node(message.node), message, values), notes
     )
 
 
-def _require(names: list[str]) -> None:
+def _require_values(names: list[str]) -> None:
     """Raise `BadValue` if there are names of fields without a value."""
     if names:
         raise BadValue(
@@ -164,7 +180,7 @@ def _without_elements(
     """Return the missing names, with the name of a variable-length part instead of the
     names of its elements.
 
-    If an element or the counter is given, the part is not missing, and `_count` checks
+    If an element or the counter is given, the part is not missing, and `_set_counter` checks
     the elements.
     """
     names = {field.name for field in elements}
@@ -173,7 +189,7 @@ def _without_elements(
     return missing if is_given else [*missing, part.name]
 
 
-def _count(
+def _set_counter(
     part: VariablePart,
     elements: list[FrameField],
     given: dict[str, str],
@@ -211,7 +227,7 @@ def _count(
             if (field.steps[0].element or 0) < count
             and not any(step.node is node for step in field.steps for node in nested)
         )
-        _require(
+        _require_values(
             [
                 field.name
                 for field in present
@@ -231,7 +247,7 @@ def _count(
         )
 
 
-def _count_inner(
+def _set_inner_counter(
     part: VariablePart,
     inner: VariablePart,
     fields: list[FrameField],
@@ -269,7 +285,7 @@ def _count_inner(
         for f in nested
         if f.steps[0].element in outer and (f.steps[1].element or 0) < count
     )
-    _require(
+    _require_values(
         [
             field.name
             for field in present
@@ -278,7 +294,7 @@ def _count_inner(
     )
 
 
-def split(
+def split_assignment(
     message: Message,
     fields: Sequence[FrameField],
     assignment: str,
@@ -304,9 +320,11 @@ def split(
     elements = find_array(fields, name.strip(), vocabulary)
     if elements:
         has_variable_length = is_variable(elements[0].steps[0].node)
-        texts = listed(name.strip(), text, len(elements), has_variable_length)
+        texts = texts_of_elements(
+            name.strip(), text, len(elements), has_variable_length
+        )
         return list(zip(elements[: len(texts)], texts, strict=True))
-    structs = by_name(
+    structs = items_by_name(
         [node for node in message.layout.nodes if struct_layout_of(node)],
         name,
         vocabulary,
@@ -325,7 +343,7 @@ def split(
     return [(find_field(message, fields, name.strip(), vocabulary), text.strip())]
 
 
-def listed(
+def texts_of_elements(
     name: str, text: str, count: int, has_variable_length: bool = False
 ) -> list[str]:
     """Return the texts of the elements of an array, from ``[1, 2.5, 3]``.
@@ -369,10 +387,10 @@ def _values(
             continue
         text = given[field.name]
         with errors.collect(f"{field.name}: "):
-            values[field.name] = value = typed(field, text, raw)
+            values[field.name] = value = parse_value(field, text, raw)
             if isinstance(value, bytes):
                 continue
-            _check(field, value, text, raw)
+            _check_allowed(field, value, text, raw)
             # A value with a formula is rounded to the nearest raw value, which the user
             # should know.
             if not raw:
@@ -393,7 +411,7 @@ def _differs(field: FrameField, raw: int, exact: Fraction) -> bool:
     return codec.physical(field, raw) != exact
 
 
-def _check(field: FrameField, value: int, text: str, raw: bool) -> None:
+def _check_allowed(field: FrameField, value: int, text: str, raw: bool) -> None:
     """Raise `BadValue` for a value that is out of range; a physical value must also
     satisfy constant, members and limits.
     """
@@ -405,9 +423,9 @@ def _check(field: FrameField, value: int, text: str, raw: bool) -> None:
     if is_in_range and codec.special_of(field, value):
         return
     help = "--raw encodes it anyway" if is_in_range else ""
-    if reasons := unlisted(field, value):
+    if reasons := reasons_not_listed(field, value):
         raise BadValue(
-            f"{text} is not allowed: {'; '.join(reasons)}{members(field)}", help
+            f"{text} is not allowed: {'; '.join(reasons)}{members_text(field)}", help
         )
-    if not is_in_range or outside(field, value):
-        raise BadValue(out_of_range(field, text), help)
+    if not is_in_range or reasons_out_of_limits(field, value):
+        raise BadValue(out_of_range_text(field, text), help)

@@ -12,13 +12,13 @@ from icdgen.icd.model import Enum, Member
 from icdgen.icd.places import AnyScalar
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
-from icdgen.values.find import by_name
+from icdgen.values.find import items_by_name
 from icdgen.values.hexadecimal import parse_hex
 
 _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "0": 0}
 
 
-def members(field: AnyScalar) -> str:
+def members_text(field: AnyScalar) -> str:
     """Return the members of the enumeration of a field, for the end of a message; empty
     without an enumeration.
     """
@@ -29,12 +29,12 @@ def members(field: AnyScalar) -> str:
     )
 
 
-def out_of_range(field: AnyScalar, text: str) -> str:
+def out_of_range_text(field: AnyScalar, text: str) -> str:
     """Return the message for a physical value that is out of range."""
     return f"takes {range_text(field) or f'{field.raw_min} to {field.raw_max}'}, not {text}"
 
 
-def raw_value(field: FrameField, text: str) -> int | bytes:
+def parse_raw(field: FrameField, text: str) -> int | bytes:
     """Return the raw value that a text gives directly; the bits of a float are
     ``0x...``.
 
@@ -55,7 +55,7 @@ def raw_value(field: FrameField, text: str) -> int | bytes:
     return value
 
 
-def from_physical(field: FrameField, text: str) -> int | bytes:
+def parse_physical(field: FrameField, text: str) -> int | bytes:
     """Return the raw value that is nearest to a physical value.
 
     Raises `BadValue`. Does not check the range.
@@ -64,7 +64,7 @@ def from_physical(field: FrameField, text: str) -> int | bytes:
     return _READERS.get(field.type, _integer)(field, text)
 
 
-def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
+def parse_value(field: FrameField, text: str, raw: bool = False) -> int | bytes:
     """Return the raw value of a physical value, or of a raw value with ``raw``.
 
     Raises `BadValue`.
@@ -74,7 +74,7 @@ def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
     has_variable_length = field.scalar.length is not None
     if has_variable_length and (raw or field.type == "bytes"):
         return _bytes(field, text)
-    value = (raw_value if raw else from_physical)(field, text)
+    value = (parse_raw if raw else parse_physical)(field, text)
     return (
         # The codec pads texts with NUL, but here the number of bytes sets the counter.
         value[: len(text)]
@@ -171,7 +171,7 @@ def _float(field: FrameField, text: str, raw: bool = False) -> int:
         if not raw and not all(
             bound.holds(_exact(field, text)) for bound in bounds_of_limits(field.limits)
         ):
-            raise BadValue(out_of_range(field, text)) from None
+            raise BadValue(out_of_range_text(field, text)) from None
         raise BadValue(
             f"{text} is beyond what a {field.bits}-bit float can represent"
         ) from None
@@ -206,7 +206,7 @@ def _on_curve(field: FrameField, text: str) -> int:
         return codec.raw_from_physical(field, _exact(field, text))
     except codec.CodecError as error:
         if field.is_invertible and range_text(field):
-            raise BadValue(out_of_range(field, text)) from None
+            raise BadValue(out_of_range_text(field, text)) from None
         help = "" if field.is_invertible else "--raw takes the raw value"
         raise BadValue(str(error).removeprefix(f"{field.name!r} "), help) from None
 
@@ -247,7 +247,7 @@ def _member(field: FrameField, enum: Enum, text: str) -> int:
     """
     number = numbers.integer(text)
     matches = {
-        member.values: member.value for member in by_name(enum.members, text, ())
+        member.values: member.value for member in items_by_name(enum.members, text, ())
     }
     if not matches and number is None:
         matches = {
@@ -265,7 +265,7 @@ def _member(field: FrameField, enum: Enum, text: str) -> int:
         problem = f"is {values}: give the number"
     else:
         problem = "fits several members" if matches else f"is no member of {enum.name}"
-    raise BadValue(f"`{text}` {problem}{members(field)}")
+    raise BadValue(f"`{text}` {problem}{members_text(field)}")
 
 
 def _has_words(member: Member, text: str) -> bool:

@@ -136,13 +136,15 @@ def find_message(
         if kind is None or is_of_kind(message, kind)
     ]
     # Names come first: a message can be called like an id of another one.
-    matches = by_name(messages, key, node.vocabulary) or _by_id(messages, key, kind)
+    matches = items_by_name(messages, key, node.vocabulary) or _by_id(
+        messages, key, kind
+    )
     if len(matches) == 1:
         return matches[0]
     if matches:
         form = facts.of(icd, node).stream
         listed = ", ".join(
-            f"`{message.name}` ({describe(message, form)})" for message in matches
+            f"`{message.name}` ({kind_and_ids(message, form)})" for message in matches
         )
         raise Ambiguous(
             f"`{key}` fits several messages of {node.name}: {listed}",
@@ -177,7 +179,7 @@ def find_sharing(
 def _by_id(messages: Sequence[Message], key: str, kind: str | None) -> list[Message]:
     """Return the messages with the id ``key``; an empty list if the key is not an id."""
     key = key.strip()
-    if _BYTES.fullmatch(key):  # bytes of an id, in the form that `describe` returns
+    if _BYTES.fullmatch(key):  # bytes of an id, in the form that `kind_and_ids` returns
         key = "0x" + re.sub("[ /]", "", key)
     if not _NUMBER.fullmatch(key):
         return []
@@ -197,7 +199,9 @@ def find_field(
     `fields` are all scalars of the longest frame of the message. Raises `NotFound` or
     `Ambiguous`, with suggestions.
     """
-    matches = by_name(fields, key, vocabulary) or _by_words(fields, key, vocabulary)
+    matches = items_by_name(fields, key, vocabulary) or _by_words(
+        fields, key, vocabulary
+    )
     if len(matches) == 1:
         return matches[0]
     if matches:
@@ -223,11 +227,11 @@ def find_array(
             arrays.append(ArrayOfFields((*before, PathStep(last.node)), []))
         if last.element is not None:
             arrays[-1].elements.append(field)
-    matches = by_name(arrays, key, vocabulary)
+    matches = items_by_name(arrays, key, vocabulary)
     return matches[0].elements if len(matches) == 1 else []
 
 
-def by_name(
+def items_by_name(
     items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]
 ) -> list[_Named]:
     """Return the items that a name matches, by the first of these comparisons that has
@@ -267,7 +271,7 @@ def is_of_kind(message: Message, kind: str) -> bool:
     return message.kind == kind
 
 
-def describe(message: Message, form: Stream | None = None) -> str:
+def kind_and_ids(message: Message, form: Stream | None = None) -> str:
     """Return kind and ids: ``telemetry 146``, ``configuration 120/247``, or ``telemetry
     01 35`` if ``form`` has id bytes.
     """
@@ -368,11 +372,13 @@ def _message_help(
     if kind is not None:
         with suppress(NotFound, Ambiguous):
             other = find_message(icd, node.name, key)
-            return f"`{other.name}` is {describe(other, facts.of(icd, node).stream)}"
+            return (
+                f"`{other.name}` is {kind_and_ids(other, facts.of(icd, node).stream)}"
+            )
     owners = [
         other
         for other in icd.nodes
-        if other is not node and by_name(other.messages, key, other.vocabulary)
+        if other is not node and items_by_name(other.messages, key, other.vocabulary)
     ]
     if owners:
         return f"it is a message of {' and '.join(owner.name for owner in owners)}"

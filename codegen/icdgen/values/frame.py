@@ -24,7 +24,7 @@ from icdgen.protocol.packet_formats import Stream
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class FieldValue:
     """Value of a field in a frame."""
 
     field: FrameField
@@ -138,7 +138,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class DecodedFrame:
     """A decoded frame."""
 
     # The node that the message was looked up in; an included node can declare the
@@ -146,13 +146,13 @@ class Frame:
     node: Node
     message: Message
     data: bytes
-    rows: tuple[Row, ...]
+    rows: tuple[FieldValue, ...]
     remarks: tuple[str, ...] = ()  # about the frame, not about one field
     # Framing of the node.
     form: Stream | None = dataclass_field(default=None, compare=False, repr=False)
 
     @property
-    def wrong_constants(self) -> list[Row]:
+    def wrong_constants(self) -> list[FieldValue]:
         """Constant fields with another value than their constant."""
         return [
             row
@@ -164,7 +164,7 @@ class Frame:
         """Return the frame as values for JSON.
 
         The keys are ``node``, ``message``, ``kind``, ``id`` (or ``set_id`` and
-        ``get_id``), ``length``, ``bytes`` and ``fields``, and ``remarks`` if there are
+        ``get_id``), ``length``, ``bytes`` and ``fields``, and ``remarks_on_value`` if there are
         any.
         """
         message = self.message
@@ -187,13 +187,13 @@ class Frame:
         return result | ({"remarks": list(self.remarks)} if self.remarks else {})
 
 
-def frame(
+def decoded_frame(
     icd: Icd,
     node: Node,
     message: Message,
     data: bytes,
     notes: dict[str, str] | None = None,
-) -> Frame:
+) -> DecodedFrame:
     """Decode ``data``.
 
     ``notes`` are further remarks by field name. Raises `codec.LengthError`.
@@ -208,15 +208,19 @@ def frame(
         raw = values[field.name]
         extra = (notes or {}).get(field.name)
         rows.append(
-            Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ())))
+            FieldValue(
+                field,
+                raw,
+                (*remarks_on_value(field, raw), *((extra,) if extra else ())),
+            )
         )
     form = facts.of(icd, node).stream
-    return Frame(
+    return DecodedFrame(
         node, message, data, tuple(rows), tuple(_reserved(owner, message, data)), form
     )
 
 
-def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
+def remarks_on_value(field: AnyScalar, raw: int | bytes) -> list[str]:
     """Return the remarks about a value: its special meaning, or why the ICD does not
     allow it.
     """
@@ -224,15 +228,15 @@ def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
         return []
     # A special value is allowed even if it is outside of the limits.
     special = codec.special_of(field, raw)
-    return violations(field, raw) if special is None else [special.meaning]
+    return violations_of_value(field, raw) if special is None else [special.meaning]
 
 
-def violations(field: AnyScalar, raw: int) -> list[str]:
+def violations_of_value(field: AnyScalar, raw: int) -> list[str]:
     """Return why the ICD does not allow a raw value: constants, members, limits."""
-    return [*unlisted(field, raw), *outside(field, raw)]
+    return [*reasons_not_listed(field, raw), *reasons_out_of_limits(field, raw)]
 
 
-def unlisted(field: AnyScalar, raw: int) -> list[str]:
+def reasons_not_listed(field: AnyScalar, raw: int) -> list[str]:
     """Return why a raw value differs from the constant, or from all members of the
     enumeration, of a field.
     """
@@ -244,7 +248,7 @@ def unlisted(field: AnyScalar, raw: int) -> list[str]:
     return reasons
 
 
-def outside(field: AnyScalar, raw: int) -> list[str]:
+def reasons_out_of_limits(field: AnyScalar, raw: int) -> list[str]:
     """Return the limits of a field that a raw value violates."""
     if field.limits is None:
         return []

@@ -116,7 +116,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     return MessageVectors(
         message=message,
         fields=fields,
-        default=codec.new(node, message),
+        default=codec.initial_object_values(node, message),
         rows=tuple(vectors),
         lengths=_refused_lengths(message),
         miscounted=tuple(_miscounted(node, message)),

@@ -97,7 +97,7 @@ class MessageWatch:
             return [
                 line
                 for line, row in pairs
-                if codec.derived(message, row.raw).get(now.name)
+                if codec.derived_values(message, row.raw).get(now.name)
                 != row.raw.get(now.name)
             ]
         lines = (

@@ -16,7 +16,7 @@ from icdgen.frozen import NamedTuple
 from icdgen.icd import floats
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, scalar_count
-from icdgen.tables import clean
+from icdgen.tables import printable_text
 from icdgen.vectors import patterns
 
 # Limits of the size of a page.
@@ -108,7 +108,7 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> ExampleCell:
         shown = raw.hex(" ").upper()
         content = codec.text(raw) if field.type == "text" else ""
         return ExampleCell(
-            shown if len(raw) <= 16 else f"{shown[:47]} …", clean(content)
+            shown if len(raw) <= 16 else f"{shown[:47]} …", printable_text(content)
         )
     if field.type == "float":
         value = floats.text_of(codec.float_value(field, raw), field.bits)

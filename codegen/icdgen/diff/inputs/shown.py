@@ -276,7 +276,7 @@ class _ShownNodeReader:
             response=item.get("response"),
             repeat=item.get("repeat", False),
             contains=tuple(
-                model.Part(part["message"], part["offset"])
+                model.ContainedMessage(part["message"], part["offset"])
                 for part in item.get("contains", ())
             ),
             node=node,
@@ -369,7 +369,7 @@ def _plain_values(kind: object, item: Map) -> dict[str, Any]:
 
 def _curve(item: Map) -> curve.Curve | None:
     try:
-        return curve.of_plain(item)
+        return curve.curve_of_plain(item)
     except FormulaError as error:
         raise Findings(
             [

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import Message, Node, Part
+from icdgen.icd.model import ContainedMessage, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
@@ -25,7 +25,7 @@ _KEYS = ("bits", "type", "enum", "unit", "formula", "points", "outside")
 _IDS = ("id", "set_id", "get_id")
 
 
-def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
+def _parts(ctx: Context) -> Iterator[tuple[Message, Node, ContainedMessage, Map]]:
     """Yield each part of each composite message, with the message, its node and the
     mapping of the part.
     """
