@@ -131,7 +131,7 @@ def measure_stages(manual: Path, profile: str | None) -> None:
     profiler.enable()
     _, trees = run.run(manual, words, jobs=1)
     for tree in trees.values():
-        emit.text(tree)
+        emit.canonical_yaml(tree)
     profiler.disable()
     statistics = pstats.Stats(profiler)
     time_by_function = {

@@ -132,7 +132,7 @@ def build(folder: Path) -> Path:
     dialect = import_module("pymavlink.dialects.v20.common")
     xml = Path(str(dialect.__file__)).with_suffix(".xml")
     (tree,) = run.read(xml, kinds.get("mavlink")).trees.values()
-    (folder / "common.yaml").write_text(emit.text(tree), encoding="utf-8")
+    (folder / "common.yaml").write_text(emit.canonical_yaml(tree), encoding="utf-8")
     for path, text in CBackend().files(
         load([folder / "common.yaml"]).icd, Renderer("c")
     ):

@@ -41,7 +41,7 @@ def load_checked(
         "model", os.getcwd(), *sorted(languages), "", *(str(path) for path in paths)
     )
     data = cache.recall(KIND, name)
-    remembered = model_json.read(data) if data is not None else None
+    remembered = model_json.model_of_json(data) if data is not None else None
     if remembered is not None:
         return Loaded(remembered[0], [], remembered[1])
     from icdgen.loading import load
@@ -54,5 +54,7 @@ def load_checked(
             os.path.abspath(path): fingerprint
             for path, fingerprint in loaded.inputs.items()
         }
-        cache.remember(KIND, name, model_json.text(loaded.icd, loaded.inputs), files)
+        cache.remember(
+            KIND, name, model_json.json_of_model(loaded.icd, loaded.inputs), files
+        )
     return loaded

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jinja2.runtime import Context
 
 
-class TemplateOwner(Protocol):
+class RenderedBackend(Protocol):
     """A backend, as far as `Renderer` needs it.
 
     It can also have the attributes ``templates`` and ``runtime``.
@@ -73,7 +73,7 @@ class Renderer:
         self._environment.context_class = _context_class()
 
     @classmethod
-    def of(cls, backend: TemplateOwner, override: Path | None = None) -> Renderer:
+    def of(cls, backend: RenderedBackend, override: Path | None = None) -> Renderer:
         """Return the renderer of a backend, with its own folders of templates and
         runtime if it has them.
         """

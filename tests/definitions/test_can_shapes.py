@@ -42,7 +42,7 @@ def field(read: run.Read, owner: str, name: str) -> dict:
 def model(read: run.Read, folder):
     """The ICD as `icdgen check` loads it, without a finding."""
     path = folder / f"{next(iter(read.trees))}.yaml"
-    path.write_text(emit.text(tree_of(read)), encoding="utf-8")
+    path.write_text(emit.canonical_yaml(tree_of(read)), encoding="utf-8")
     loaded = load([path])
     assert [one.message for one in loaded.findings] == []
     return loaded.icd.nodes[0]

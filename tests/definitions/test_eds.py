@@ -398,7 +398,7 @@ def test_an_error_control_behind_a_list_is_imported_behind_it(tmp_path):
     (tmp_path / "one.xml").write_text(sheet(LONG + container("A", entries)))
     read = run.read(tmp_path / "one.xml", eds.Eds())
     (tree,) = read.trees.values()
-    (tmp_path / "one.yaml").write_text(emit.text(tree))
+    (tmp_path / "one.yaml").write_text(emit.canonical_yaml(tree))
     loaded = load([tmp_path / "one.yaml"])
     assert loaded.ok, loaded.findings
     (node,) = loaded.icd.nodes

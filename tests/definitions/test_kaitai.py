@@ -248,7 +248,9 @@ def test_what_follows_parts_of_variable_size_is_read_behind_them(tmp_path):
     (tmp_path / "bad.ksy").write_text(text)
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     assert import_findings(read.definitions) == []
-    (tmp_path / "frame.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    (tmp_path / "frame.yaml").write_text(
+        emit.canonical_yaml(next(iter(read.trees.values())))
+    )
     loaded = load([tmp_path / "frame.yaml"])
     assert loaded.ok, loaded.findings
     (node,) = loaded.icd.nodes

@@ -88,14 +88,14 @@ def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "probe.xml").write_text(blocks("xml")[0])
     read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
     (tree,) = read.trees.values()
-    assert ends_as_shown(emit.text({"messages": tree["messages"]}), 2)
+    assert ends_as_shown(emit.canonical_yaml({"messages": tree["messages"]}), 2)
 
 
 def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "beacon.ksy").write_text(blocks("ksy")[0])
     read = run.read(tmp_path / "beacon.ksy", kinds.of(tmp_path / "beacon.ksy"))
     (tree,) = read.trees.values()
-    assert ends_as_shown(emit.text({"messages": tree["messages"]}), 3)
+    assert ends_as_shown(emit.canonical_yaml({"messages": tree["messages"]}), 3)
     assert read.definitions.import_findings == []
 
 
@@ -103,7 +103,7 @@ def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "meter.json").write_text(blocks("json")[0])
     read = run.read(tmp_path / "meter.json", kinds.of(tmp_path / "meter.json"))
     (tree,) = read.trees.values()
-    assert ends_as_shown(emit.text({"messages": tree["messages"]}), 4)
+    assert ends_as_shown(emit.canonical_yaml({"messages": tree["messages"]}), 4)
 
 
 @pytest.mark.needs("cc")
@@ -116,9 +116,9 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(
         (tmp_path / name).write_text(text)
     read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
     (tree,) = read.trees.values()
-    held = emit.text({key: tree[key] for key in ("structs", "messages")})
+    held = emit.canonical_yaml({key: tree[key] for key in ("structs", "messages")})
     assert read.definitions.import_findings == [] and held.endswith(blocks("yaml")[5])
-    (tmp_path / "heater.yaml").write_text(emit.text(tree))
+    (tmp_path / "heater.yaml").write_text(emit.canonical_yaml(tree))
     (tmp_path / "main.c").write_text(blocks("c")[2])
     generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"
     for command in (

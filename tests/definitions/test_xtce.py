@@ -503,7 +503,9 @@ def test_what_follows_what_a_parameter_counts_is_read_behind_it(tmp_path):
     (tmp_path / "one.xml").write_text(text)
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
     assert not read.failed
-    (tmp_path / "one.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    (tmp_path / "one.yaml").write_text(
+        emit.canonical_yaml(next(iter(read.trees.values())))
+    )
     loaded = load([tmp_path / "one.yaml"])
     assert loaded.ok, loaded.findings
     (node,) = loaded.icd.nodes

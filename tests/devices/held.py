@@ -90,7 +90,7 @@ def _imported(
                 **tree["protocol"],
                 "link": {**link, "checksums": checksums},
             }
-    file.write_text(emit.text(tree), encoding="utf-8")
+    file.write_text(emit.canonical_yaml(tree), encoding="utf-8")
     loaded = load([file])
     if not loaded.ok:
         raise ValueError(f"{file}: {loaded.findings}")

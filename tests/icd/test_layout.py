@@ -237,7 +237,7 @@ def test_layouts_of_an_icd_are_the_same_from_the_cache(tmp_path: Path):
     from icdgen.icd import model_json
 
     icd = read(ROOT / "examples" / "devices" / "ublox")
-    copy, _ = model_json.read(model_json.text(icd, {}))
+    copy, _ = model_json.model_of_json(model_json.json_of_model(icd, {}))
     assert copy == icd
     for node in copy.nodes:
         declared = {id(struct.layout) for struct in node.structs}

@@ -18,19 +18,19 @@ from icdgen.loading import load
 @pytest.fixture(scope="module")
 def kept() -> bytes:
     loaded = load([shipped.icds()])
-    return model_json.text(loaded.icd, loaded.inputs)
+    return model_json.json_of_model(loaded.icd, loaded.inputs)
 
 
 def test_the_shipped_icds_come_back_the_same(kept):
     loaded = load([shipped.icds()])
-    icd, inputs = model_json.read(kept)
+    icd, inputs = model_json.model_of_json(kept)
     assert (icd, inputs) == (loaded.icd, loaded.inputs)
     assert repr(icd) == repr(loaded.icd)  # 1 is not 1.0, and a tuple no list
-    assert model_json.text(icd, inputs) == kept
+    assert model_json.json_of_model(icd, inputs) == kept
 
 
 def test_what_two_fields_share_is_shared_again(kept):
-    icd, _ = model_json.read(kept)
+    icd, _ = model_json.model_of_json(kept)
     enums = {id(enum) for node in icd.nodes for enum in node.enums}
     used = {
         id(f.enum)
@@ -53,15 +53,15 @@ def test_what_two_fields_share_is_shared_again(kept):
 )  # fmt: skip
 def test_what_is_no_model_is_none(text):
     data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
-    assert model_json.read(data) is None
+    assert model_json.model_of_json(data) is None
 
 
 def test_every_torn_model_is_none_or_a_model(kept):
     for end in range(0, len(kept), 4099):
-        assert model_json.read(kept[:end]) is None
+        assert model_json.model_of_json(kept[:end]) is None
     rows = json.loads(kept)
     rows[0] = {"is": "Icd", "nodes": []}
-    assert model_json.read(json.dumps(rows).encode()) == (
+    assert model_json.model_of_json(json.dumps(rows).encode()) == (
         Icd(()),
         {Path(path): seen for path, seen in rows[1]},
     )

@@ -69,7 +69,9 @@ def back(table: Path, rules: Path | None, folder: Path) -> dict:
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
     folder.mkdir()
     (name,) = trees
-    (folder / f"{name}.yaml").write_text(emit.text(trees[name]), encoding="utf-8")
+    (folder / f"{name}.yaml").write_text(
+        emit.canonical_yaml(trees[name]), encoding="utf-8"
+    )
     return layouts(load([folder / f"{name}.yaml"], check=False).icd.nodes[0])
 
 

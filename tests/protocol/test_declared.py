@@ -78,7 +78,7 @@ def test_a_part_has_its_facts_in_the_order_in_which_they_are_declared():
     [(path, fact) for path, fact in FACTS if fact.key and fact.most is not None],
 )
 def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
-    section = schema.protocol()
+    section = schema.protocol_schema()
     for key in f"{path}.{fact.key}".split("."):
         section = (
             section["additionalProperties"]

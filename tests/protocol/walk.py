@@ -62,7 +62,7 @@ class Key(NamedTuple):
 
 def all_keys() -> list[Key]:
     """All keys of the protocol section that hold a value, by the JSON Schema."""
-    return list(_keys(schema.protocol(), ()))
+    return list(_keys(schema.protocol_schema(), ()))
 
 
 def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:

@@ -56,7 +56,7 @@ def _imported(files: list[Path], folder: Path) -> Icd:
     for read in run.read_set([(path, kinds.get("xtce")) for path in files]):
         for name, tree in read.trees.items():
             paths.append(folder / f"{name}.yaml")
-            paths[-1].write_text(emit.text(tree), encoding="utf-8")
+            paths[-1].write_text(emit.canonical_yaml(tree), encoding="utf-8")
     return load(paths).icd
 
 

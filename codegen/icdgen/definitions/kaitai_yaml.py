@@ -8,7 +8,7 @@ import re
 
 from icdgen.definitions.model import unreadable
 from icdgen.icd.located import Map
-from icdgen.icd.source import Builder, Event
+from icdgen.icd.source import Event, TreeBuilder
 
 _INTEGER = re.compile(
     r"[-+]?(?:0[xX][0-9A-Fa-f_]+|0[bB][01_]+|0[oO][0-7_]+|[0-9][0-9_]*)\Z"
@@ -67,7 +67,7 @@ def integer(text: str) -> int | None:
         return None
 
 
-class _Builder(Builder):
+class _Builder(TreeBuilder):
     """Builder of trees with the scalars of Kaitai Struct."""
 
     def scalar(self, event: Event) -> object:

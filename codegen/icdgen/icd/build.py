@@ -26,7 +26,7 @@ from icdgen.icd import (
 from icdgen.icd.derived import Derivation
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
-from icdgen.icd.errata import Applied
+from icdgen.icd.errata import AppliedErrata
 from icdgen.icd.layout import (
     UNDECLARED,
     Array,
@@ -76,7 +76,7 @@ class NodeBuilder:
     """
 
     def __init__(
-        self, tree: Map, applied: Applied, broken: set[int], scope: NodeScope
+        self, tree: Map, applied: AppliedErrata, broken: set[int], scope: NodeScope
     ) -> None:
         self.tree, self.applied, self.broken, self.scope = tree, applied, broken, scope
         self.name = ""
@@ -333,8 +333,8 @@ class NodeBuilder:
             return
         for part in parts:
             scalar = replace(
-                self.scalar(part, division.place(item, part, *effective)),
-                summary=division.described(item, part),
+                self.scalar(part, division.first_bit_of_part(item, part, *effective)),
+                summary=division.summary_of_part(item, part),
                 orders=Orders(*orders(part, orders(item))),
                 errata=self.applied.about(item),
             )

@@ -72,7 +72,7 @@ def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
         if at + size > bits:
             message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
             yield Fault.at(part, "bits", message, _WITHIN)
-        elif not lies_together(field, part, byte_order, bit_order):
+        elif not is_contiguous(field, part, byte_order, bit_order):
             message = f"the bits of {title} are not contiguous in the frame"
             yield Fault.at(part, "at", message, "make the parts fields of the message")
         clash = next((taken[bit] for bit in range(at, at + size) if bit in taken), None)
@@ -87,12 +87,12 @@ def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
         )
 
 
-def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
+def first_bit_of_part(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
     """Return the first bit of a part in the frame."""
     return min(_bits_of_part(field, part, byte_order, bit_order))
 
 
-def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
+def is_contiguous(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
     """Return whether a field at the position of a part has the bits of the part, in the
     same order.
 
@@ -110,7 +110,7 @@ def _bits_of_part(field: Map, part: Map, byte_order: str, bit_order: str) -> lis
     ]
 
 
-def described(field: Map, part: Map) -> str:
+def summary_of_part(field: Map, part: Map) -> str:
     """Return the summary of a part: its position in the split field, and its own
     summary or that of the field.
     """

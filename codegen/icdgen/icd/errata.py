@@ -12,12 +12,12 @@ from icdgen.icd.located import Map, Seq, unread, yaml_text
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
-_AGAIN = "compare with the manual: update the ICD if it does not have the printed value, or else update or remove the entry"
+_COMPARE_AGAIN = "compare with the manual: update the ICD if it does not have the printed value, or else update or remove the entry"
 _MOST_LISTED = 6  # lines of places in a help
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
 
 
-class Applied:
+class AppliedErrata:
     """Result of applying an overlay to the tree of an ICD."""
 
     def __init__(self) -> None:
@@ -39,7 +39,9 @@ class Applied:
         )
 
 
-def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
+def apply(
+    tree: Map, overlay: Map | None, broken: Set[int] = frozenset()
+) -> AppliedErrata:
     """Apply an overlay to ``tree``, in place.
 
     Entries without a matching place are findings.
@@ -47,7 +49,7 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
     Entries that violate the schema are ignored; ``broken`` has the id() of such
     mappings.
     """
-    applied = Applied()
+    applied = AppliedErrata()
     if overlay is None:
         return applied
     name = (tree.get("node") or {}).get("name")
@@ -57,7 +59,7 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
         applied.findings.append(Finding(OTHER_NODE, message, overlay.at("node"), help))
         return applied
     seen: dict[str, Place] = {}
-    named = _ByName()
+    named = _NameIndex()
     # Notes come first, because they are about the values that the manual prints, before
     # entries change them.
     notes = mappings(overlay.get("notes"))
@@ -79,7 +81,9 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
     return applied
 
 
-def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> None:
+def _apply_entry(
+    tree: Map, entry: Map, applied: AppliedErrata, named: _NameIndex
+) -> None:
     """Apply an entry or a note to all places that its `where` names, and add findings
     about stale or unknown places.
     """
@@ -121,7 +125,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
         message = f"`printed` matches {len(matched)} places" + (
             f", not {expected}" if expected else ""
         )
-        help = _AGAIN
+        help = _COMPARE_AGAIN
         if matched:
             lines = ", ".join(
                 str(place.line) for place in map(_place, matched[:_MOST_LISTED])
@@ -166,7 +170,7 @@ def _erratum(entry: Map) -> Erratum:
     )
 
 
-def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
+def _targets(tree: Map, where: Map, named: _NameIndex) -> Iterator[Map]:
     """Yield the mappings of the tree that a `where` names."""
     if "section" in where:
         yield from section(tree, str(where["section"]))
@@ -199,7 +203,7 @@ def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
                 )
 
 
-class _ByName:
+class _NameIndex:
     """Index of lists in an ICD by name.
 
     Without it, each entry would search the complete list again.
@@ -275,10 +279,10 @@ def _stale(entry: Map, target: Map, printed: Map) -> Finding:
     )
     stale = f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {yaml_text(value)}`"
     now = f"the ICD now has `{key}: {yaml_text(target.get(key))}` ({target.at(key)})"
-    return Finding(STALE, f"{stale}, {now}", printed.at(key), _AGAIN)
+    return Finding(STALE, f"{stale}, {now}", printed.at(key), _COMPARE_AGAIN)
 
 
-def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
+def _nowhere(tree: Map, where: Map, named: _NameIndex) -> Finding:
     """Return the finding for a `where` that names no place of the ICD, with a similar
     name as fix.
     """

@@ -97,9 +97,9 @@ class _Loader:
         # Resolved path -> the path by which the file was read.
         self.first: dict[Path, Path] = {}
         self.texts: dict[str, str] = {}
-        self.applied: list[errata.Applied] = []
+        self.applied: list[errata.AppliedErrata] = []
         self.broken: set[int] = set()
-        # References to all trees, because ``broken`` and `Applied.of` have the id() of
+        # References to all trees, because ``broken`` and `AppliedErrata.of` have the id() of
         # mappings, which could be reused.
         self.trees: list[Map] = []
         self.unreadable = False
@@ -185,7 +185,7 @@ class _Loader:
             )
             self.inputs[path] = hashlib.sha256(data).hexdigest()
             self.texts[name] = data.decode("utf-8", "replace")
-            tree, ambiguous = source.parse_on(data, name)
+            tree, ambiguous = source.parse_with_findings(data, name)
         except Findings as error:
             self.findings += error.findings
             self.unreadable = True

@@ -32,28 +32,28 @@ _CLASSES: dict[str, type[Any]] = {
 }
 
 
-def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
+def json_of_model(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
     """Return the JSON of a model and of its input files with their fingerprints."""
     tree = [
-        _Writer().plain(icd),
+        _ModelWriter().plain(icd),
         [[str(path), fingerprint] for path, fingerprint in inputs.items()],
     ]
     return json.dumps(tree, separators=(",", ":"), check_circular=False).encode()
 
 
-def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
-    """Return the model and the fingerprints that `text` wrote; None if the data was not
-    written by `text`.
+def model_of_json(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
+    """Return the model and the fingerprints that `json_of_model` wrote; None if the data was not
+    written by `json_of_model`.
     """
     try:
-        icd, inputs = json.loads(data, object_hook=_Reader().object)
+        icd, inputs = json.loads(data, object_hook=_ModelReader().object)
         fingerprints = {Path(path): str(fingerprint) for path, fingerprint in inputs}
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError):
         return None
     return (icd, fingerprints) if isinstance(icd, model.Icd) else None
 
 
-class _Writer:
+class _ModelWriter:
     """Converts objects of a model to values that `json` can write."""
 
     def __init__(self) -> None:
@@ -108,7 +108,7 @@ def _default(field: Field[Any]) -> Any:
     return field.default_factory()
 
 
-class _Reader:
+class _ModelReader:
     """Converts JSON objects to objects of the model, as a hook of `json.loads`."""
 
     def __init__(self) -> None:

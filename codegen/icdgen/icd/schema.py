@@ -67,17 +67,17 @@ def definition(name: str) -> dict[str, Any]:
     return form
 
 
-def referred(form: dict[str, Any]) -> str:
+def name_of_reference(form: dict[str, Any]) -> str:
     """Return the name of the definition that a sub-schema refers to."""
     return str(form["$ref"]).rpartition("/")[2]
 
 
-def protocol() -> dict[str, Any]:
+def protocol_schema() -> dict[str, Any]:
     """Return the sub-schema of the protocol section."""
     return definition("protocol")
 
 
-def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
+def subschema_of_key(form: dict[str, Any], key: str) -> dict[str, Any]:
     """Return the sub-schema of a key of a mapping; empty if the key is unknown or any
     key is allowed.
     """
@@ -85,7 +85,7 @@ def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
     return inner
 
 
-def meaning(form: dict[str, Any]) -> str:
+def description_of(form: dict[str, Any]) -> str:
     """Return the description of a key."""
     return str(form.get("description") or _follow(form).get("description", ""))
 
@@ -138,7 +138,7 @@ def _explain(
     help = f"correct {'it' if what == 'this' else what}: {about}" if about else ""
     if name == "required":
         missing = kind.property
-        hint = meaning(inside(rule, missing))
+        hint = description_of(subschema_of_key(rule, missing))
         message = f"`{missing}` is missing" + (f" from {what}" if path else "")
         return [
             Finding(
@@ -260,7 +260,7 @@ def _rule_at(path: list[Any]) -> dict[str, Any]:
 
 def _follow(form: dict[str, Any]) -> dict[str, Any]:
     """Return the definition that a sub-schema refers to, or the sub-schema itself."""
-    return definition(referred(form)) if "$ref" in form else form
+    return definition(name_of_reference(form)) if "$ref" in form else form
 
 
 def _describe(value: object) -> str:

@@ -27,7 +27,7 @@ _NUMBER = re.compile(
     r"(?:(?P<whole>-?(?:0|[1-9][0-9]*))|(?P<hex>0x[0-9A-Fa-f]+)|(?P<decimal>-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?))\Z"
 )
 # Error of libyaml, which has its own limit and looks ahead, so it can report the depth
-# before `Builder` does.
+# before `TreeBuilder` does.
 _DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"
 
 # Length of the longest word that a reader of YAML can interpret as something other than
@@ -95,13 +95,13 @@ def parse(data: bytes, name: str) -> Map:
 
     Raises `Findings` with all errors of the YAML text.
     """
-    tree, findings = parse_on(data, name)
+    tree, findings = parse_with_findings(data, name)
     if findings:
         raise Findings(findings)
     return tree
 
 
-def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
+def parse_with_findings(data: bytes, name: str) -> tuple[Map, list[Finding]]:
     """Return the tree of ``data`` and the findings of ambiguous scalars (ICD003), which
     are text in the tree.
 
@@ -115,7 +115,7 @@ def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
         raise Findings(
             [Finding("ICD001", problem, place, "save the file as UTF-8")]
         ) from None
-    tree, findings = Builder(text, name).build()
+    tree, findings = TreeBuilder(text, name).build()
     if not findings and tree is None:
         findings = [
             Finding(
@@ -154,7 +154,7 @@ class EventParser(Protocol):
     def get_event(self) -> Any: ...
 
 
-class Builder:
+class TreeBuilder:
     """Builds the tree from parser events.
 
     It has its own stack instead of recursion, to limit the depth.

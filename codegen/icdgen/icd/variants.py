@@ -19,7 +19,7 @@ from icdgen.icd.pieces import bits_of
 DeclaredMessage = tuple[Message, Node]  # a message and the node that declares it
 # Bit of the frame for each bit of a value; bit w (0: least significant) of byte b is 8
 # * b + w.
-Place = tuple[int, ...]
+BitPositions = tuple[int, ...]
 
 
 class Variant(NamedTuple):
@@ -72,7 +72,9 @@ def variants(messages: Sequence[DeclaredMessage]) -> tuple[Variant, ...]:
             place for place, value in own.items() if (place, value) not in common
         }
         fields = (
-            field for field in constants(message, node) if _place(field) in distinctive
+            field
+            for field in constants(message, node)
+            if _bit_positions(field) in distinctive
         )
         ranked.append((len(own), Variant(message, node, tuple(fields))))
     # A narrower message has more constants. The sort is stable, so other messages stay
@@ -135,12 +137,14 @@ def _have_common_length(first: DeclaredMessage, second: DeclaredMessage) -> bool
     return not set(first[0].layout.lengths).isdisjoint(second[0].layout.lengths)
 
 
-def _constants(message: Message, node: Node) -> dict[Place, int]:
+def _constants(message: Message, node: Node) -> dict[BitPositions, int]:
     """Return the values of the constants of a message, by position."""
-    return {_place(field): field.const or 0 for field in constants(message, node)}
+    return {
+        _bit_positions(field): field.const or 0 for field in constants(message, node)
+    }
 
 
-def _place(field: FrameField) -> Place:
+def _bit_positions(field: FrameField) -> BitPositions:
     """Return the position of a field, equal for fields of different orders that have
     the same bits.
     """

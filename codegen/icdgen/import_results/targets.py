@@ -59,7 +59,7 @@ def prepare(
     for name, tree in trees.items():
         path = out / f"{name}.yaml"
         if path not in existing:
-            targets.append(Target(path, emit.text(tree), tree))
+            targets.append(Target(path, emit.canonical_yaml(tree), tree))
             continue
         try:
             old = path.read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from typing import Any
 
 from icdgen.icd import source
 from icdgen.icd.fmt import emit, read, scalars
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, ScalarText
 
 # Keys that users add to the facts of a manual.
 _USER_KEYS = {
@@ -70,7 +70,9 @@ def update(
 
     Raise `Findings` if the old text is not valid YAML.
     """
-    root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
+    root = read.read_commented(
+        text, source.parse(text.encode("utf-8", "surrogatepass"), name)
+    )
     updated = Updated("")
     for key, kind in _SECTIONS:
         _update_section(root, key, kind, tree.get(key, []), updated.changes, given_keys)
@@ -79,7 +81,7 @@ def update(
     _update_formula_for(root, tree.get("formula_for"), updated.changes)
     _add_missing(root, "units", "symbol", tree.get("units", []), updated.changes)
     _add_missing(root, "missing", "name", tree.get("missing", []), updated.changes)
-    updated.text = emit.of(root)
+    updated.text = emit.canonical_yaml_of_branch(root)
     return updated
 
 
@@ -100,7 +102,7 @@ def _update_formula_for(
         root.children.remove(old)
     if words:
         root.children.append(
-            Child(Text("formula_for", "formula_for"), emit.branch(words))
+            Child(ScalarText("formula_for", "formula_for"), emit.branch(words))
         )
 
 
@@ -113,7 +115,7 @@ def _replace_section(
         return
     changes.append(f"~ {key} is another" if old is not None else f"+ {key}")
     if old is None:
-        root.children.append(Child(Text(key, key), emit.branch(value)))
+        root.children.append(Child(ScalarText(key, key), emit.branch(value)))
     else:
         old.value = emit.branch(value)
 
@@ -131,7 +133,7 @@ def _update_section(
     if not items and old is None:
         return
     if old is None:
-        root.children.append(Child(Text(key, key), emit.branch(items)))
+        root.children.append(Child(ScalarText(key, key), emit.branch(items)))
         changes += [f"+ {kind} {_title(kind, item)}" for item in items]
         return
     if not isinstance(old.value, Branch):
@@ -227,11 +229,11 @@ def _merge(
                 given_keys,
             )
             if child is None:
-                child = Child(Text(key, key))
+                child = Child(ScalarText(key, key))
                 result.children.append(child)
             child.value = Branch(False, False, 0, lines)
         elif child is None:
-            result.children.append(Child(Text(key, key), emit.node(value)))
+            result.children.append(Child(ScalarText(key, key), emit.node(value)))
             # Neither is a fact of the device, so the list of changes omits them.
             if key not in ("source", "summary"):
                 changes.append(
@@ -317,7 +319,7 @@ def _add_missing(
         return
     changes += [f"+ {key} {item[by]}" for item in new]
     if child is None:
-        root.children.append(Child(Text(key, key), emit.branch(new)))
+        root.children.append(Child(ScalarText(key, key), emit.branch(new)))
     else:
         assert isinstance(child.value, Branch)
         child.value.children += emit.branch(new).children
@@ -336,7 +338,7 @@ def _plain(value: object) -> Any:
         if value.mapping:
             return {_name(child): _plain(child.value) for child in value.children}
         return [_plain(child.value) for child in value.children]
-    return value.value if isinstance(value, Text) else value
+    return value.value if isinstance(value, ScalarText) else value
 
 
 def _title(kind: str, item: dict[str, Any]) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 from icdgen.errors import UserError
 from icdgen.icd import source
 from icdgen.icd.fmt import emit, read, scalars
-from icdgen.icd.fmt.commented import Branch, Child, Text
+from icdgen.icd.fmt.commented import Branch, Child, ScalarText
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import (
     KEYS_OF_IDS,
@@ -118,7 +118,7 @@ def in_style(text: str, style: Style, origin: str) -> str:
     The style replaces the protocol section, and enumerations and messages of the same
     names. Comments are preserved.
     """
-    root = read.read(text, source.parse(text.encode(), "the first ICD"))
+    root = read.read_commented(text, source.parse(text.encode(), "the first ICD"))
     parts = {scalars.name(child.key): child for child in root.children}
     for child in _children(parts["node"]):
         if scalars.name(child.key) in style.node:
@@ -151,8 +151,10 @@ def in_style(text: str, style: Style, origin: str) -> str:
             _lengthen(own, style)
         parts[key].value.children = emit.branch(more).children + own  # type: ignore[union-attr]
     if style.units:
-        root.children.append(Child(Text("units", "units"), emit.branch(style.units)))
-    return emit.of(root)
+        root.children.append(
+            Child(ScalarText("units", "units"), emit.branch(style.units))
+        )
+    return emit.canonical_yaml_of_branch(root)
 
 
 def _without_listed_messages(link: Tree) -> Tree:
@@ -226,7 +228,7 @@ def _renumber(messages: list[Child], style: Style) -> None:
             for id in candidates:
                 is_used = (direction, id) in used or id in escapes
                 if first <= id <= last and not is_used:
-                    entries[key].value = Text(id, str(id))
+                    entries[key].value = ScalarText(id, str(id))
                     break
             used.add((direction, _value(entries[key])))
 
@@ -243,7 +245,7 @@ def _lengthen(messages: list[Child], style: Style) -> None:
         reserved = -length % unit
         if reserved:
             total = length + reserved
-            children[at].value = Text(total, str(total))
+            children[at].value = ScalarText(total, str(total))
             children[at + 1 : at + 1] = emit.branch({"reserved": reserved}).children
 
 
@@ -316,7 +318,7 @@ def _children(child: Child) -> list[Child]:
 
 def _value(child: Child) -> Any:
     """Return the value of a scalar."""
-    assert isinstance(child.value, Text)
+    assert isinstance(child.value, ScalarText)
     return child.value.value
 
 

@@ -103,7 +103,9 @@ def with_remaining_facts(
     }
     seeds = tuple(f"{each.section}.seeds." for each in facts.checksums.values())
     parts_by_anchor = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
-    for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):
+    for path, key, form, value in _keys_with_values(
+        schema.protocol_schema(), section, ()
+    ):
         place = ".".join((*path, key))
         if place in read or place.startswith(seeds):
             continue
@@ -132,7 +134,7 @@ def _keys_with_values(
     content.
     """
     for key, value in section.items():
-        inside = schema.inside(form, key)
+        inside = schema.subschema_of_key(form, key)
         if key in _NOT_SHOWN:
             continue
         # A packet is one row, as an entry of a list.
@@ -147,7 +149,7 @@ def _keys_with_values(
 def _about(form: dict[str, Any], key: str) -> str:
     # Meanings in the schema are written for authors of an ICD. The value on the page is
     # a link to the message, so that the remark has no use.
-    meaning = schema.meaning(form).removesuffix(" (name of a message)")
+    meaning = schema.description_of(form).removesuffix(" (name of a message)")
     return capitalized(
         key.replace("_", " ")
         if not meaning or meaning.startswith("name of a")

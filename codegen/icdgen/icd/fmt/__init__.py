@@ -23,9 +23,9 @@ def format_text(text: str, name: str) -> str:
     text = text.removeprefix("\ufeff")
     values = source.parse(text.encode("utf-8", "surrogatepass"), name)
     document = "errata" if "errata" in values else "icd"
-    root = read.read(text, values)
+    root = read.read_commented(text, values)
     is_converted = earlier.convert(root)
-    result = write.write(root, kinds.root(document))
+    result = write.write_canonical(root, kinds.kind_of_root(document))
     if is_converted:
         values = source.parse(result.encode("utf-8", "surrogatepass"), name)
     if result != text:

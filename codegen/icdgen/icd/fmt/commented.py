@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class ScalarText:
     """A scalar."""
 
     value: object  # as the loader reads it
@@ -16,7 +16,7 @@ class Text:
 
 
 # Value of a key before it is read; key of an item of a sequence.
-NOTHING = Text(None, "")
+NOTHING = ScalarText(None, "")
 
 
 @dataclass(slots=True)
@@ -26,8 +26,8 @@ class Child:
     In lists of comments, "" is a blank line.
     """
 
-    key: Text
-    value: Text | Branch = NOTHING
+    key: ScalarText
+    value: ScalarText | Branch = NOTHING
     before: list[str] = field(default_factory=list)  # comments on the lines above
     trailing: list[str] = field(default_factory=list)  # comments at the end of its line
 

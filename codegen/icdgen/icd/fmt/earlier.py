@@ -8,7 +8,7 @@ import copy
 import re
 from collections.abc import Mapping
 
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, ScalarText
 from icdgen.icd.fmt.earlier_buses import PATHS, convert_buses
 from icdgen.icd.fmt.scalars import name
 from icdgen.icd.fmt.trees import (
@@ -119,7 +119,7 @@ def _convert_checksums(section: Branch, link: Branch) -> bool:
         if covers and isinstance(covers.value, Branch):
             data = [child.value for child in covers.value.children]
             named = ", ".join(
-                str(text.value) for text in data if isinstance(text, Text)
+                str(text.value) for text in data if isinstance(text, ScalarText)
             )
             covers.key, covers.value = word("summary"), word(f"Covers {named}.")
         if covers_id := entry_of(checksum, "covers_id"):
@@ -133,22 +133,22 @@ def _convert_checksums(section: Branch, link: Branch) -> bool:
 def _packet(name: str, checksum: Branch, use: object, sender: str) -> Branch:
     """Return the packet of messages with a checksum, for its use in one direction."""
     covers_id = value_of(checksum, "covers_id")
-    first = "id" if isinstance(covers_id, Text) and covers_id.value else "data"
+    first = "id" if isinstance(covers_id, ScalarText) and covers_id.value else "data"
     size, optional = value_of(use, "extra_bytes"), value_of(use, "optional")
     width = value_of(checksum, "width")
-    bits = width if isinstance(width, Text) else number(8)
-    if isinstance(size, Text) and isinstance(size.value, int):
+    bits = width if isinstance(width, ScalarText) else number(8)
+    if isinstance(size, ScalarText) and isinstance(size.value, int):
         bits = number(8 * size.value)
-    field: dict[str, Text | Branch] = {
+    field: dict[str, ScalarText | Branch] = {
         "bits": bits,
         "role": word("checksum"),
         "checksum": word(name),
         "covers": mapping({"from": word(first), "to": word("data")}),
     }
-    if not isinstance(optional, Text) or optional.value:
-        field["optional"] = Text(True, "true")
+    if not isinstance(optional, ScalarText) or optional.value:
+        field["optional"] = ScalarText(True, "true")
     trailer = Branch(False, True, 0, [Child(NOTHING, mapping(field))])
-    packet: dict[str, Text | Branch] = {"from": word(sender)}
+    packet: dict[str, ScalarText | Branch] = {"from": word(sender)}
     for key in ("source", "buses"):
         if isinstance(value := value_of(use, key), Branch):
             packet[key] = value
@@ -171,7 +171,7 @@ def _convert_errata(root: Branch) -> bool:
         where = value_of(item, "where")
         for place in branches(where) if isinstance(where, Branch) else ():
             section = entry_of(place, "section")
-            if not section or not isinstance(section.value, Text):
+            if not section or not isinstance(section.value, ScalarText):
                 continue
             path = earlier_path = str(section.value.value)
             if path == "protocol.uart.framing":
@@ -199,7 +199,7 @@ def _rename(value: object, keys: Mapping[str, str]) -> None:
 
 def _convert_framing(link: Branch) -> None:
     framing = entry_of(link, "delimited_by")
-    if framing and isinstance(framing.value, Text):
+    if framing and isinstance(framing.value, ScalarText):
         by = word("datagram") if framing.value.value == "none" else framing.value
         framing.key = word("framing")
         framing.value = Branch(True, True, 0, [Child(word("by"), by)])
@@ -243,7 +243,11 @@ def _move_covers(link: Branch) -> None:
             declared[name(checksum.key)] = covers
     for field in branches(link):
         named = entry_of(field, "checksum")
-        if not named or not isinstance(named.value, Text) or entry_of(field, "covers"):
+        if (
+            not named
+            or not isinstance(named.value, ScalarText)
+            or entry_of(field, "covers")
+        ):
             continue
         if covers := declared.get(named.value.spelling):
             field.children.append(copy.deepcopy(covers))

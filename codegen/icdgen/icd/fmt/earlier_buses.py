@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from icdgen.icd.fmt.commented import Branch, Child, Text
+from icdgen.icd.fmt.commented import Branch, Child, ScalarText
 from icdgen.icd.fmt.scalars import name
 from icdgen.icd.fmt.trees import (
     entries_of,
@@ -80,7 +80,9 @@ def convert_buses(link: Branch, root: Branch) -> bool:
     return True
 
 
-def _convert_reasons(link: Branch, root: Branch, is_named: bool) -> tuple[Text, Text]:
+def _convert_reasons(
+    link: Branch, root: Branch, is_named: bool
+) -> tuple[ScalarText, ScalarText]:
     """Move the error codes to the commands, as members of their enumeration if the field
     with the code has one.
 
@@ -92,10 +94,10 @@ def _convert_reasons(link: Branch, root: Branch, is_named: bool) -> tuple[Text, 
         return success, named_success
     section = reasons.value
     names = _members(root, value_of(section, "enum")) if is_named else {}
-    causes: dict[str, Text | Branch] = {}
+    causes: dict[str, ScalarText | Branch] = {}
     for child in section.children:
         key, given = name(child.key), child.value
-        if isinstance(given, Text) and isinstance(given.value, int):
+        if isinstance(given, ScalarText) and isinstance(given.value, int):
             member = names.get(given.value)
             code = given if member is None else word(member)
             if key == "none":
@@ -118,13 +120,13 @@ def _members(root: Branch, enum: object) -> dict[int, str]:
     names = {}
     for row in items_of(value_of(item_named(value_of(root, "enums"), enum), "members")):
         value, member = (value_of(row.value, key) for key in ("value", "name"))
-        if isinstance(value, Text) and isinstance(member, Text):
+        if isinstance(value, ScalarText) and isinstance(member, ScalarText):
             if isinstance(value.value, int):
                 names[value.value] = str(member.value)
     return names
 
 
-def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
+def _convert_acknowledge(uart: Branch, packets: Branch, success: ScalarText) -> None:
     """Make the acknowledge of the UART a packet, and let it confirm telecommands."""
     acknowledge = entry_of(uart, "acknowledge")
     if acknowledge is None or not isinstance(acknowledge.value, Branch):
@@ -132,7 +134,7 @@ def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
     section = acknowledge.value
     packet = Branch(True, False, 0)
     move(section, {"source": "source"}, packet)
-    sender: dict[str, Text | Branch] = {"from": word("device")}
+    sender: dict[str, ScalarText | Branch] = {"from": word("device")}
     sender["buses"] = sequence(word("uart"))
     packet.children += mapping(sender).children
     data = entry_of(section, "data")
@@ -149,7 +151,7 @@ def _convert_acknowledge(uart: Branch, packets: Branch, success: Text) -> None:
         if name(child.key) == "data":
             child.key = word("header")
     move(section, {"assumptions": "assumptions"}, packet)
-    response: dict[str, Text | Branch] = {"packet": word("acknowledge")}
+    response: dict[str, ScalarText | Branch] = {"packet": word("acknowledge")}
     response |= {
         "echo": word("id"),
         "status": word("status"),
@@ -166,13 +168,19 @@ def _convert_row(row: Branch, end: int) -> int:
     it in bytes. Return the end of the row.
     """
     at, size = (value_of(row, key) for key in ("byte", "bytes"))
-    first = at.value if isinstance(at, Text) and isinstance(at.value, int) else end
-    count = size.value if isinstance(size, Text) and isinstance(size.value, int) else 1
+    first = (
+        at.value if isinstance(at, ScalarText) and isinstance(at.value, int) else end
+    )
+    count = (
+        size.value
+        if isinstance(size, ScalarText) and isinstance(size.value, int)
+        else 1
+    )
     role = value_of(row, "role")
-    present = _ROLES.get(role.value) if isinstance(role, Text) else None
+    present = _ROLES.get(role.value) if isinstance(role, ScalarText) else None
     if present is None:
         present = "time" if entry_of(row, "format") else "flags"
-    field: dict[str, Text | Branch] = {}
+    field: dict[str, ScalarText | Branch] = {}
     if first != end:
         field["at"] = number(8 * first)
     field |= {"bits": number(8 * count), "role": word(present)}
@@ -192,11 +200,13 @@ def _convert_unsolicited(uart: Branch, packets: Branch, root: Branch) -> None:
     for row, id in zip(rows, ids, strict=True):
         message = value_of(row.value, "message")
         head = {"bits": number(8), "role": word("constant"), "value": id or number(0)}
-        packet: dict[str, Text | Branch] = {
+        packet: dict[str, ScalarText | Branch] = {
             "from": word("device"),
             "buses": sequence(word("uart")),
             "header": sequence(mapping(head)),
-            "messages": sequence(message if isinstance(message, Text) else word("")),
+            "messages": sequence(
+                message if isinstance(message, ScalarText) else word("")
+            ),
         }
         suffix = f" {len(packets.children)}" if len(rows) > 1 else ""
         inside = row.value.comments() if isinstance(row.value, Branch) else []
@@ -207,14 +217,14 @@ def _convert_unsolicited(uart: Branch, packets: Branch, root: Branch) -> None:
     uart.children.remove(section)
 
 
-def _id_of(root: Branch, message: object) -> Text | None:
+def _id_of(root: Branch, message: object) -> ScalarText | None:
     """Return the id of a message of the file; None without one."""
     item = item_named(value_of(root, "messages"), message)
     id = value_of(item, "id") or value_of(item, "set_id")
-    return id if isinstance(id, Text) else None
+    return id if isinstance(id, ScalarText) else None
 
 
-def _convert_polled(i2c: Branch, polled: object, success: Text) -> None:
+def _convert_polled(i2c: Branch, polled: object, success: ScalarText) -> None:
     """Let the telemetry that is polled on I2C confirm telecommands."""
     if not isinstance(polled, Branch):
         return
@@ -230,14 +240,14 @@ def _convert_polled(i2c: Branch, polled: object, success: Text) -> None:
 
 def _convert_can(can: Branch, packets: Branch) -> None:
     """Make packets of the message types on CAN, and let them respond."""
-    uses: dict[str, dict[str, Text | Branch]] = {}
+    uses: dict[str, dict[str, ScalarText | Branch]] = {}
     for direction, keys in _TYPES.items():
         section = value_of(can, direction)
         for key, (sender, whole) in keys.items():
             given, whole_name = value_of(section, key), value_of(section, whole)
-            if isinstance(given, Text):
+            if isinstance(given, ScalarText):
                 use = uses.setdefault(str(given.value), {"from": word(sender)})
-                if whole and isinstance(whole_name, Text):
+                if whole and isinstance(whole_name, ScalarText):
                     use["segment_of"] = whole_name
     types = entry_of(can, "message_types")
     source = value_of(types.value, "source") if types else None
@@ -245,15 +255,15 @@ def _convert_can(can: Branch, packets: Branch) -> None:
         value, packet_name, summary = (
             value_of(row.value, key) for key in ("value", "name", "summary")
         )
-        if not isinstance(value, Text) or not isinstance(packet_name, Text):
+        if not isinstance(value, ScalarText) or not isinstance(packet_name, ScalarText):
             continue
         use = uses.get(str(packet_name.value), {"from": word("both")})
-        packet: dict[str, Text | Branch] = {}
+        packet: dict[str, ScalarText | Branch] = {}
         if isinstance(source, Branch):
             packet["source"] = source
         packet |= {"from": use.pop("from"), "buses": sequence(word("can"))}
         packet |= {"type": value, **use}
-        if isinstance(summary, Text):
+        if isinstance(summary, ScalarText):
             packet["summary"] = summary
         child = Child(packet_name, mapping(packet), row.before, row.trailing)
         packets.children.append(child)
@@ -282,7 +292,7 @@ def _responses(section: object, direction: str) -> Branch:
         keys = {"request": "packet", "failure": "nak"}
     for key, present in keys.items():
         packet = value_of(section, key)
-        if isinstance(packet, Text):
+        if isinstance(packet, ScalarText):
             is_response = present != "packet"
             given = mapping({"packet": packet}) if is_response else packet
             responses.children.append(Child(word(present), given))

@@ -6,7 +6,7 @@ from typing import Any
 
 from icdgen.icd import schema
 from icdgen.icd.fmt import format_text, kinds, write
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, ScalarText
 
 
 class Spelled(int):
@@ -23,19 +23,21 @@ class Spelled(int):
         return number
 
 
-def text(tree: dict[str, Any]) -> str:
+def canonical_yaml(tree: dict[str, Any]) -> str:
     """Return the canonical YAML of an ICD as a tree of plain values."""
     root = branch(tree)
     root.header = [schema.LINE]
-    return of(root)
+    return canonical_yaml_of_branch(root)
 
 
-def of(root: Branch) -> str:
+def canonical_yaml_of_branch(root: Branch) -> str:
     """Return the canonical YAML of a tree of the formatter.
 
     The text is read back, so it is certain to load.
     """
-    return format_text(write.write(root, kinds.root("icd")), "the result")
+    return format_text(
+        write.write_canonical(root, kinds.kind_of_root("icd")), "the result"
+    )
 
 
 def branch(value: dict[str, Any] | list[Any]) -> Branch:
@@ -45,18 +47,18 @@ def branch(value: dict[str, Any] | list[Any]) -> Branch:
         value.items() if isinstance(value, dict) else ((None, item) for item in value)
     )
     result.children = [
-        Child(Text(key, key) if key is not None else NOTHING, node(item))
+        Child(ScalarText(key, key) if key is not None else NOTHING, node(item))
         for key, item in items
     ]
     return result
 
 
-def node(value: object) -> Branch | Text:
+def node(value: object) -> Branch | ScalarText:
     """Return a value as a node of the formatter."""
     if isinstance(value, (dict, list)):
         return branch(value)
     if isinstance(value, Spelled):
-        return Text(int(value), value.spelling)
+        return ScalarText(int(value), value.spelling)
     if isinstance(value, bool):
-        return Text(value, "true" if value else "false")
-    return Text(value, str(value))
+        return ScalarText(value, "true" if value else "false")
+    return ScalarText(value, str(value))

@@ -30,7 +30,7 @@ BLOCKS = frozenset(
 INLINE = frozenset({"source"})
 
 
-class Kind:
+class SchemaKind:
     """Kind of a mapping or sequence: the name of its definition in the schema, and the
     order of its keys.
     """
@@ -41,9 +41,9 @@ class Kind:
         # The name is empty if the schema has no definition for it.
         self.name, self._rule = name, rule
         self.keys = {key: index for index, key in enumerate(rule.get("properties", {}))}
-        self._children: dict[tuple[str | None, bool], Kind] = {}
+        self._children: dict[tuple[str | None, bool], SchemaKind] = {}
 
-    def child(self, key: str | None, mapping: bool) -> Kind:
+    def child(self, key: str | None, mapping: bool) -> SchemaKind:
         """Return the kind of a mapping or sequence in this one.
 
         ``key`` is its key in a mapping, or None for an item of a sequence. ``mapping``
@@ -54,7 +54,7 @@ class Kind:
             self._children[at] = self._find(key, mapping)
         return self._children[at]
 
-    def _find(self, key: str | None, mapping: bool) -> Kind:
+    def _find(self, key: str | None, mapping: bool) -> SchemaKind:
         """Look up the kind of a child in the schema."""
         rule = (
             self._rule.get("items", {})
@@ -67,13 +67,13 @@ class Kind:
         # The schema allows a single value or a list of values.
         if rule.get("if") == {"type": "array"}:
             name, rule = _follow(name, rule["else" if mapping else "then"])
-        return Kind(name, rule)
+        return SchemaKind(name, rule)
 
 
 @cache
-def root(document: str) -> Kind:
+def kind_of_root(document: str) -> SchemaKind:
     """Return the kind of the root of a document: "icd" or "errata"."""
-    return Kind(document, schema.definition(document))
+    return SchemaKind(document, schema.definition(document))
 
 
 def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
@@ -81,6 +81,6 @@ def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     sub-schema.
     """
     while "$ref" in rule:
-        name = schema.referred(rule)
+        name = schema.name_of_reference(rule)
         rule = schema.definition(name)
     return name, rule

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd import source
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, ScalarText
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.source import Event
 
@@ -22,12 +22,12 @@ _BLOCK = ("|", ">")
 _BEFORE_COMMENT = " \t\ufeff,[]{}\n\r\x85\u2028\u2029"
 
 
-def read(text: str, values: Map) -> Branch:
+def read_commented(text: str, values: Map) -> Branch:
     """Return the tree of a text.
 
     ``values`` is the result of `source.parse` for the same text.
     """
-    return _Reader(text, values).read()
+    return _CommentReader(text, values).read()
 
 
 def comments(text: str) -> list[str]:
@@ -53,7 +53,7 @@ def comments(text: str) -> list[str]:
             return [comment.rstrip() for comment in result]
 
 
-class _Reader:
+class _CommentReader:
     """Builds the tree in one pass over the events, and assigns the comments before each
     event to the tree.
     """
@@ -107,7 +107,7 @@ class _Reader:
         value = event.value if key else next(self.values)
         if key and not event.style:
             value = None  # the writer interprets an unquoted key from its spelling
-        text = Text(value, event.value)
+        text = ScalarText(value, event.value)
         if key:
             child = Child(text)
             self.begin(child)
@@ -151,7 +151,7 @@ class _Reader:
         self.last = self.stack[-1].children[-1] if self.stack else None
         self.last_end = event.end_mark.index
 
-    def attach(self, value: Text | Branch) -> Child:
+    def attach(self, value: ScalarText | Branch) -> Child:
         """Add a value to the innermost branch: to its last key, or as an item.
 
         Return the entry or item.
@@ -160,7 +160,7 @@ class _Reader:
         if top.mapping:
             child = top.children[-1]
             child.value = value
-            if isinstance(value, Text) or value.flow:
+            if isinstance(value, ScalarText) or value.flow:
                 child.before += self.take()
         else:
             child = Child(NOTHING, value)

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 from icdgen.diagnostics import Findings
 from icdgen.icd import source
-from icdgen.icd.fmt.commented import Text
+from icdgen.icd.fmt.commented import ScalarText
 
 WIDTH = 120
 BLOCK_HEADERS = frozenset({"|", "|-", ">"})
@@ -34,7 +34,7 @@ _ESCAPES = {
 _SPECIAL = re.compile(r'["\\]')
 
 
-def flow(text: Text) -> str:
+def flow(text: ScalarText) -> str:
     """Return a scalar in flow style, within braces or brackets."""
     return (
         quoted_if_needed(text.value, True)
@@ -43,7 +43,7 @@ def flow(text: Text) -> str:
     )
 
 
-def key(text: Text, in_flow: bool) -> str:
+def key(text: ScalarText, in_flow: bool) -> str:
     """Return a scalar as a key."""
     if (
         text.value is None
@@ -54,12 +54,12 @@ def key(text: Text, in_flow: bool) -> str:
     return quoted_if_needed(name(text), in_flow)
 
 
-def name(text: Text) -> str:
+def name(text: ScalarText) -> str:
     """Return the name of a key."""
     return text.spelling if text.value is None else str(text.value)
 
 
-def block(text: Text, column: int, indent: int) -> list[str]:
+def block(text: ScalarText, column: int, indent: int) -> list[str]:
     """Return the lines of a scalar in block style that begins at ``column``; all except
     the first are indented.
     """
@@ -113,7 +113,7 @@ def _loader_reads(value: str) -> bool:
         return False
 
 
-def _number_or_word(text: Text) -> str:
+def _number_or_word(text: ScalarText) -> str:
     """Return a number, a truth value or null in its canonical spelling: ``0x5A``,
     ``null``.
     """

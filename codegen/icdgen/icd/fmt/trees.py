@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, ScalarText
 from icdgen.icd.fmt.scalars import name
 
 
-def word(text: str) -> Text:
+def word(text: str) -> ScalarText:
     """Return a text as a scalar."""
-    return Text(text, text)
+    return ScalarText(text, text)
 
 
-def number(value: int) -> Text:
+def number(value: int) -> ScalarText:
     """Return a number as a scalar."""
-    return Text(value, str(value))
+    return ScalarText(value, str(value))
 
 
-def sequence(*items: Text | Branch) -> Branch:
+def sequence(*items: ScalarText | Branch) -> Branch:
     """Return a sequence in brackets."""
     return Branch(False, True, 0, [Child(NOTHING, item) for item in items])
 
@@ -40,11 +40,11 @@ def items_of(value: object) -> list[Child]:
 
 def item_named(value: object, wanted: object) -> object:
     """Return the item of a sequence with this value of the key `name`; None without one."""
-    if not isinstance(wanted, Text):
+    if not isinstance(wanted, ScalarText):
         return None
     for item in items_of(value):
         given = value_of(item.value, "name")
-        if isinstance(given, Text) and given.value == wanted.value:
+        if isinstance(given, ScalarText) and given.value == wanted.value:
             return item.value
     return None
 
@@ -63,7 +63,7 @@ def branches(branch: Branch) -> Iterator[Branch]:
             yield from branches(child.value)
 
 
-def mapping(entries: Mapping[str, Text | Branch], flow: bool = True) -> Branch:
+def mapping(entries: Mapping[str, ScalarText | Branch], flow: bool = True) -> Branch:
     """Return a mapping, in braces if ``flow``."""
     children = [Child(word(key), value) for key, value in entries.items()]
     return Branch(True, flow, 0, children)

@@ -5,8 +5,8 @@ describes.
 from __future__ import annotations
 
 from icdgen.icd.fmt import scalars
-from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
-from icdgen.icd.fmt.kinds import BLOCKS, INLINE, ROWS, Kind
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, ScalarText
+from icdgen.icd.fmt.kinds import BLOCKS, INLINE, ROWS, SchemaKind
 from icdgen.icd.fmt.read import SCHEMA_LINE
 from icdgen.icd.fmt.rows import aligned
 from icdgen.icd.fmt.scalars import WIDTH
@@ -17,7 +17,7 @@ SHORT_ITEM = 40  # longest item of a list that is wrapped over several lines
 LONGEST_KEY = 1000  # YAML readers give up looking for the colon after 1024 characters
 
 
-def write(root: Branch, kind: Kind) -> str:
+def write_canonical(root: Branch, kind: SchemaKind) -> str:
     """Return the text of a file."""
     lines = list(root.header)
     if lines and not lines[-1].startswith(SCHEMA_LINE):
@@ -30,7 +30,7 @@ def write(root: Branch, kind: Kind) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
+def _sections(lines: list[str], root: Branch, kind: SchemaKind) -> None:
     """Append the top level, with a blank line before and after each section in block
     style except the first.
     """
@@ -46,14 +46,14 @@ def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
         _entry(lines, child, kind, 0)
 
 
-def _is_block(child: Child, value: Branch, kind: Kind) -> bool:
+def _is_block(child: Child, value: Branch, kind: SchemaKind) -> bool:
     """Return whether an entry of the top level is written in block style."""
     column = len(scalars.key(child.key, False)) + 2
     inner = kind.child(scalars.name(child.key), value.mapping)
     return _one_line(value, inner, column) is None and _wrapped(value, column) is None
 
 
-def ordered(branch: Branch, kind: Kind) -> list[Child]:
+def ordered(branch: Branch, kind: SchemaKind) -> list[Child]:
     """Return the entries in the order of the schema.
 
     Unknown keys come last, in the order of the file.
@@ -70,7 +70,7 @@ def _comments(lines: list[str], comments: list[str], indent: int) -> None:
     lines += [" " * indent + comment if comment else "" for comment in comments]
 
 
-def _entry(lines: list[str], child: Child, kind: Kind, indent: int) -> None:
+def _entry(lines: list[str], child: Child, kind: SchemaKind, indent: int) -> None:
     """Append an entry of a mapping in block style."""
     key = scalars.key(child.key, False)
     head = " " * indent + key + ":"
@@ -89,7 +89,7 @@ def _value(
     lines: list[str],
     child: Child,
     head: str,
-    kind: Kind,
+    kind: SchemaKind,
     indent: int,
     in_sequence: bool,
 ) -> None:
@@ -102,7 +102,7 @@ def _value(
     trailing = "  " + child.trailing[-1] if child.trailing else ""
     before = [*child.before, *child.trailing[:-1]]
     body: list[str] = []
-    if isinstance(value, Text):
+    if isinstance(value, ScalarText):
         scalar = scalars.block(value, column, indent + 2)
         # In the lines of a block scalar, a comment would be text; it can only follow
         # the header.
@@ -131,7 +131,7 @@ def _value(
     lines += body
 
 
-def _block(branch: Branch, kind: Kind, indent: int) -> list[str]:
+def _block(branch: Branch, kind: SchemaKind, indent: int) -> list[str]:
     """Return the lines of a mapping or sequence in block style."""
     lines: list[str] = []
     if branch.mapping:
@@ -143,7 +143,7 @@ def _block(branch: Branch, kind: Kind, indent: int) -> list[str]:
     return lines
 
 
-def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
+def _items(lines: list[str], branch: Branch, kind: SchemaKind, indent: int) -> None:
     """Append the items of a sequence, as aligned rows of a table if possible."""
     dash = " " * indent + "-"
     rows = _rows(branch, kind, indent)
@@ -165,7 +165,7 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
         _value(lines, child, dash, inner, indent, in_sequence=True)
 
 
-def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
+def _rows(branch: Branch, kind: SchemaKind, indent: int) -> list[str] | None:
     """Return the aligned rows of a table; None if the sequence is not a table, or its
     rows are too long for one line.
     """
@@ -197,7 +197,7 @@ def _branches(branch: Branch) -> list[Branch]:
     return [child.value for child in branch.children if isinstance(child.value, Branch)]
 
 
-def _one_line(branch: Branch, kind: Kind, column: int) -> str | None:
+def _one_line(branch: Branch, kind: SchemaKind, column: int) -> str | None:
     """Return a mapping or sequence in flow style if it is to be written on one line,
     else None.
     """
@@ -217,12 +217,12 @@ def _one_line(branch: Branch, kind: Kind, column: int) -> str | None:
     return text
 
 
-def _small(branch: Branch, kind: Kind) -> bool:
+def _small(branch: Branch, kind: SchemaKind) -> bool:
     """Return whether a mapping is small enough for one line."""
     return _simple(branch) and (bool(kind.name) or len(branch.children) <= MOST_ENTRIES)
 
 
-def _inline(branch: Branch, kind: Kind) -> bool:
+def _inline(branch: Branch, kind: SchemaKind) -> bool:
     """Return whether a sequence can be on one line: of scalars, lists of scalars, or
     mappings of a kind in `INLINE`.
     """
@@ -242,7 +242,7 @@ def _wrapped(branch: Branch, column: int) -> list[str] | None:
     items = [
         scalars.flow(child.value)
         for child in branch.children
-        if isinstance(child.value, Text)
+        if isinstance(child.value, ScalarText)
     ]
     if any(len(item) > SHORT_ITEM for item in items):
         return None
@@ -257,34 +257,36 @@ def _wrapped(branch: Branch, column: int) -> list[str] | None:
     return lines
 
 
-def flow(value: Text | Branch, kind: Kind) -> str:
+def flow(value: ScalarText | Branch, kind: SchemaKind) -> str:
     """Return a value in flow style, on one line."""
-    if isinstance(value, Text):
+    if isinstance(value, ScalarText):
         return scalars.flow(value)
     if value.mapping:
         return "{" + ", ".join(_cells(value, kind).values()) + "}"
     return (
         "["
-        + ", ".join(flow(child.value, _kind(kind, child)) for child in value.children)
+        + ", ".join(
+            flow(child.value, _kind_of_child(kind, child)) for child in value.children
+        )
         + "]"
     )
 
 
-def _cells(branch: Branch, kind: Kind) -> dict[str, str]:
+def _cells(branch: Branch, kind: SchemaKind) -> dict[str, str]:
     """Return ``key: value`` in flow style for each key, in the order of the schema."""
     cells = {}
     for child in ordered(branch, kind):
         key = scalars.key(child.key, True)
         lead = "? " + key + " :" if len(key) > LONGEST_KEY else key + ":"
         cells[scalars.name(child.key)] = (
-            f"{lead} {flow(child.value, _kind(kind, child))}"
+            f"{lead} {flow(child.value, _kind_of_child(kind, child))}"
         )
     return cells
 
 
-def _kind(kind: Kind, child: Child) -> Kind:
+def _kind_of_child(kind: SchemaKind, child: Child) -> SchemaKind:
     """Return the kind of the value of a child of a branch of this kind."""
-    if isinstance(child.value, Text):
+    if isinstance(child.value, ScalarText):
         return kind
     return kind.child(
         None if child.key is NOTHING else scalars.name(child.key), child.value.mapping

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from icdgen.diagnostics import Finding, in_order
-from icdgen.icd.errata import Applied
+from icdgen.icd.errata import AppliedErrata
 from icdgen.icd.model import Icd
 from icdgen.icd.rules import (  # noqa: F401
     buses,
@@ -71,7 +71,7 @@ class UnknownRule(LookupError):
 
 def check(
     icd: Icd,
-    applied: Iterable[Applied] = (),
+    applied: Iterable[AppliedErrata] = (),
     complete: bool = True,
     languages: Sequence[Language] = (),
     texts: Mapping[str, str] | None = None,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from icdgen.diagnostics import Lines
 from icdgen.frozen import NamedTuple
 from icdgen.icd import variable_length
-from icdgen.icd.errata import Applied
+from icdgen.icd.errata import AppliedErrata
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Derived, LayoutNode, Orders, Scalar, scalar_of
 from icdgen.icd.located import Map
@@ -87,7 +87,7 @@ class Context:
     def __init__(
         self,
         icd: Icd,
-        applied: Iterable[Applied] = (),
+        applied: Iterable[AppliedErrata] = (),
         complete: bool = True,
         languages: Sequence[Language] = (),
         texts: Mapping[str, str] | None = None,
