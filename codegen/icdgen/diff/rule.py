@@ -59,9 +59,9 @@ class DiffRule:
     when: str = "both"
 
     @property
-    def page(self) -> pages.Page:
+    def page(self) -> pages.RulePage:
         """Page of the rule: title, reason, and an example ICD before and after."""
-        return pages.of(self.theme, PAGES)[self.code]
+        return pages.pages_of_theme(self.theme, PAGES)[self.code]
 
     @property
     def title(self) -> str:
@@ -104,6 +104,6 @@ def explain(code: str) -> str:
     Raises `KeyError`.
     """
     rule = REGISTERED[code]
-    return pages.text(
+    return pages.page_as_markdown(
         rule.code, f"{rule.layer}, {rule.severity}", rule.page, ("Before", "After")
     )

@@ -113,4 +113,4 @@ def explain(code: str) -> str:
     # Pages are Markdown files, and no other command needs them.
     from icdgen.icd.rules import pages
 
-    return pages.text(rule.code, rule.severity, rule.page)
+    return pages.page_as_markdown(rule.code, rule.severity, rule.page)

@@ -16,12 +16,18 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node, buses_of
 from icdgen.icd.packets import DEVICE, HOST, ID_ROLE, Packet, Packets, value_of
 from icdgen.icd.responses import ACK, BUSY, NAK, number_of
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.framed_links import DATA, Link, ids_of, links, links_on_buses
+from icdgen.icd.rules.framed_links import (
+    DATA,
+    DeclaredLink,
+    ids_of,
+    links,
+    links_on_buses,
+)
 from icdgen.icd.rules.responses import (
-    Declared,
-    compared,
+    DeclaredResponse,
+    compared_field,
     comparison_faults,
-    declared_in,
+    declared_responses_in,
     enum_of,
     telemetry_of,
 )
@@ -55,7 +61,7 @@ BYTE = 8
 class BusResponses(NamedTuple):
     """Responses on a bus that a node declares, for this bus or for the whole link."""
 
-    link: Link
+    link: DeclaredLink
     bus: str
     key: str  # `commands` or `requests`
     owner: Map  # the mapping of that key
@@ -70,12 +76,12 @@ class BusResponses(NamedTuple):
         name = row.get("packet")
         return isinstance(name, str) and self.packets.by_name(name) is None
 
-    def declared(self, ctx: Context) -> Iterator[Declared]:
+    def declared(self, ctx: Context) -> Iterator[DeclaredResponse]:
         """Yield the responses that conform to the schema."""
         section = Map(self.owner.spot)
         section[self.key] = self.owner
-        link = Link(self.link.node, section, self.packets, [])
-        for declared in declared_in(ctx, link):
+        link = DeclaredLink(self.link.node, section, self.packets, [])
+        for declared in declared_responses_in(ctx, link):
             if declared.owner is self.owner and declared.kind in self.kinds:
                 yield declared
 
@@ -191,7 +197,7 @@ def responses_on_buses_are_complete(ctx: Context) -> Iterator[Fault]:
         yield from _reasons(ctx, link)
 
 
-def _acknowledge(declared: Declared) -> Iterator[Fault]:
+def _acknowledge(declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of the fields of an acknowledge on the UART, which are a byte
     each.
     """
@@ -253,7 +259,7 @@ def _without_effect(responses: BusResponses) -> Iterator[tuple[Map, str]]:
 
 
 def _compared_fields(
-    ctx: Context, responses: BusResponses, declared: Declared
+    ctx: Context, responses: BusResponses, declared: DeclaredResponse
 ) -> Iterator[Fault]:
     """Yield the faults of the fields of a response that a client compares."""
     if responses.bus == CAN:
@@ -266,12 +272,12 @@ def _compared_fields(
     for key in ("until", "detail"):
         name = declared.row.get(key)
         if isinstance(name, str):
-            field, text, help = compared(ctx, declared, name, key)
+            field, text, help = compared_field(ctx, declared, name, key)
             if field is None:
                 yield Fault.at(declared.row, key, text, help)
 
 
-def _no_telemetry(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def _no_telemetry(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the fault of a response that is a telecommand. ICD093 reports other names."""
     telecommands = ids_of(ctx, declared.link.node, TELECOMMAND)
     if any(each.name == declared.name for _, each in telecommands):
@@ -279,7 +285,7 @@ def _no_telemetry(ctx: Context, declared: Declared) -> Iterator[Fault]:
         yield declared.fault("message", text, "name telemetry")
 
 
-def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
+def _reasons(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of reasons that no response on a bus has."""
     commands = link.section.get(COMMANDS)
     reasons = commands.get(REASONS) if isinstance(commands, Map) else None
@@ -322,11 +328,15 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
 
 
 def _width(
-    ctx: Context, with_status: list[Declared], reasons: Map, cause: str, number: int
+    ctx: Context,
+    with_status: list[DeclaredResponse],
+    reasons: Map,
+    cause: str,
+    number: int,
 ) -> Iterator[Fault]:
     """Yield the fault of a reason that is too large for a status."""
     for declared in with_status:
-        field, _, _ = compared(ctx, declared, declared.row["status"], "status")
+        field, _, _ = compared_field(ctx, declared, declared.row["status"], "status")
         if field and not field.range[0] <= number <= field.range[1]:
             bits = f"{count(field.bits, 'bit')} of {quote(field.name)}"
             text = f"{number} does not fit {bits}"
@@ -334,7 +344,7 @@ def _width(
             return
 
 
-def _sections(link: Link) -> list[Map]:
+def _sections(link: DeclaredLink) -> list[Map]:
     """Return the mappings of the packets that a node declares itself."""
     packets = link.section.get("packets")
     return [*mappings([*packets.values()])] if isinstance(packets, Map) else []
@@ -401,7 +411,9 @@ def packets_on_buses_have_an_effect(ctx: Context) -> Iterator[Fault]:
         yield from _competing(ctx, link, sections)
 
 
-def _keys(ctx: Context, link: Link, packet: Packet, section: Map) -> Iterator[Fault]:
+def _keys(
+    ctx: Context, link: DeclaredLink, packet: Packet, section: Map
+) -> Iterator[Fault]:
     """Yield the faults of the keys of a packet that have no effect on its buses."""
     protocols = [ctx.protocol_of(user) for user in ctx.users(link.node)]
     in_use = {bus for protocol in protocols for bus in buses_of(protocol)}
@@ -431,7 +443,9 @@ def _keys(ctx: Context, link: Link, packet: Packet, section: Map) -> Iterator[Fa
         yield _on_can(section)
 
 
-def _unasked(ctx: Context, link: Link, packet: Packet, section: Map) -> Iterator[Fault]:
+def _unasked(
+    ctx: Context, link: DeclaredLink, packet: Packet, section: Map
+) -> Iterator[Fault]:
     """Yield the faults of a packet with a constant in place of the id, in which one
     message is sent unasked.
     """
@@ -459,7 +473,7 @@ def _unasked(ctx: Context, link: Link, packet: Packet, section: Map) -> Iterator
         yield Fault.at(section, "header", text, "correct `value`, or the id")
 
 
-def _competing(ctx: Context, link: Link, sections: Map) -> Iterator[Fault]:
+def _competing(ctx: Context, link: DeclaredLink, sections: Map) -> Iterator[Fault]:
     """Yield the faults of packets of messages for which there is another one already."""
     protocol = ctx.protocol_of(link.node)
     reported: set[str] = set()

@@ -40,7 +40,7 @@ PATH_OF_BUSES = ("link", "buses")  # path of UART, I2C and CAN in a protocol sec
 Owner = Message | Struct
 
 
-class Line(NamedTuple):
+class IcdLine(NamedTuple):
     """A node of a layout, with the message or struct and the ICD node that declare it."""
 
     node: LayoutNode
@@ -118,18 +118,18 @@ class Context:
         self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]
         # Nodes of all messages and structs, without derived values. The nodes of a
         # struct are listed once, with the struct.
-        self.lines: list[Line] = []
+        self.lines: list[IcdLine] = []
         # Lines with a scalar. For an array it is its element.
-        self.fields: list[tuple[Scalar, Line]] = []
+        self.fields: list[tuple[Scalar, IcdLine]] = []
         # Fields by key. Fields with the keys `unit` and `display` include derived
         # values.
-        self.fields_with: dict[str, list[tuple[Scalar, Line]]] = {
+        self.fields_with: dict[str, list[tuple[Scalar, IcdLine]]] = {
             key: [] for key in RARE_KEYS
         }
-        derived: list[tuple[Scalar, Line]] = []
+        derived: list[tuple[Scalar, IcdLine]] = []
         for owner, icd_node in self.owners:
             for node in owner.layout.nodes:
-                line = Line(node, owner, icd_node)
+                line = IcdLine(node, owner, icd_node)
                 # Most nodes are scalars, and large ICDs have 100,000 of them: the test
                 # saves a call for each.
                 scalar = node if type(node) is Scalar else scalar_of(node)

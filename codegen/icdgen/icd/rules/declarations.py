@@ -21,7 +21,7 @@ DUPLICATE_NAMES = frozenset(
 _TEXT = attrgetter("text")
 
 
-class Declared(NamedTuple):
+class LanguageIdentifiers(NamedTuple):
     """Identifiers that one language declares.
 
     There can be hundreds of thousands, so rules select some by text.
@@ -41,7 +41,7 @@ class Declared(NamedTuple):
         )
 
 
-def declared(ctx: Context) -> list[Declared]:
+def declared_identifiers(ctx: Context) -> list[LanguageIdentifiers]:
     """Return the identifiers that each language declares; computed once for all rules."""
     if ctx.declared is None:
         left_out = _left_out(ctx)
@@ -54,7 +54,9 @@ def declared(ctx: Context) -> list[Declared]:
             ]
             texts = Counter(map(_TEXT, identifiers))
             ctx.declared.append(
-                Declared(language.title, language.reserved, identifiers, texts)
+                LanguageIdentifiers(
+                    language.title, language.reserved, identifiers, texts
+                )
             )
     return ctx.declared
 

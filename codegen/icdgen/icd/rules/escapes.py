@@ -12,7 +12,7 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.framed_links import (
     DIRECTIONS,
     FIXED,
-    Link,
+    DeclaredLink,
     LinkPacket,
     carried_in,
     ids_of,
@@ -43,7 +43,7 @@ def escape_characters_fit(ctx: Context) -> Iterator[Fault]:
             yield from _first_bytes(ctx, link, framing)
 
 
-def _first_bytes(ctx: Context, link: Link, framing: Map) -> Iterator[Fault]:
+def _first_bytes(ctx: Context, link: DeclaredLink, framing: Map) -> Iterator[Fault]:
     """Yield the faults of packets whose first byte has another meaning after the escape
     byte.
     """
@@ -69,7 +69,7 @@ def _first_bytes(ctx: Context, link: Link, framing: Map) -> Iterator[Fault]:
 
 
 def _contents(
-    ctx: Context, link: Link, packet: LinkPacket
+    ctx: Context, link: DeclaredLink, packet: LinkPacket
 ) -> Iterator[tuple[str, int, str]]:
     """Yield direction, id and name of what a packet can contain."""
     for direction in packet.packet.directions:
@@ -87,7 +87,9 @@ def _contents(
             yield direction, id, name
 
 
-def _first_byte(link: Link, packet: LinkPacket, direction: str, id: int) -> int | None:
+def _first_byte(
+    link: DeclaredLink, packet: LinkPacket, direction: str, id: int
+) -> int | None:
     """Return the first byte of a packet; None if it is not only ids and constants."""
     shifts = (shift for _, shift in id_shifts([row for _, row in packet.rows]))
     order, byte, determined = link.node.bit_order, 0, 0

@@ -75,7 +75,7 @@ class LinkPacket(NamedTuple):
         return overhead
 
 
-class Link(NamedTuple):
+class DeclaredLink(NamedTuple):
     """Framing of the link of a node."""
 
     node: Node
@@ -111,12 +111,12 @@ class Link(NamedTuple):
         return self.section, "framing"
 
 
-def links(ctx: Context) -> Iterator[Link]:
+def links(ctx: Context) -> Iterator[DeclaredLink]:
     """Yield the framed links of the nodes that declare a valid one themselves."""
     return (link for link in all_links(ctx) if "framing" in link.section)
 
 
-def links_on_buses(ctx: Context) -> Iterator[Link]:
+def links_on_buses(ctx: Context) -> Iterator[DeclaredLink]:
     """Yield the other links of the nodes that declare a valid `link` themselves."""
     for link in all_links(ctx):
         if not framed_link(ctx.protocol_of(link.node)):
@@ -124,12 +124,12 @@ def links_on_buses(ctx: Context) -> Iterator[Link]:
 
 
 @cached_by_owner
-def all_links(ctx: Context) -> tuple[Link, ...]:
+def all_links(ctx: Context) -> tuple[DeclaredLink, ...]:
     """Return the links of the nodes that declare a valid `link` themselves."""
     return tuple(_links(ctx))
 
 
-def _links(ctx: Context) -> Iterator[Link]:
+def _links(ctx: Context) -> Iterator[DeclaredLink]:
     for node in ctx.icd.nodes:
         section = section_of(node, "link")
         if section is None:
@@ -152,7 +152,7 @@ def _links(ctx: Context) -> Iterator[Link]:
         ]
         # Otherwise the schema check reports the fields.
         if all(_is_sound(row) for packet in packets for _, row in packet.rows):
-            yield Link(node, section, declared, packets)
+            yield DeclaredLink(node, section, declared, packets)
 
 
 def _is_sound(row: Map) -> bool:
@@ -257,7 +257,7 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
         yield from _missing(ctx, link)
 
 
-def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
+def _missing(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of roles that a packet needs and no field has."""
     is_delimited = link.framing != "length"
     for packet in link.packets:
@@ -313,7 +313,7 @@ def ids_of(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]
 
 
 def carried_in(
-    ctx: Context, link: Link, packet: Packet, direction: str
+    ctx: Context, link: DeclaredLink, packet: Packet, direction: str
 ) -> list[tuple[int, Message]]:
     """Return the messages that are sent in a packet, with their ids."""
     return [
@@ -331,7 +331,7 @@ def frame_fields_fit(ctx: Context) -> Iterator[Fault]:
         yield from _contents(ctx, link)
 
 
-def _places(link: Link) -> Iterator[Fault]:
+def _places(link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of fields that are in too many bytes, or not contiguous.
 
     ICD092 reports overlaps.
@@ -363,7 +363,7 @@ def _places(link: Link) -> Iterator[Fault]:
             )
 
 
-def _values(link: Link) -> Iterator[Fault]:
+def _values(link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of constant values that do not have the width of their field."""
     for _, row in link.rows:
         values = row.get("value")
@@ -376,7 +376,7 @@ def _values(link: Link) -> Iterator[Fault]:
                 yield Fault.at(row, "value", text, "correct `bits` or `value`")
 
 
-def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
+def _contents(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of fields that are too narrow for the ids and lengths of the
     messages.
     """
@@ -492,7 +492,7 @@ def _checksums_in_steps(procedures: object) -> Iterator[str]:
                 yield name
 
 
-def _checksum_fields(link: Link) -> Iterator[tuple[LinkPacket, str, Map]]:
+def _checksum_fields(link: DeclaredLink) -> Iterator[tuple[LinkPacket, str, Map]]:
     """Yield each checksum field, the part in which it is, and the first packet with
     it.
     """
@@ -530,7 +530,7 @@ def _field_of(row: Map, checksum: Map) -> Iterator[Fault]:
         )
 
 
-def _checksum(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
+def _checksum(ctx: Context, link: DeclaredLink, checksum: Map) -> Iterator[Fault]:
     """Yield the faults of the parameters of a checksum."""
     width: int = checksum["width"]
     required = BITS_OF.get(checksum["kind"])
@@ -621,7 +621,7 @@ def _covered(
         yield Fault.at(covers, "from" if inside else "to", message, help)
 
 
-def _seeds(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
+def _seeds(ctx: Context, link: DeclaredLink, checksum: Map) -> Iterator[Fault]:
     """Yield the faults of `seeds`, the start value of a checksum for each message."""
     seeds = checksum.get("seeds")
     if not isinstance(seeds, Map):

@@ -12,7 +12,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.declarations import DUPLICATE_NAMES, declared
+from icdgen.icd.rules.declarations import DUPLICATE_NAMES, declared_identifiers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
 from icdgen.wording import listing, quote
@@ -85,7 +85,7 @@ class _Clashes:
 @rule("ICD070")
 def names_are_not_reserved(ctx: Context) -> Iterator[Fault]:
     clashes = _Clashes()
-    for names in declared(ctx):
+    for names in declared_identifiers(ctx):
         for identifier in names.spelled(names.reserved.intersection(names.texts)):
             clashes.add(names.language, identifier)
     for identifier, _, texts in clashes:
@@ -106,7 +106,7 @@ def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
         id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES
     }
     clashes = _Clashes()
-    for names in declared(ctx):
+    for names in declared_identifiers(ctx):
         seen: dict[tuple[str, str], Identifier] = {}
         for identifier in names.spelled(
             {text for text, times in names.texts.items() if times > 1}
@@ -166,7 +166,7 @@ def _is_file(text: str) -> bool:
 @rule("ICD072")
 def names_give_identifiers(ctx: Context) -> Iterator[Fault]:
     clashes = _Clashes()
-    for names in declared(ctx):
+    for names in declared_identifiers(ctx):
         # Two passes of C functions over hundreds of thousands of texts; the few that
         # remain are checked in Python.
         suspects = chain(

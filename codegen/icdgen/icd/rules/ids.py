@@ -21,7 +21,7 @@ from icdgen.wording import count, listing, quote
 LINKED_BITS = 8  # width of ids on links that are not framed
 
 
-class Use(NamedTuple):
+class IdUse(NamedTuple):
     """Use of an id in one direction, by a message or an entry of `missing`."""
 
     node: Node
@@ -32,11 +32,11 @@ class Use(NamedTuple):
     message: Message | None = None  # None for an entry of `missing`
 
 
-def _uses(node: Node) -> Iterator[Use]:
+def _uses(node: Node) -> Iterator[IdUse]:
     """Yield the ids of the messages of a node, and of its entries of `missing`."""
     for message in node.messages:
         for key, direction in KEYS_OF_IDS[message.kind]:
-            yield Use(
+            yield IdUse(
                 node,
                 direction,
                 wire_ids.number(message.source[key]),
@@ -46,10 +46,10 @@ def _uses(node: Node) -> Iterator[Use]:
             )
     for item in mappings(node.source.get("missing")):
         if item.get("kind") in (TELECOMMAND, TELEMETRY) and _is_id(item.get("id")):
-            yield Use(node, item["kind"], wire_ids.number(item["id"]), item, "id")
+            yield IdUse(node, item["kind"], wire_ids.number(item["id"]), item, "id")
 
 
-def _uses_in_scope(ctx: Context, node: Node) -> Iterator[Use]:
+def _uses_in_scope(ctx: Context, node: Node) -> Iterator[IdUse]:
     """Yield the uses of ids in a node and its included nodes."""
     for owner in ctx.scope(node):
         yield from _uses(owner)
@@ -72,7 +72,7 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         # On a link other than `link`, only the id identifies a message.
         is_linked = ctx.is_linked(node)
-        seen: dict[tuple[str, int], list[Use]] = {}
+        seen: dict[tuple[str, int], list[IdUse]] = {}
         for use in _uses_in_scope(ctx, node):
             before = seen.setdefault((use.direction, use.id), [])
             for first in before:
@@ -101,7 +101,7 @@ def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
     # ICD055 reports any two messages with the same id, if links identify a message by
     # its id alone.
     for node in filter(lambda node: not ctx.is_linked(node), ctx.icd.nodes):
-        seen: dict[tuple[str, int], Use] = {}
+        seen: dict[tuple[str, int], IdUse] = {}
         for use in (
             use for use in _uses_in_scope(ctx, node) if use.message is not None
         ):
@@ -122,7 +122,7 @@ def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
 
 
 def _unconfirmed(
-    ctx: Context, node: Node, first: Use, use: Use, unconfirmed: list[Use]
+    ctx: Context, node: Node, first: IdUse, use: IdUse, unconfirmed: list[IdUse]
 ) -> Fault:
     """Return the fault of two uses of an id, of which one or both lack `shares_id`."""
     line = line_of(first.source.at(first.key), use.source.at(use.key))
@@ -148,7 +148,7 @@ def confirmed_ids_are_shared(ctx: Context) -> Iterator[Fault]:
     # are considered before any finding.
     shared: set[int] = set()
     for node in ctx.icd.nodes:
-        users: dict[tuple[str, int], list[Use]] = {}
+        users: dict[tuple[str, int], list[IdUse]] = {}
         for use in _uses_in_scope(ctx, node):
             users.setdefault((use.direction, use.id), []).append(use)
         shared.update(
@@ -162,7 +162,7 @@ def confirmed_ids_are_shared(ctx: Context) -> Iterator[Fault]:
             )
 
 
-def _are_distinguishable(first: Use, second: Use) -> bool:
+def _are_distinguishable(first: IdUse, second: IdUse) -> bool:
     """Return whether frames of two uses of an id are distinguishable.
 
     Entries of `missing` never are.
@@ -174,7 +174,9 @@ def _are_distinguishable(first: Use, second: Use) -> bool:
     )
 
 
-def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
+def _same_id(
+    ctx: Context, node: Node, first: IdUse, use: IdUse, is_linked: bool
+) -> Fault:
     """Return the fault of two uses of an id that cannot be distinguished."""
     other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), use.source.at(use.key))})"
     message = f"{_id(ctx, use)} already belongs to {other}{together(node, use.node)}"
@@ -188,12 +190,12 @@ def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) ->
     return Fault.at(use.source, use.key, message, help, related=_first_use(first))
 
 
-def _id(ctx: Context, use: Use) -> str:
+def _id(ctx: Context, use: IdUse) -> str:
     """Return direction and id in the spelling of the file: ``telemetry id 0x82``."""
     return f"{use.direction} id {ctx.written(use.source, use.key)}"
 
 
-def _first_use(use: Use) -> Related:
+def _first_use(use: IdUse) -> Related:
     """Return the place of the first use of an id."""
     return Related(use.source.at(use.key), f"the id of {quote(use.source.get('name'))}")
 
@@ -213,7 +215,7 @@ def ids_are_in_range(ctx: Context) -> Iterator[Fault]:
 
 
 def _range_text(
-    ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]
+    ctx: Context, node: Node, use: IdUse, ranges: dict[str, tuple[int, int]]
 ) -> str:
     """Return the range of the protocol section in its spelling, ``0x80 to 0xFF``, or
     else the range of `id_bits`.
@@ -226,7 +228,7 @@ def _range_text(
 
 
 def _remedy(
-    ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]
+    ctx: Context, node: Node, use: IdUse, ranges: dict[str, tuple[int, int]]
 ) -> str:
     """Return the help for an id that is out of range."""
     if not ranges and ctx.is_linked(node):
@@ -253,7 +255,7 @@ def _remedy(
     return f"{wrong}, or the range in `link: ids`"
 
 
-def _has_its_bytes(use: Use) -> bool:
+def _has_its_bytes(use: IdUse) -> bool:
     """Return whether an id is a number, or a list of the right number of bytes."""
     written = use.source[use.key]
     return not isinstance(written, list) or len(written) == wire_ids.size(

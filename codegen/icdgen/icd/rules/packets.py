@@ -15,7 +15,7 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.framed_links import (
     DIRECTIONS,
     FIXED,
-    Link,
+    DeclaredLink,
     LinkPacket,
     carried_in,
     has_one_length,
@@ -40,7 +40,7 @@ def messages_have_one_packet(ctx: Context) -> Iterator[Fault]:
                 yield from _packet_of(link, message, direction)
 
 
-def _lists(ctx: Context, link: Link, packets: Map) -> Iterator[Fault]:
+def _lists(ctx: Context, link: DeclaredLink, packets: Map) -> Iterator[Fault]:
     """Yield the faults of the messages that packets list."""
     listed: dict[tuple[str, str], str] = {}
     broken = ctx.broken_messages(link.node)
@@ -71,7 +71,7 @@ def _lists(ctx: Context, link: Link, packets: Map) -> Iterator[Fault]:
                     yield Fault(packets[packet.name], place, text, help)
 
 
-def _packet_of(link: Link, message: Message, direction: str) -> Iterator[Fault]:
+def _packet_of(link: DeclaredLink, message: Message, direction: str) -> Iterator[Fault]:
     """Yield the fault of a message that is in no packet, or in one of several."""
     packets = link.declared.of(message.name, direction)
     if len(packets) == 1 or any(packet.messages for packet in packets):
@@ -106,7 +106,7 @@ def packets_can_be_distinguished(ctx: Context) -> Iterator[Fault]:
 
 
 def _precedes(
-    link: Link, first: LinkPacket, second: LinkPacket, direction: str
+    link: DeclaredLink, first: LinkPacket, second: LinkPacket, direction: str
 ) -> bool:
     """Return whether every packet of the second format also has the constants of the
     first.
@@ -118,7 +118,9 @@ def _precedes(
     )
 
 
-def _constant_bits(link: Link, packet: LinkPacket, direction: str) -> dict[int, int]:
+def _constant_bits(
+    link: DeclaredLink, packet: LinkPacket, direction: str
+) -> dict[int, int]:
     """Return the constant bits of a header, by their place in it."""
     bits: dict[int, int] = {}
     for part, row in packet.rows:
@@ -210,7 +212,7 @@ def requested_telemetry_is_recognized(ctx: Context) -> Iterator[Fault]:
 
 
 def _nameless(
-    ctx: Context, link: Link, requests: Map, packet: Packet
+    ctx: Context, link: DeclaredLink, requests: Map, packet: Packet
 ) -> Iterator[Fault]:
     """Yield the faults of telemetry in a packet without id.
 
@@ -263,7 +265,9 @@ def lengths_are_whole_units(ctx: Context) -> Iterator[Fault]:
                     break
 
 
-def _units(ctx: Context, link: Link, packet: LinkPacket, row: Map) -> Iterator[Fault]:
+def _units(
+    ctx: Context, link: DeclaredLink, packet: LinkPacket, row: Map
+) -> Iterator[Fault]:
     """Yield the faults of a length that cannot be counted in its unit."""
     unit, around = row.get("unit", 1), 0
     messages = [

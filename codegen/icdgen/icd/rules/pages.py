@@ -22,7 +22,7 @@ _EXAMPLES = re.compile(
 )
 
 
-class Page(NamedTuple):
+class RulePage(NamedTuple):
     """Page of a rule. The examples omit the head of the ICD."""
 
     title: str
@@ -33,7 +33,7 @@ class Page(NamedTuple):
 
 
 @cache
-def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
+def pages_of_theme(theme: str, folder: Path = FOLDER) -> dict[str, RulePage]:
     """Return the pages of a theme by code.
 
     Raises `ValueError` if a page does not have the usual form.
@@ -45,12 +45,15 @@ def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
         match = _EXAMPLES.match(text.strip("\n") + "\n")
         if match is None:
             raise ValueError(f"{theme}.md: {code} is not laid out like the others")
-        pages[code] = Page(title, match["why"], match["wrong"], match["right"])
+        pages[code] = RulePage(title, match["why"], match["wrong"], match["right"])
     return pages
 
 
-def text(
-    code: str, severity: str, page: Page, labels: tuple[str, str] = ("Wrong", "Right")
+def page_as_markdown(
+    code: str,
+    severity: str,
+    page: RulePage,
+    labels: tuple[str, str] = ("Wrong", "Right"),
 ) -> str:
     """Return a page as Markdown."""
     wrong, right = labels

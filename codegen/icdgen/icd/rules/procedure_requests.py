@@ -11,7 +11,7 @@ from icdgen.icd.model import TELECOMMAND
 from icdgen.icd.packets import is_requested
 from icdgen.icd.responses import REPLY, declared_responses
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.framed_links import Link, ids_of, links
+from icdgen.icd.rules.framed_links import DeclaredLink, ids_of, links
 from icdgen.icd.rules.procedures import procedures_in, steps_in
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import named
@@ -45,7 +45,7 @@ def telemetry_of_steps_can_be_requested(ctx: Context) -> Iterator[Fault]:
                 yield Fault(step, place, text, help)
 
 
-def _requests(ctx: Context, link: Link) -> Iterator[tuple[Map, object, Place]]:
+def _requests(ctx: Context, link: DeclaredLink) -> Iterator[tuple[Map, object, Place]]:
     """Yield each step that requests telemetry, with the name of the telemetry."""
     for owner in ctx.scope(link.node):
         for procedure in procedures_in(owner):

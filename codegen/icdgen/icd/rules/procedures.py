@@ -53,7 +53,7 @@ _ANYWHERE = ("if", "unless", "assumptions")
 _BLOCKS, _EACH, _ROUND, _REPEAT = "blocks", "each", "missing", "repeat"
 
 
-class Placed(NamedTuple):
+class PlacedStep(NamedTuple):
     """Step of a procedure, with what surrounds it."""
 
     step: Map
@@ -69,7 +69,7 @@ def _map(owner: Mapping[str, Any], key: str) -> Map:
     return value if isinstance(value, Map) else unread()
 
 
-class Names(NamedTuple):
+class ProcedureNames(NamedTuple):
     """Declarations to which the steps of a procedure can refer by name."""
 
     nodes: Mapping[str, Node]  # the node and those that it includes
@@ -94,13 +94,13 @@ class Names(NamedTuple):
         return field_of(message, name) if message else None
 
 
-def steps_in(rows: object, outer: Placed | None = None) -> Iterator[Placed]:
+def steps_in(rows: object, outer: PlacedStep | None = None) -> Iterator[PlacedStep]:
     """Yield the steps of a list, and the steps in them."""
     inside = outer.inside if outer else ()
     blocks, missing = (outer.blocks, outer.missing) if outer else (unread(), unread())
     for step in mappings(rows):
         kind = next((key for key in step if key in STEPS), "")
-        placed = Placed(step, kind, inside, blocks, missing)
+        placed = PlacedStep(step, kind, inside, blocks, missing)
         yield placed
         content = step.get(kind)
         if kind == "repeat":
@@ -125,7 +125,7 @@ def procedures_in(node: Node) -> Iterator[Map]:
             yield procedure
 
 
-def _procedures(ctx: Context) -> Iterator[Names]:
+def _procedures(ctx: Context) -> Iterator[ProcedureNames]:
     """Yield the procedures of all nodes, each once."""
     for node in ctx.icd.nodes:
         messages = {message.name: message for message in ctx.messages_of(node)}
@@ -140,7 +140,7 @@ def _procedures(ctx: Context) -> Iterator[Names]:
                 for step, kind, *_ in steps_in(procedure.get("steps"))
                 if kind in ("get", "poll") and named(messages, step[kind]) is not None
             }
-            yield Names(nodes, procedure, messages, checksums, frames)
+            yield ProcedureNames(nodes, procedure, messages, checksums, frames)
 
 
 @rule("ICD190")
@@ -182,7 +182,7 @@ def _keys(step: Map, kind: str) -> Iterator[Fault]:
         yield Fault.at_key(step, "unless", text, "remove one of them")
 
 
-def _where(placed: Placed) -> Iterator[Fault]:
+def _where(placed: PlacedStep) -> Iterator[Fault]:
     """Yield the faults of a step that is not where it has a meaning."""
     step, kind, inside = placed.step, placed.kind, placed.inside
     wanted = {
@@ -235,7 +235,7 @@ _DIRECTIONS = {
 }
 
 
-def _messages(names: Names, placed: Placed) -> Iterator[Fault]:
+def _messages(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
     """Yield the faults of the messages that a step names."""
     step, kind = placed.step, placed.kind
     if kind in _DIRECTIONS and isinstance(step[kind], str):
@@ -267,7 +267,7 @@ def _unknown(owner: Map, key: str, what: str, existing: Iterable[str]) -> Fault:
     return Fault.at(owner, key, f"there is no {what} {quote(owner[key])}", *remedy)
 
 
-def _own_message(names: Names, placed: Placed) -> Message | None:
+def _own_message(names: ProcedureNames, placed: PlacedStep) -> Message | None:
     """Return the message whose fields the keys of a step name."""
     name = placed.step.get(placed.kind)
     if placed.kind == "map":
@@ -276,7 +276,7 @@ def _own_message(names: Names, placed: Placed) -> Message | None:
     return named(names.messages, name)
 
 
-def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
+def _fields(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
     """Yield the faults of fields that a step names: they do not exist, or are no number
     that it can use.
     """
@@ -316,7 +316,7 @@ def _fields(names: Names, placed: Placed) -> Iterator[Fault]:
 
 
 def _reason_against(
-    names: Names, message: Message, field: NodePlace, is_bytes: bool
+    names: ProcedureNames, message: Message, field: NodePlace, is_bytes: bool
 ) -> str:
     """Return why a step cannot use a field; "" if it can."""
     if field.is_read_only:
@@ -338,7 +338,7 @@ def _reason_against(
     return "" if is_run else "is not one run of bits in 4 bytes"
 
 
-def _values(names: Names, placed: Placed) -> Iterator[Fault]:
+def _values(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
     """Yield the faults of the values that a step uses."""
     step = placed.step
     for key in ("with", "until", "fail"):
@@ -370,7 +370,9 @@ def _values(names: Names, placed: Placed) -> Iterator[Fault]:
         yield Fault.at(verify, "of", text, f"write `{BLOCK}`, or an input of bytes")
 
 
-def _value(names: Names, placed: Placed, owner: Map, key: str) -> Iterator[Fault]:
+def _value(
+    names: ProcedureNames, placed: PlacedStep, owner: Map, key: str
+) -> Iterator[Fault]:
     """Yield the faults of a value: a number, or the name of one."""
     value = owner[key]
     if not isinstance(value, str):
@@ -389,7 +391,9 @@ def _value(names: Names, placed: Placed, owner: Map, key: str) -> Iterator[Fault
     yield from _reference(names, owner, key, True)
 
 
-def _packet_data(names: Names, placed: Placed, owner: Map, key: str) -> Iterator[Fault]:
+def _packet_data(
+    names: ProcedureNames, placed: PlacedStep, owner: Map, key: str
+) -> Iterator[Fault]:
     """Yield the faults of a field that gets the bytes of a packet."""
     if _EACH not in placed.inside:
         text = f"`{PACKET_DATA}` has a value in the steps of `each` only"
@@ -405,7 +409,7 @@ def _packet_data(names: Names, placed: Placed, owner: Map, key: str) -> Iterator
 
 
 def _reference(
-    names: Names, owner: Map, key: str, may_be_input: bool
+    names: ProcedureNames, owner: Map, key: str, may_be_input: bool
 ) -> Iterator[Fault]:
     """Yield the fault of a name that is neither a field of requested telemetry nor, if
     this is possible, an input that is a number.
@@ -430,7 +434,7 @@ def _reference(
         yield Fault.at(owner, key, f"{quote(value)} {reason}", "name another field")
 
 
-def _flag(names: Names, placed: Placed, key: str) -> Iterator[Fault]:
+def _flag(names: ProcedureNames, placed: PlacedStep, key: str) -> Iterator[Fault]:
     """Yield the faults of a condition, which is a flag."""
     value = placed.step[key]
     if value == "block.is_empty" and _BLOCKS in placed.inside:
@@ -444,14 +448,14 @@ def _flag(names: Names, placed: Placed, key: str) -> Iterator[Fault]:
         yield Fault.at(placed.step, key, text, help)
 
 
-def _last_frame(names: Names, placed: Placed) -> Iterator[Fault]:
+def _last_frame(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
     """Yield the fault of a frame that no step requests."""
     name = placed.step[placed.kind]
     if isinstance(name, str) and name not in names.frames:
         yield _unknown(placed.step, placed.kind, "telemetry", names.frames)
 
 
-def _inputs(names: Names, steps: list[Placed]) -> Iterator[Fault]:
+def _inputs(names: ProcedureNames, steps: list[PlacedStep]) -> Iterator[Fault]:
     """Yield the faults of inputs that no step uses, or that lack their size."""
     # Values of the step itself, and of mappings in it such as `with`, `verify` and
     # `blocks`.
@@ -504,7 +508,7 @@ def procedures_have_limits(ctx: Context) -> Iterator[Fault]:
         yield from _optional_inputs(names, transfers)
 
 
-def _limits(limits: Map, steps: list[Placed]) -> Iterator[Fault]:
+def _limits(limits: Map, steps: list[PlacedStep]) -> Iterator[Fault]:
     """Yield the faults of limits that are absent, or limit nothing."""
     receives = any(
         placed.kind == "blocks" and "of" not in _map(placed.step, "blocks")
@@ -524,7 +528,7 @@ def _limits(limits: Map, steps: list[Placed]) -> Iterator[Fault]:
             yield Fault.at_key(limits, key, text, "remove it")
 
 
-def _transfer(names: Names, blocks: Map) -> Iterator[Fault]:
+def _transfer(names: ProcedureNames, blocks: Map) -> Iterator[Fault]:
     """Yield the faults of what `blocks` transfers."""
     if "of" in blocks:
         if names.type_of(blocks["of"]) != BYTES:
@@ -578,7 +582,7 @@ def _repetition(step: Map) -> Iterator[Fault]:
         yield Fault.at_key(step, "repeat", text, "add a step with `get` or `poll`")
 
 
-def _optional_inputs(names: Names, transfers: list[Map]) -> Iterator[Fault]:
+def _optional_inputs(names: ProcedureNames, transfers: list[Map]) -> Iterator[Fault]:
     """Yield the faults of optional inputs: only the number of bytes to receive can be
     left out.
     """
@@ -621,7 +625,7 @@ def sizes_of_procedures_fit(ctx: Context) -> Iterator[Fault]:
             yield Fault.at_key(names.procedure, "steps", text, "write two procedures")
 
 
-def _sizes(names: Names, placed: Placed) -> Iterator[Fault]:
+def _sizes(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
     """Yield the faults of fields that are too small for a block and its packets."""
     step, kind = placed.step, placed.kind
     size, packet = placed.blocks.get("size"), placed.missing.get("packet")
@@ -657,7 +661,7 @@ def _sizes(names: Names, placed: Placed) -> Iterator[Fault]:
             )
 
 
-def _total(names: Names, blocks: Map) -> int | None:
+def _total(names: ProcedureNames, blocks: Map) -> int | None:
     """Return the largest number of bytes that `blocks` transfers; None if the ICD does
     not say it.
     """
@@ -669,7 +673,7 @@ def _total(names: Names, blocks: Map) -> int | None:
 
 
 def _numbers_of_block(
-    names: Names, message: Message, placed: Placed, size: int
+    names: ProcedureNames, message: Message, placed: PlacedStep, size: int
 ) -> Iterator[Fault]:
     """Yield the faults of fields that cannot hold a number of a block or a packet."""
     packet = placed.missing.get("packet", size)

@@ -80,7 +80,7 @@ def named_messages_and_members_exist(ctx: Context) -> Iterator[Fault]:
                             )
 
 
-class _Named(NamedTuple):
+class _NamedField(NamedTuple):
     """Name of a field in the protocol section: ``owner[key]`` is the name of a field of
     ``message``.
     """
@@ -90,7 +90,7 @@ class _Named(NamedTuple):
     message: Message
 
 
-def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
+def _named_fields(ctx: Context, node: Node) -> Iterator[_NamedField]:
     """Yield the names of fields in the protocol section of a node."""
     messages = {message.name: message for message in ctx.messages_of(node)}
     for section in sections(node):
@@ -102,7 +102,7 @@ def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
         for owner, key, name in references:
             message = named(messages, name)
             if message is not None and isinstance(owner[key], str):
-                yield _Named(owner, key, message)
+                yield _NamedField(owner, key, message)
 
 
 @rule("ICD094", needs_complete=True)

@@ -34,7 +34,7 @@ from icdgen.icd.responses import (
     reason_of,
 )
 from icdgen.icd.rules.context import PATH_OF_BUSES, Context
-from icdgen.icd.rules.framed_links import Link, ids_of, links
+from icdgen.icd.rules.framed_links import DeclaredLink, ids_of, links
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path
@@ -56,10 +56,10 @@ STREAM_SETTINGS = ("busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
 """Keys of `client` that only framed links use."""
 
 
-class Declared(NamedTuple):
+class DeclaredResponse(NamedTuple):
     """Response that the ICD declares, with the telecommands that have it."""
 
-    link: Link
+    link: DeclaredLink
     owner: Map  # mapping with the key `kind`
     kind: str
     row: Map  # mapping of the response; empty if it is only a name
@@ -79,7 +79,7 @@ class Declared(NamedTuple):
         return Fault.at(owner, key, message, help, fix)
 
 
-def _owners(ctx: Context, link: Link) -> list[tuple[Map, list[Message]]]:
+def _owners(ctx: Context, link: DeclaredLink) -> list[tuple[Map, list[Message]]]:
     """Return each mapping with responses and the telecommands to which it applies.
 
     The mapping of responses to telemetry requests applies to no telecommands.
@@ -97,7 +97,9 @@ def _owners(ctx: Context, link: Link) -> list[tuple[Map, list[Message]]]:
     return [(commands, telecommands), *own, (requests, [])]
 
 
-def declared_in(ctx: Context, link: Link) -> Iterator[Declared]:
+def declared_responses_in(
+    ctx: Context, link: DeclaredLink
+) -> Iterator[DeclaredResponse]:
     """Yield the responses of a link that conform to the schema."""
     commands, requests = (link.section.get(key) for key in ("commands", "requests"))
     for owner, messages in _owners(ctx, link):
@@ -113,7 +115,7 @@ def declared_in(ctx: Context, link: Link) -> Iterator[Declared]:
                     for message in messages
                     if owner is not commands or _inherits(message, kind)
                 ]
-                yield Declared(
+                yield DeclaredResponse(
                     link, owner, kind, row, name, users, is_packet, owner is requests
                 )
 
@@ -135,7 +137,7 @@ def _inherits(message: Message, kind: str) -> bool:
     return own is None or (isinstance(own, Map) and kind not in own)
 
 
-def telemetry_of(ctx: Context, declared: Declared) -> Message | None:
+def telemetry_of(ctx: Context, declared: DeclaredResponse) -> Message | None:
     """Return the telemetry that a response names; None for an unknown name."""
     telemetry = ids_of(ctx, declared.link.node, TELEMETRY)
     return next((each for _, each in telemetry if each.name == declared.name), None)
@@ -150,10 +152,10 @@ def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
         telecommands = {each.name for _, each in ids_of(ctx, link.node, TELECOMMAND)}
         broken = ctx.broken_messages(link.node)
         yield from _sources(ctx, link)
-        for declared in declared_in(ctx, link):
+        for declared in declared_responses_in(ctx, link):
             name = declared.name
             if declared.is_packet:
-                yield from _of_packet(declared)
+                yield from _packet_faults(declared)
             elif name in telecommands and name not in names:
                 message = f"{quote(name)} is a telecommand, and a response comes from the device"
                 yield declared.fault("message", message, "name telemetry")
@@ -171,7 +173,7 @@ def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
                 )
 
 
-def _sources(ctx: Context, link: Link) -> Iterator[Fault]:
+def _sources(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of responses that name neither telemetry nor a packet, or both."""
     for owner, _ in _owners(ctx, link):
         for kind in KINDS:
@@ -187,7 +189,7 @@ def _sources(ctx: Context, link: Link) -> Iterator[Fault]:
                 yield Fault.at_key(owner, kind, text, help)
 
 
-def _of_packet(declared: Declared) -> Iterator[Fault]:
+def _packet_faults(declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of the packet that is a response."""
     packet, names = declared.packet, [each.name for each in declared.link.declared.all]
     if packet is None:
@@ -208,7 +210,7 @@ def _of_packet(declared: Declared) -> Iterator[Fault]:
 @rule("ICD177")
 def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
-        for declared in declared_in(ctx, link):
+        for declared in declared_responses_in(ctx, link):
             if declared.packet is None and telemetry_of(ctx, declared) is None:
                 continue  # ICD176
             yield from comparison_faults(ctx, declared)
@@ -216,14 +218,14 @@ def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
         yield from _numbers_of_parts(ctx, link)
 
 
-def comparison_faults(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def comparison_faults(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of the fields of a response that a client compares."""
     yield from _echoes(ctx, declared)
     yield from _status(ctx, declared)
     yield from _reason(ctx, declared)
 
 
-class Compared(NamedTuple):
+class ComparedField(NamedTuple):
     """Field of a response that a client compares with a number."""
 
     name: str
@@ -238,9 +240,9 @@ class Compared(NamedTuple):
         return integer_range(self.bits, self.is_signed)
 
 
-def compared(
-    ctx: Context, declared: Declared, name: str, key: str
-) -> tuple[Compared | None, str, str]:
+def compared_field(
+    ctx: Context, declared: DeclaredResponse, name: str, key: str
+) -> tuple[ComparedField | None, str, str]:
     """Return the field that ``key`` of a response names; otherwise what is wrong, and
     its remedy.
     """
@@ -250,7 +252,7 @@ def compared(
         if row is not None:
             parts = packet.of(ID_ROLE) if row["role"] == ID_ROLE else [row]
             id_bits = sum(part["bits"] for part in parts)
-            return Compared(name, row["bits"], enum, False, id_bits), "", ""
+            return ComparedField(name, row["bits"], enum, False, id_bits), "", ""
         known = [row.get("name", row["role"]) for row in packet.rows]
         text = f"the packet {quote(packet.name)} has no field {quote(name)}"
         return (
@@ -264,10 +266,10 @@ def compared(
     if field is None:
         return None, text, help
     signed = field.scalar.is_signed
-    return Compared(name, field.bits, enum, signed, field.bits), "", ""
+    return ComparedField(name, field.bits, enum, signed, field.bits), "", ""
 
 
-def enum_of(ctx: Context, declared: Declared, name: str | None) -> Enum | None:
+def enum_of(ctx: Context, declared: DeclaredResponse, name: str | None) -> Enum | None:
     """Return the enumeration of a field of a response; None without one."""
     if declared.packet is not None:
         row = declared.packet.named(name or "") or {}
@@ -279,8 +281,8 @@ def enum_of(ctx: Context, declared: Declared, name: str | None) -> Enum | None:
     return field.scalar.enum if field else None
 
 
-def _no_echo(
-    ctx: Context, declared: Declared, field: Compared, repeated: str
+def _reason_against_echo(
+    ctx: Context, declared: DeclaredResponse, field: ComparedField, repeated: str
 ) -> tuple[str, str]:
     """Return why a field cannot repeat a part of the telecommands, or of a request of
     telemetry, and the remedy; two empty texts if it can.
@@ -288,7 +290,9 @@ def _no_echo(
     node, name = declared.link.node, field.name
     width = field.id_bits if repeated == ID else field.bits
     if repeated.startswith(HEADER):
-        return _no_header(declared, name, width, repeated.removeprefix(HEADER))
+        return _reason_against_header_echo(
+            declared, name, width, repeated.removeprefix(HEADER)
+        )
     if declared.is_of_request:
         if repeated != ID and id_byte_of(node, repeated) is None:
             text = "a request of telemetry has no part but its id and its header"
@@ -305,10 +309,10 @@ def _no_echo(
     return "", ""
 
 
-def _numbers_of_parts(ctx: Context, link: Link) -> Iterator[Fault]:
+def _numbers_of_parts(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield a fault for each telecommand of which responses repeat too many parts."""
     parts: dict[int, set[str]] = {}
-    for declared in declared_in(ctx, link):
+    for declared in declared_responses_in(ctx, link):
         for message in declared.telecommands:
             repeated = parts.setdefault(id(message), set())
             before = len(repeated)
@@ -363,7 +367,7 @@ def _obstacle(message: Message, node: Node, name: str, field: NodePlace | None) 
     return ""
 
 
-def _echoes(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def _echoes(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of fields that repeat parts of the telecommand."""
     row = declared.row
     echo = row.get("echo")
@@ -372,7 +376,7 @@ def _echoes(ctx: Context, declared: Declared) -> Iterator[Fault]:
         if not isinstance(repeated, str):
             continue
         key = name if isinstance(echo, Map) else "echo"
-        field, text, help = compared(ctx, declared, name, "echo")
+        field, text, help = compared_field(ctx, declared, name, "echo")
         if field is None:
             yield Fault.at_key(owner, key, text, help)
             continue
@@ -381,13 +385,13 @@ def _echoes(ctx: Context, declared: Declared) -> Iterator[Fault]:
                 text = f"{quote(name)} repeats a part of the telecommand, so it cannot be the {other}"
                 help = f"let `echo` or `{other}` name another field"
                 yield Fault.at(row, other, text, help)
-        text, help = _no_echo(ctx, declared, field, repeated)
+        text, help = _reason_against_echo(ctx, declared, field, repeated)
         if text:
             yield Fault.at(owner, key, text, help)
 
 
-def _no_header(
-    declared: Declared, name: str, width: int, repeated: str
+def _reason_against_header_echo(
+    declared: DeclaredResponse, name: str, width: int, repeated: str
 ) -> tuple[str, str]:
     """Return why a field cannot repeat a field of the header of the telecommands or of
     a request, and the remedy; two empty texts if it can.
@@ -447,7 +451,7 @@ def _misfit(
     return text, "give both the same width, or name another field"
 
 
-def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def _status(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of the field that says whether the telecommand was executed."""
     row = declared.row
     if declared.kind not in NEEDED:
@@ -461,7 +465,7 @@ def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
                 text = f"`{key}` lists values of a status, and there is no `status`"
                 yield Fault.at_key(row, key, text, f"add `status`, or remove `{key}`")
         return
-    field, text, help = compared(ctx, declared, name, "status")
+    field, text, help = compared_field(ctx, declared, name, "status")
     if field is None:
         yield Fault.at(row, "status", text, help)
         return
@@ -471,7 +475,7 @@ def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
     yield from _values(declared, field)
 
 
-def _busy_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def _busy_reasons(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of the reasons for which a refusal is only a busy device."""
     row = declared.row
     if declared.kind != NAK or not isinstance(row.get(BUSY), Seq):
@@ -481,12 +485,12 @@ def _busy_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
         text = "`busy` lists reasons, and no field has the reason"
         yield Fault.at_key(row, BUSY, text, "add `reason`, or remove `busy`")
     else:
-        field, _, _ = compared(ctx, declared, name, "reason")
+        field, _, _ = compared_field(ctx, declared, name, "reason")
         if field is not None:
             yield from _values(declared, field)
 
 
-def _values(declared: Declared, field: Compared) -> Iterator[Fault]:
+def _values(declared: DeclaredResponse, field: ComparedField) -> Iterator[Fault]:
     """Yield the faults of the listed values of a field, and what each means."""
     row, name = declared.row, field.name
     seen: dict[int, str] = {}
@@ -521,7 +525,7 @@ def _values(declared: Declared, field: Compared) -> Iterator[Fault]:
                 seen[number] = key
 
 
-def _reason(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def _reason(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of the field with the reason of a refusal."""
     row = declared.row
     yield from _ranges_of_reasons(ctx, declared)
@@ -532,7 +536,7 @@ def _reason(ctx: Context, declared: Declared) -> Iterator[Fault]:
         text = f"a response `{declared.kind}` without a status refuses nothing, so it has no reason"
         yield Fault.at_key(row, "reason", text, "add `status`, or remove `reason`")
         return
-    field, text, help = compared(ctx, declared, name, "reason")
+    field, text, help = compared_field(ctx, declared, name, "reason")
     if field is None:
         yield Fault.at(row, "reason", text, help)
     elif field.enum is None:
@@ -542,7 +546,7 @@ def _reason(ctx: Context, declared: Declared) -> Iterator[Fault]:
         yield Fault.at(row, "reason", text, help)
 
 
-def _ranges_of_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
+def _ranges_of_reasons(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
     """Yield the faults of reasons that are too many values."""
     enum = enum_of(ctx, declared, reason_of(declared.row))
     for member in enum.members if enum else ():
@@ -554,14 +558,14 @@ def _ranges_of_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
             yield Fault.at(declared.row, key, text, help)
 
 
-def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
+def _reasons(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of reasons that no refusal has."""
     commands = link.section.get("commands")
     reasons = commands.get("reasons") if isinstance(commands, Map) else None
     if not isinstance(reasons, Map):
         return
     members: list[str] = []
-    for declared in declared_in(ctx, link):
+    for declared in declared_responses_in(ctx, link):
         enum = enum_of(ctx, declared, reason_of(declared.row))
         members += [member.name for member in enum.members] if enum else []
     for cause, name in reasons.items():
@@ -588,7 +592,7 @@ def telecommands_of_one_id_have_one_response(ctx: Context) -> Iterator[Fault]:
 
 
 def _places_of_variants(
-    link: Link, first: Message, message: Message
+    link: DeclaredLink, first: Message, message: Message
 ) -> Iterator[Fault]:
     """Yield a fault if a part that responses repeat is at different places in two
     messages of one id.

@@ -10,7 +10,7 @@ from icdgen.icd.fault import Fault
 
 if TYPE_CHECKING:
     from icdgen.icd.rules.context import Context
-    from icdgen.icd.rules.pages import Page
+    from icdgen.icd.rules.pages import RulePage
 
 
 Check = Callable[["Context"], Iterator[Fault]]
@@ -28,11 +28,11 @@ class Rule(NamedTuple):
     runs_last: bool = False  # depends on the findings of other rules
 
     @property
-    def page(self) -> Page:
+    def page(self) -> RulePage:
         """Title, reason, wrong and right example of the rule."""
         from icdgen.icd.rules import pages
 
-        return pages.of(self.theme)[self.code]
+        return pages.pages_of_theme(self.theme)[self.code]
 
     @property
     def title(self) -> str:
