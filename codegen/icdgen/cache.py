@@ -93,7 +93,9 @@ def remember(kind: str, name: str, data: bytes, files: dict[str, str]) -> None:
     body = head + b"\0" + data
     try:
         for place in (top, os.path.join(top, kind)):
-            _make(place)
+            if not os.path.isdir(place):
+                os.makedirs(os.path.dirname(place) or ".", exist_ok=True)
+                os.mkdir(place, 0o700)
             if not _is_private_folder(place):
                 return
         _write_atomically(
@@ -147,13 +149,6 @@ def _read_private_file(path: str) -> bytes:
             return file.read() if is_own and status.st_size <= _BYTES else b""
     except OSError:
         return b""
-
-
-def _make(place: str) -> None:
-    """Create a folder that only the user can access, unless it exists."""
-    if not os.path.isdir(place):
-        os.makedirs(os.path.dirname(place) or ".", exist_ok=True)
-        os.mkdir(place, 0o700)
 
 
 def _write_atomically(target: str, data: bytes) -> None:

@@ -283,11 +283,8 @@ def message_of_frame(
         # Of messages with as many constants, `max` returns the first in the order of
         # the ICD.
         return max(matches, key=lambda match: match[0])[1]
-    lengths = {
-        length
-        for message in messages
-        for length in (message.layout.shortest, message.layout.longest)
-    }
+    lengths = {message.layout.shortest for message in messages}
+    lengths |= {message.layout.longest for message in messages}
     if len(lengths) == 1 and len(frame) not in lengths:
         raise LengthError(messages[0], lengths.pop(), len(frame))
     return None

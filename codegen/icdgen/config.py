@@ -1,13 +1,14 @@
-"""Configuration file ``icdgen.toml`` of a project.
+"""Configuration file ``icdgen.toml`` of a project: finds, reads and checks it.
 
-``docs/reference/configuration.md`` describes it.
+``docs/reference/configuration.md`` describes the keys. An example::
 
-name = "thruster"                # of the project, and of its Python package and Rust
-crate icds = ["icd/thruster.yaml"]     # files or folders, relative to this file lang =
-["c", "python"] out = "generated"
+    name = "thruster"             # of the project, and of what it generates
+    icds = ["icd/thruster.yaml"]  # files or folders, relative to this file
+    lang = ["c", "python"]
+    out = "generated"
 
-[rust]
-crate = "thruster_icd"
+    [rust]
+    crate = "thruster_icd"
 """
 
 from __future__ import annotations
@@ -212,11 +213,10 @@ def _place(path: Path, text: str, section: str, key: str) -> Place:
             inside = head[1]
             if not section and inside == key:
                 return Place(str(path), number, head.start(1) + 1, len(key))
-        match = (
-            re.match(rf"\s*({names if inside == section else dotted})\s*[=.]", line)
-            if inside in ("", section)
-            else None
-        )
+        if inside not in ("", section):
+            continue
+        pattern = names if inside == section else dotted
+        match = re.match(rf"\s*({pattern})\s*[=.]", line)
         if match:
             return Place(str(path), number, match.start(1) + 1, len(match[1]))
     return Place(str(path))

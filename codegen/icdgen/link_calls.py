@@ -138,13 +138,13 @@ class _LinkBuilder:
             "mask": self.mask(),
             "log_file": self.part(facts.log_file),
             "log_message": self.part(facts.log_message),
-            "time": self.commented_rest(time or None, "msdos_time"),
+            "time": self.with_section_reasons(time or None, "msdos_time"),
             "index_file": self.index(),
             "identification": facts.identification
             and self.report(facts.identification),
             "statistics": facts.statistics and self.report(facts.statistics),
             "boot_time": facts.boot_ms,
-            "stream": self.commented_rest(
+            "stream": self.with_section_reasons(
                 facts.stream and _stream(facts.stream), "link"
             ),
             "procedures": {
@@ -157,7 +157,7 @@ class _LinkBuilder:
             or None,
             "unsolicited": facts.unsolicited or None,
             "bus_exchanges": {
-                bus: self.commented_rest(
+                bus: self.with_section_reasons(
                     _bus_exchanges(each), f"link.buses.{bus}.commands.ack"
                 )
                 for bus, each in facts.bus_exchanges.items()
@@ -171,7 +171,7 @@ class _LinkBuilder:
             **{key: part for key, part in optional.items() if part is not None},
         )
 
-    def commented_rest(self, value: object, section: str) -> object:
+    def with_section_reasons(self, value: object, section: str) -> object:
         """Return a value, with the reasons for assumptions of a section that no comment
         of its keys has.
         """
@@ -200,7 +200,7 @@ class _LinkBuilder:
     def acknowledge(self) -> object:
         """Return the length of the acknowledge on the UART."""
         packet = self.facts.acknowledge
-        return packet and self.commented_rest(
+        return packet and self.with_section_reasons(
             packet.overhead, f"link.packets.{packet.name}"
         )
 
@@ -274,7 +274,7 @@ class _LinkBuilder:
         flags = {} if telecommand.message.acknowledge else {"acknowledged": False}
         flags |= {"setting": True} if telecommand.is_setting else {}
         message = telecommand.message
-        return self.commented_rest(
+        return self.with_section_reasons(
             _row("Sent", message.length, **flags), f"message {message.name}"
         )
 

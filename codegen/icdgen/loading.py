@@ -1,4 +1,9 @@
-"""Load ICDs with all checks, including the checks of names in generated code."""
+"""Load ICDs with all checks, including the checks of names in generated code.
+
+`icdgen.icd.load` reads the files and checks the rules, but does not depend on the
+backends. This module passes it the languages of the backends. Commands that generate
+code call `icdgen.model_cache` instead, which calls this module if a file has changed.
+"""
 
 from __future__ import annotations
 

@@ -45,10 +45,10 @@ def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     and digits.
     """
     text = latin(name)
-    known = [word for word in _longest_first(vocabulary) if word in text]
+    unsplit = [word for word in _longest_first(vocabulary) if word in text]
     parts: list[str] = []
     for chunk in _SEPARATORS.split(text):
-        parts += _split_by_vocabulary(chunk, known) if known else _humps(chunk)
+        parts += _split_by_vocabulary(chunk, unsplit) if unsplit else _humps(chunk)
     return tuple(parts)
 
 

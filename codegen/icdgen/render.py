@@ -73,7 +73,9 @@ class Renderer:
         self._environment.context_class = _context_class()
 
     @classmethod
-    def of(cls, backend: RenderedBackend, override: Path | None = None) -> Renderer:
+    def of_backend(
+        cls, backend: RenderedBackend, override: Path | None = None
+    ) -> Renderer:
         """Return the renderer of a backend, with its own folders of templates and
         runtime if it has them.
         """

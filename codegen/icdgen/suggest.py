@@ -1,4 +1,8 @@
-"""Similar names, to suggest a correction for a mistyped name."""
+"""Similar names, to suggest a correction for a mistyped name.
+
+`close_words` compares the name with all valid names and returns the similar ones, and
+`question` makes the help of an error message of them.
+"""
 
 from __future__ import annotations
 

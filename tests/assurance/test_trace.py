@@ -39,7 +39,7 @@ class Pack:
         backend = backends.get("assurance")
         self.files = {
             str(path): made
-            for path, made in backend.files(self.icd, Renderer.of(backend))
+            for path, made in backend.files(self.icd, Renderer.of_backend(backend))
         }
         self.vectors = Vectors(
             {

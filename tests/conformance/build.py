@@ -93,7 +93,7 @@ def generated(language: Language, icd: Icd) -> dict[str, bytes]:
 
 @cache
 def renderer(name: str) -> Renderer:
-    return Renderer.of(backends.get(name))
+    return Renderer.of_backend(backends.get(name))
 
 
 def execute(

@@ -70,7 +70,7 @@ def test_what_else_the_section_says_is_told_by_the_site_and_the_diff(key, source
 
 def page(icd):
     """The first page on how a node talks."""
-    render = Renderer.of(backends.get("html"))
+    render = Renderer.of_backend(backends.get("html"))
     return next(
         text
         for path, text in site.files(icd, render, Packages())

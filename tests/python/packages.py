@@ -71,7 +71,10 @@ def files(icd: Icd, name: str = "icdgen_messages") -> dict[str, str]:
 def testee(icd: Icd, name: str) -> dict[str, str]:
     """What answers questions about the package, from within."""
     backend = PythonTesteeBackend(name)
-    return {str(path): text for path, text in backend.files(icd, Renderer.of(backend))}
+    return {
+        str(path): text
+        for path, text in backend.files(icd, Renderer.of_backend(backend))
+    }
 
 
 def write(icd: Icd, folder: Path, name: str) -> Package:

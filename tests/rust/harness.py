@@ -31,7 +31,7 @@ BACKENDS = ("rust", "rust-testee")
 
 @cache
 def _renderer(name: str) -> Renderer:
-    return Renderer.of(backends.get(name))
+    return Renderer.of_backend(backends.get(name))
 
 
 def texts(icd: Icd, backend: str = "rust") -> dict[str, str]:

@@ -16,7 +16,7 @@ from tests.conftest import ROOT
 from tests.site.conftest import program
 
 GENERATED = ROOT / "generated"
-RENDER = Renderer.of(backends.get("html"))
+RENDER = Renderer.of_backend(backends.get("html"))
 
 
 def snippets(icd, key: str) -> list[str]:

@@ -36,7 +36,7 @@ class Compared:
 def write(icd: Icd, out: Path) -> dict[str, Path]:
     """The files of a set of ICDs, by the names of their nodes."""
     backend, found = XtceBackend(), {}
-    for name, text in backend.files(icd, Renderer.of(backend)):
+    for name, text in backend.files(icd, Renderer.of_backend(backend)):
         found[name.stem] = out / name
         (out / name).write_text(text, encoding="utf-8")
     return found

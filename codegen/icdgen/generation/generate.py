@@ -90,7 +90,7 @@ def run(job: Job) -> GenerationOutcome:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
     for backend in chosen:
-        render = Renderer.of(backend, job.templates)
+        render = Renderer.of_backend(backend, job.templates)
         if hasattr(backend, "measured"):
             backend.measured = job.measured
         if hasattr(backend, "packages"):

@@ -1,6 +1,8 @@
 """Optional fields.
 
 The key `when` names other fields and the values that they have if the field is present.
+`conditions_of` makes the conditions of the model. `faults_of_names` and
+`faults_of_values` yield what the rules in `icdgen.icd.rules.conditional` report.
 """
 
 from __future__ import annotations
@@ -143,13 +145,9 @@ def _as_list(value: object) -> list[object]:
 
 def _shown(value: object) -> str:
     """Return a value in the syntax of an ICD; text in backticks."""
-    return (
-        str(value).lower()
-        if isinstance(value, bool)
-        else f"`{value}`"
-        if isinstance(value, str)
-        else str(value)
-    )
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"`{value}`" if isinstance(value, str) else str(value)
 
 
 def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | None:
@@ -236,8 +234,9 @@ def are_exclusive(first: tuple[Condition, ...], second: tuple[Condition, ...]) -
     """Return whether two fields with these conditions are never present in the same
     frame.
     """
-    return any(
-        condition.field == other.field and not set(condition.values) & set(other.values)
-        for condition in first
-        for other in second
-    )
+    for condition in first:
+        for other in second:
+            values = set(condition.values)
+            if condition.field == other.field and values.isdisjoint(other.values):
+                return True
+    return False

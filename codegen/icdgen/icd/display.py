@@ -43,11 +43,7 @@ def display_of(value: Any) -> Display | None:
     if value in OF_BITS:
         return Display(value)
     items = value.items() if isinstance(value, dict) else ()
-    return next(
-        (
-            Display(kind, n)
-            for kind, n in items
-            if kind in (DECIMALS, DIGITS) and isinstance(n, int)
-        ),
-        None,
-    )
+    for kind, places in items:
+        if kind in (DECIMALS, DIGITS) and isinstance(places, int):
+            return Display(kind, places)
+    return None

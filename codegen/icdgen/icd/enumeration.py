@@ -1,4 +1,7 @@
-"""Enumerations and their members."""
+"""Enumerations and their members, as parts of the model.
+
+`icdgen.icd.model` has both names, too: other packages import them from there.
+"""
 
 from __future__ import annotations
 
@@ -81,11 +84,10 @@ class Enum:
 
     def bits_for(self, value: int) -> int:
         """Return the number of bits that a field of the enumeration needs for a value."""
-        return (
-            (~value if value < 0 else value).bit_length() + 1
-            if self.signed
-            else value.bit_length()
-        )
+        if not self.signed:
+            return value.bit_length()
+        # One bit more for the sign. In two's complement, -1 - x has as many bits as x.
+        return (~value if value < 0 else value).bit_length() + 1
 
     @property
     def widest(self) -> Member | None:
@@ -117,11 +119,7 @@ class Enum:
             for end in (0, *(member.last + 1 for member in self.members))
             if end >= 0
         )
-        return next(
-            (
-                value
-                for value in candidates
-                if self.member_of(value) is None and value < 1 << 64
-            ),
-            None,
-        )
+        for value in candidates:
+            if self.member_of(value) is None and value < 1 << 64:
+                return value
+        return None

@@ -1,5 +1,9 @@
 """Errata overlays: decisions about faults of the manual, which change the tree of an
 ICD before the model is built.
+
+`apply` changes the tree of an ICD and returns `AppliedErrata`: the errata for the
+objects of the model, the findings that they accept, and findings about the overlay
+itself (ICD080 to ICD083).
 """
 
 from __future__ import annotations
@@ -24,7 +28,7 @@ class AppliedErrata:
         self.entries: list[Erratum] = []
         self.notes: list[Erratum] = []
         # id() of a mapping -> its entries and notes
-        self.of: dict[int, list[Erratum]] = {}
+        self.by_mapping: dict[int, list[Erratum]] = {}
         # Accepted code, its place in the overlay, and the mapping.
         self.accepts: list[tuple[str, Place, Map]] = []
         self.findings: list[Finding] = []
@@ -33,7 +37,7 @@ class AppliedErrata:
         """Return the entries, then the notes, about the object that was read from a
         mapping.
         """
-        errata = self.of.get(id(item))
+        errata = self.by_mapping.get(id(item))
         return (
             tuple(sorted(errata, key=lambda erratum: erratum.is_note)) if errata else ()
         )
@@ -92,10 +96,13 @@ def _apply_entry(
     erratum = _erratum(entry)
     (applied.notes if erratum.is_note else applied.entries).append(erratum)
     where = entry.get("where")
-    wheres = where if isinstance(where, Seq) else [where] if where else []
+    if isinstance(where, Seq):
+        selectors = list(where)
+    else:
+        selectors = [where] if where else []
     matched: list[Map] = []
     wildcard = False
-    for selector in wheres:
+    for selector in selectors:
         targets = list(_targets(tree, selector, named))
         is_wildcard = "*" in (selector.get("message"), selector.get("field"))
         wildcard |= is_wildcard
@@ -115,7 +122,7 @@ def _apply_entry(
                 for key, value in changes.items()
             ):
                 named.forget()
-            applied.of.setdefault(id(target), []).append(erratum)
+            applied.by_mapping.setdefault(id(target), []).append(erratum)
             for code, place in entry["accept"].placed() if "accept" in entry else ():
                 applied.accepts.append((code, place, target))
     # With a wildcard, the number of places must be stated: a new message could match
@@ -175,7 +182,7 @@ def _targets(tree: Map, where: Map, named: _NameIndex) -> Iterator[Map]:
     if "section" in where:
         yield from section(tree, str(where["section"]))
     elif "enum" in where:
-        for enum in named.of(tree, "enums", where["enum"]):
+        for enum in named.mappings_named(tree, "enums", where["enum"]):
             if "member" not in where:
                 yield enum
             else:
@@ -194,12 +201,14 @@ def _targets(tree: Map, where: Map, named: _NameIndex) -> Iterator[Map]:
     elif "message" in where or "struct" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
         kind = "message" if "message" in where else "struct"
-        for owner in named.of(tree, f"{kind}s", where[kind]):
+        for owner in named.mappings_named(tree, f"{kind}s", where[kind]):
             if names is None:
                 yield owner
             else:
                 yield from (
-                    field for name in names for field in named.of(owner, "fields", name)
+                    field
+                    for name in names
+                    for field in named.mappings_named(owner, "fields", name)
                 )
 
 
@@ -212,7 +221,7 @@ class _NameIndex:
     def __init__(self) -> None:
         self._rows: dict[tuple[int, str], dict[str, list[Map]]] = {}
 
-    def of(self, owner: Map, key: str, name: str) -> Iterable[Map]:
+    def mappings_named(self, owner: Map, key: str, name: str) -> Iterable[Map]:
         """Return the mappings of a name in the list of a key; all mappings for the name
         ``*``.
         """
@@ -301,15 +310,12 @@ def _nowhere(tree: Map, where: Map, named: _NameIndex) -> Finding:
         kind = key = "message" if "message" in where else "struct"
         target = f"{kind} `{where[kind]}`"
         names = [owner.get("name") for owner in mappings(tree.get(f"{kind}s"))]
-        owners = list(named.of(tree, f"{kind}s", where[kind]))
+        owners = list(named.mappings_named(tree, f"{kind}s", where[kind]))
         if owners:
             target = f"field `{where.get('field') or where.get('fields')}` in {target}"
-            names = [
-                field.get("name")
-                for owner in owners
-                for field in mappings(owner.get("fields"))
-            ]
-            key = "field"
+            names, key = [], "field"
+            for owner in owners:
+                names += (field.get("name") for field in mappings(owner.get("fields")))
     candidates = (name for name in names if isinstance(name, str))
     help, fix = suggestion(
         str(where.get(key, "")), candidates, "names are the manual's, to the letter"

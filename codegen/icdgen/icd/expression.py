@@ -104,7 +104,10 @@ def _tokens(text: str, arithmetic: Arithmetic[Value]) -> Iterator[Token]:
             at += 1
             continue
         number = _NUMBER.match(text, at)
-        plain = number.group() if number else text[at] if text[at] in _OPERATORS else ""
+        if number:
+            plain = number.group()
+        else:
+            plain = text[at] if text[at] in _OPERATORS else ""
         name = arithmetic.name_at(text, at)
         token = Token(name, is_name=True) if len(name) > len(plain) else Token(plain)
         if not token.text:

@@ -1,4 +1,8 @@
-"""Result of a rule: a fault, with its place and remedy."""
+"""Result of a rule: a fault, with its place and remedy.
+
+Rules yield faults. `icdgen.icd.rules.check` makes findings of those that no erratum
+accepts.
+"""
 
 from __future__ import annotations
 

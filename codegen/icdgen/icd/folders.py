@@ -1,4 +1,8 @@
-"""Search for ICDs in a folder and its subfolders."""
+"""Search for ICDs in a folder and its subfolders.
+
+`search` tells ICDs from errata overlays and other YAML files by their keys, without
+parsing them. `icdgen.icd.load` calls it for each folder that a user names.
+"""
 
 from __future__ import annotations
 

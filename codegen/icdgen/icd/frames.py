@@ -57,14 +57,14 @@ class PathStep:
     node: LayoutNode
     element: int | None = None
 
-    def text(self, name: str) -> str:
+    def with_index(self, name: str) -> str:
         """Return a name of the node with the index of the element: ``Satellites[2]``."""
         return name if self.element is None else f"{name}[{self.element}]"
 
 
 def name_of_steps(steps: Sequence[PathStep]) -> str:
     """Return the name of the node at the end of a path: ``Satellites[2].GNSS``."""
-    return ".".join(step.text(step.node.name) for step in steps)
+    return ".".join(step.with_index(step.node.name) for step in steps)
 
 
 def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
@@ -73,7 +73,9 @@ def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
     """
     if not any(step.node.identifier for step in steps):
         return None
-    return ".".join(step.text(step.node.identifier or step.node.name) for step in steps)
+    return ".".join(
+        step.with_index(step.node.identifier or step.node.name) for step in steps
+    )
 
 
 Role: TypeAlias = Literal["field", "overlay", "derived", "count"]

@@ -1,4 +1,8 @@
-"""Modified copies of layouts, which are immutable."""
+"""Modified copies of layouts, which are immutable.
+
+`icdgen.backends.assurance` changes one attribute of a model at a time in this way, to
+see which golden vectors detect the change.
+"""
 
 from __future__ import annotations
 

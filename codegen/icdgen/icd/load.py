@@ -37,8 +37,8 @@ def load(
     """
     loader = _Loader({_resolved(path): data for path, data in (unsaved or {}).items()})
     for path in paths:
-        for file in loader.folder(path) if os.path.isdir(path) else [path]:
-            loader.node(file, ())
+        for file in loader.icds_of_folder(path) if os.path.isdir(path) else [path]:
+            loader.load_node(file, ())
     icd = Icd(tuple(loader.nodes))
     findings = loader.findings
     # With an unreadable file, the rules would report all that it declares as missing.
@@ -99,12 +99,12 @@ class _Loader:
         self.texts: dict[str, str] = {}
         self.applied: list[errata.AppliedErrata] = []
         self.broken: set[int] = set()
-        # References to all trees, because ``broken`` and `AppliedErrata.of` have the id() of
+        # References to all trees, because ``broken`` and `AppliedErrata.by_mapping` have the id() of
         # mappings, which could be reused.
         self.trees: list[Map] = []
         self.unreadable = False
 
-    def folder(self, path: Path) -> list[Path]:
+    def icds_of_folder(self, path: Path) -> list[Path]:
         """Return the ICDs of a folder and its subfolders."""
         result = folders.search(path)
         other_files = [*result.overlays, *result.other_files]
@@ -129,7 +129,7 @@ class _Loader:
             self.unreadable = True
         return result.icds
 
-    def node(self, path: Path, stack: tuple[Path, ...]) -> Node | None:
+    def load_node(self, path: Path, stack: tuple[Path, ...]) -> Node | None:
         """Load a file and its includes; return its node, or None if it cannot be built.
 
         ``stack`` has the files that include this one, the outermost first.
@@ -142,12 +142,12 @@ class _Loader:
             return self.by_path[key]
         # Before the includes: a file that includes itself, directly or not, ends here.
         self.by_path[key], self.first[key] = None, path
-        tree = self.read(path, "icd")
+        tree = self.read_tree(path, "icd")
         if tree is None:
             return None
-        included = self.include(tree, path, (*stack, key))
+        included = self.load_includes(tree, path, (*stack, key))
         overlay_path = self.overlay_path(tree, path)
-        overlay = self.overlay(overlay_path)
+        overlay = self.read_overlay(overlay_path)
         applied = errata.apply(tree, overlay, self.broken)
         # Values of the overlay must conform to the schema, too.
         if any(entry.changes for entry in applied.entries):
@@ -171,7 +171,7 @@ class _Loader:
         self.by_path[key] = node
         return node
 
-    def read(self, path: Path, document: str) -> Map | None:
+    def read_tree(self, path: Path, document: str) -> Map | None:
         """Read a file and check its structure; return its tree, or None if it is not
         valid YAML.
         """
@@ -224,18 +224,11 @@ class _Loader:
             from icdgen.icd import remedies
         for finding in ambiguous:
             violation = violations.get(finding.place)
-            text = (
-                remedies.of_type("string", lines.marked(finding.place))
-                if violation is None
-                else ""
-            )
-            fix = (
-                Fix(finding.place, text)
-                if text
-                else violation.fix
-                if violation
-                else None
-            )
+            fix = None
+            if violation is not None:
+                fix = violation.fix
+            elif text := remedies.of_type("string", lines.marked(finding.place)):
+                fix = Fix(finding.place, text)
             self.findings.append(finding._replace(fix=fix))
         places = {finding.place for finding in ambiguous}
         self.findings += (
@@ -252,16 +245,18 @@ class _Loader:
             return None
         return path.parent / "errata" / f"{head['name']}.yaml"
 
-    def overlay(self, overlay: Path | None) -> Map | None:
+    def read_overlay(self, overlay: Path | None) -> Map | None:
         """Read an errata overlay; return None if there is no such file."""
         if overlay is None:
             return None
         if _is_absent(overlay):
             self.inputs[overlay] = fingerprints.ABSENT
             return None
-        return self.read(overlay, "errata")
+        return self.read_tree(overlay, "errata")
 
-    def include(self, tree: Map, path: Path, stack: tuple[Path, ...]) -> list[Node]:
+    def load_includes(
+        self, tree: Map, path: Path, stack: tuple[Path, ...]
+    ) -> list[Node]:
         """Load the files that a file includes; return their nodes."""
         nodes: list[Node] = []
         items = tree.get("include")
@@ -273,7 +268,7 @@ class _Loader:
                 self.findings.append(Finding(INCLUDE, problem[0], place, problem[1]))
                 self.broken.add(id(tree))
                 continue
-            node = self.node(path.parent / item, stack)
+            node = self.load_node(path.parent / item, stack)
             if node is not None:
                 nodes.append(node)
         return nodes

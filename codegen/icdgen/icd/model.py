@@ -253,31 +253,33 @@ def merged_protocols(protocols: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """
     merged: dict[str, Any] = {}
     for protocol in protocols:
-        both = {
+        combined = {
             key: merge(merged[key], protocol[key])
             for key, merge in (("link", _merged_links), ("procedures", _merged_by_name))
             if key in merged and key in protocol
         }
-        merged |= {**protocol, **both}
+        merged |= {**protocol, **combined}
     return merged
 
 
 def _merged_links(earlier: Any, later: Any) -> Any:
+    """Return the section `link` of two protocol sections: see `merged_protocols`."""
     if not isinstance(earlier, dict) or not isinstance(later, dict):
         return later
     if "framing" in later or ("buses" in later and "framing" in earlier):
         earlier = {
             key: earlier[key] for key in ("client", "checksums") if key in earlier
         }
-    both = {
+    combined = {
         key: _merged_by_name(earlier[key], later[key])
         for key in ("checksums", "buses", "packets")
         if key in earlier and key in later
     }
-    return {**earlier, **later, **both}
+    return {**earlier, **later, **combined}
 
 
 def _merged_by_name(earlier: Any, later: Any) -> Any:
+    """Return the entries of two mappings; those of the later one take precedence."""
     is_mapping = isinstance(earlier, dict) and isinstance(later, dict)
     return {**earlier, **later} if is_mapping else later
 

@@ -62,7 +62,7 @@ class Packet(NamedTuple):
         """Return the fields of header and trailer."""
         return [*self.header, *self.trailer]
 
-    def of(self, role: str) -> list[Section]:
+    def fields_of_role(self, role: str) -> list[Section]:
         """Return the fields of a role."""
         return [row for row in self.rows if row.get("role") == role]
 
@@ -122,7 +122,7 @@ class Packets(NamedTuple):
         is_of_request = packet.name == self.requesting
         return self.requested_bytes if is_of_request else packet.reserved
 
-    def of(self, message: str, direction: str) -> list[Packet]:
+    def packets_of_message(self, message: str, direction: str) -> list[Packet]:
         """Return the packets in which a message can be sent: packets that list the
         message, or else packets without a list of messages.
         """
@@ -141,16 +141,14 @@ def declared_packets(link: Section, messages: Iterable[Message] = ()) -> Packets
     if not isinstance(own, Mapping):
         packets = [Packet("", link, header, trailer)]
     else:
-        packets = [
-            Packet(
-                name,
-                row,
-                _fields(row["header"]) if "header" in row else header,
-                _fields(row["trailer"]) if "trailer" in row else trailer,
-            )
-            for name, row in own.items()
-            if isinstance(row, Mapping)
-        ]
+        packets = []
+        for name, row in own.items():
+            if not isinstance(row, Mapping):
+                continue
+            # A packet without a header or trailer of its own has that of the link.
+            own_header = _fields(row["header"]) if "header" in row else header
+            own_trailer = _fields(row["trailer"]) if "trailer" in row else trailer
+            packets.append(Packet(name, row, own_header, own_trailer))
     requests = link.get("requests")
     requesting, requested_bytes, answering = None, 0, None
     if isinstance(requests, Mapping):
@@ -256,11 +254,11 @@ def is_requested(
     packet = packets.by_name(requesting)
     if packet is None or id is None or not message.requested or id in unrequested:
         return False
-    sent_in = packets.of(message.name, TELEMETRY)
+    sent_in = packets.packets_of_message(message.name, TELEMETRY)
     if packets.answering is None:
-        is_recognized = any(each.of(ID_ROLE) for each in sent_in)
+        is_recognized = any(each.fields_of_role(ID_ROLE) for each in sent_in)
     else:
         is_recognized = any(each.name == packets.answering for each in sent_in)
     # A telecommand in the same packet has the id for itself.
     is_free = packets.only_requests(packet) or id not in telecommand_ids
-    return is_recognized and is_free and bool(packet.of(ID_ROLE))
+    return is_recognized and is_free and bool(packet.fields_of_role(ID_ROLE))

@@ -1,5 +1,8 @@
 """Positions of values in bytes. 'Bits' in ``docs/reference/icd-format.md`` describes
 the numbering.
+
+`pieces_at` returns the runs of bits within bytes of a value of given position, width
+and orders, `bits_of` its single bits.
 """
 
 from __future__ import annotations

@@ -104,7 +104,9 @@ def value_around(line: str, column: int) -> tuple[int, int]:
             line, 0, column + 1
         )
     ]
-    begin = (starts[-1] if is_flow else starts[0]) if starts else column
+    begin = column
+    if starts:
+        begin = starts[-1] if is_flow else starts[0]
     value = (_FLOW_VALUE if is_flow else _BLOCK_VALUE).match(line, begin)
     return (begin, begin) if value is None else value.span()
 
@@ -127,7 +129,9 @@ def of_value(
     sized = _SIZED.fullmatch(word) if key == "type" else None
     if sized:
         bits = sized[2] or sized[4] or sized[5]
-        kind = "float" if sized[5] else "uint" if sized[1] else "int"
+        kind = "uint" if sized[1] else "int"
+        if sized[5]:
+            kind = "float"
         # `u16` means a type and a width. The fix replaces only the type, so it needs
         # the right width.
         is_complete = owner.get("bits") == int(bits)

@@ -146,18 +146,17 @@ def similar_unit(symbol: str, declared: Iterable[str]) -> str:
     products = {each.replace(".", ""): each for each in symbols if "." in each}
     if plain in symbols or plain in products:
         return products.get(plain, plain)
-    known = {part for other in symbols for part in _parts(other)} | _OTHER_UNITS
-    wrong = [part for part in parts if not _is_unit(part, known)]
-    similar = {
-        "".join(candidate): other
-        for other in sorted(symbols)
-        if len(candidate := _parts(other)) == len(parts)
-        # A part that is a unit is not misspelt.
-        and all(
-            part == right or (part in wrong and close_to(part, [right]))
+    units = {part for other in symbols for part in _parts(other)} | _OTHER_UNITS
+    # A part that is a unit is not misspelt.
+    misspelt = [part for part in parts if not _is_unit(part, units)]
+    similar: dict[str, str] = {}
+    for other in sorted(symbols):
+        candidate = _parts(other)
+        if len(candidate) == len(parts) and all(
+            part == right or (part in misspelt and close_to(part, [right]))
             for part, right in zip(parts, candidate, strict=True)
-        )
-    }
+        ):
+            similar["".join(candidate)] = other
     return similar.get(close_to(plain, similar), "")
 
 
@@ -173,9 +172,9 @@ def _parts(symbol: str) -> tuple[str, ...]:
     return tuple(SPELLINGS.get(word, word) for word in words)
 
 
-def _is_unit(part: str, known: set[str]) -> bool:
+def _is_unit(part: str, units: set[str]) -> bool:
     """Return whether a part of a symbol is a unit, with or without a prefix."""
-    return part in known or (part[:1] in _PREFIXES and part[1:] in known)
+    return part in units or (part[:1] in _PREFIXES and part[1:] in units)
 
 
 def declared(symbols: Iterable[str]) -> list[dict[str, str]]:

@@ -308,13 +308,17 @@ def _fault_of_order(message: Map, sequence: list[Map], index: int) -> Fault | No
         if "after" in item:
             return Fault.at(item, "after", text, help, yaml_text(before["name"]))
         return Fault.at(item, "name", text, help)
-    rest = next(
+    to_end = next(
         (row for row in earlier if is_variable(row) and counting(row).name == REST),
         None,
     )
-    if rest is not None and is_variable(item):
-        text = f"{name} follows `{rest['name']}`, which extends to the end of the frame"
-        help = f"let a field count `{rest['name']}`: write its name instead of `{REST}`"
+    if to_end is not None and is_variable(item):
+        text = (
+            f"{name} follows `{to_end['name']}`, which extends to the end of the frame"
+        )
+        help = (
+            f"let a field count `{to_end['name']}`: write its name instead of `{REST}`"
+        )
         return Fault.at(item, "after", text, help)
     if "reserved" in message:
         text = f"`{message['name']}` has `reserved` bytes, which cannot follow {name}, a variable-length field"

@@ -111,7 +111,7 @@ def rows_of(
         )
         # A message without values that a user could choose can request its reply.
         is_blank = not first.layout.shortest or not raw_fields_in(first.layout)
-        packet, *_ = packets.of(first.name, direction)
+        packet, *_ = packets.packets_of_message(first.name, direction)
         algorithm = algorithm_of(packet, checksums)
         rows.append(
             StreamRow(
@@ -139,12 +139,14 @@ def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
 
 def algorithm_of(packet: Packet, checksums: Checksums) -> ChecksumAlgorithm | None:
     """Return the algorithm of the checksum of a packet; None without one."""
-    return next((checksums[row["checksum"]] for row in packet.of("checksum")), None)
+    return next(
+        (checksums[row["checksum"]] for row in packet.fields_of_role("checksum")), None
+    )
 
 
 def check_of(packet: Packet, checksums: Checksums) -> Check | None:
     """Return the checksum of a packet; None without one."""
-    for field in packet.of("checksum"):
+    for field in packet.fields_of_role("checksum"):
         algorithm, covers = checksums[field["checksum"]], field["covers"]
         first = _covered(packet.header, covers["from"], False)
         last = _covered(packet.trailer, covers["to"], True)
@@ -232,7 +234,9 @@ def stream_of(
         for message in sent
         if (exchange := exchange_of(sources, commands, message))
     }
-    sequences = [row for packet in packets.all for row in packet.of("sequence")]
+    sequences = [
+        row for packet in packets.all for row in packet.fields_of_role("sequence")
+    ]
     telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, checksums, exchanges)
     request, requesting = None, packets.number_of(packets.requesting)
     if requesting is not None:

@@ -222,7 +222,11 @@ class ProtocolReader:
         """Return the checksum of messages on buses; None without one."""
         link = self.section("link")
         packets = () if framed_link(self.protocol) else declared_packets(link).all
-        places = [(packet, row) for packet in packets for row in packet.of("checksum")]
+        places = [
+            (packet, row)
+            for packet in packets
+            for row in packet.fields_of_role("checksum")
+        ]
         if not places:
             return None
         # Rule ICD175 ensures that all packets have the same.

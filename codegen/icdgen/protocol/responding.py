@@ -147,7 +147,7 @@ def exchange_of(
     own: Any = message.response
     timeout = own.get("timeout_ms", 0) if isinstance(own, Mapping) else 0
     rows = declared_responses(commands, message)
-    (packet,) = sources.packets.of(message.name, TELECOMMAND)[:1]
+    (packet,) = sources.packets.packets_of_message(message.name, TELECOMMAND)[:1]
     number = sources.packets.all.index(packet)
     source_of = partial(_source, sources.node, message)
     reasons = commands.get("reasons", {})

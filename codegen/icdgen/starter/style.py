@@ -236,7 +236,11 @@ def _renumber(messages: list[Child], style: Style) -> None:
 def _lengthen(messages: list[Child], style: Style) -> None:
     """Add reserved bytes to messages that are no multiple of the unit of lengths."""
     packets = declared_packets(style.protocol.get("link", {})).all
-    units = (row.get("unit", 1) for packet in packets for row in packet.of("length"))
+    units = (
+        row.get("unit", 1)
+        for packet in packets
+        for row in packet.fields_of_role("length")
+    )
     unit = max(units, default=1)
     for message in messages:
         children = _children(message)
@@ -253,7 +257,9 @@ def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
     """Return the first and last id of each direction."""
     section = protocol.get("link", {}).get("ids") or {}
     packets = declared_packets(protocol.get("link", {})).all
-    widths = (sum(row["bits"] for row in packet.of(ID_ROLE)) for packet in packets)
+    widths = (
+        sum(row["bits"] for row in packet.fields_of_role(ID_ROLE)) for packet in packets
+    )
     bits = min((width for width in widths if width), default=8)
     # Ids of the first ICD are small numbers, also if the link could carry larger ones.
     most = (1 << min(bits, 8)) - 1

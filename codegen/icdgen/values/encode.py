@@ -1,6 +1,7 @@
 """Encoding of a message from assignments such as ``x=100 y=-100``.
 
-All errors are reported at once.
+`encode` finds the fields, converts their texts, sets constants and counters, and
+returns the frame with its values. It reports all errors at once.
 """
 
 from __future__ import annotations
@@ -220,20 +221,18 @@ def _set_counter(
             raise BadValue(
                 f"`{part.name}[{indexes[-1]}]` is given, and not all elements before it"
             )
+        # `_set_inner_counter` checks the arrays within the elements.
         nested = [inner.node for inner in part.inner]
-        present = (
-            field
-            for field in elements
-            if (field.steps[0].element or 0) < count
-            and not any(step.node is node for step in field.steps for node in nested)
-        )
-        _require_values(
-            [
-                field.name
-                for field in present
-                if field.const is None and field.name not in given
-            ]
-        )
+        missing = []
+        for field in elements:
+            is_nested = any(
+                step.node is node for step in field.steps for node in nested
+            )
+            if is_nested or (field.steps[0].element or 0) >= count:
+                continue
+            if field.const is None and field.name not in given:
+                missing.append(field.name)
+        _require_values(missing)
     if count < part.fewest:
         least = f"{part.fewest} element{'s' * (part.fewest != 1)}"
         raise BadValue(f"`{part.name}` has at least {least}, {count} given", _EACH)
@@ -280,18 +279,16 @@ def _set_inner_counter(
             f"{text}, {max(numbers, default=0)} given", f"leave `{inner.counter}` out"
         )
     outer = {field.steps[0].element for field in fields if field.name in given}
-    present = (
-        f
-        for f in nested
-        if f.steps[0].element in outer and (f.steps[1].element or 0) < count
-    )
-    _require_values(
-        [
-            field.name
-            for field in present
-            if field.const is None and field.name not in given
-        ]
-    )
+    missing = []
+    for field in nested:
+        if (
+            field.steps[0].element not in outer
+            or (field.steps[1].element or 0) >= count
+        ):
+            continue
+        if field.const is None and field.name not in given:
+            missing.append(field.name)
+    _require_values(missing)
 
 
 def split_assignment(

@@ -1,4 +1,9 @@
-"""Conversion of the text that a user types for a field to the raw value."""
+"""Conversion of the text that a user types for a field to the raw value.
+
+`parse_value` accepts a physical value with or without its unit, the name of a member,
+the meaning of a special value, or a raw value. Errors are `BadValue`. It does not check
+limits: `icdgen.values.encode` does, which calls it for each field of a message.
+"""
 
 from __future__ import annotations
 

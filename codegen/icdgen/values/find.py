@@ -1,4 +1,8 @@
-"""Search for nodes, messages and fields by the names and ids that users type."""
+"""Search for nodes, messages and fields by the names and ids that users type.
+
+`items_by_name` defines which names match. Without a match, or with several, a search
+raises `NotFound` or `Ambiguous`, whose texts have the similar names.
+"""
 
 from __future__ import annotations
 
@@ -304,7 +308,7 @@ def _aliases(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
         return item.aliases
     *before, last = item.steps
     # Below an array, an alias without a path would name a field of every element.
-    without_path = [last.text(alias) for alias in last.node.aliases]
+    without_path = [last.with_index(alias) for alias in last.node.aliases]
     path = name_of_steps(before)
     with_path = [f"{path}.{alias}" for alias in without_path] if before else []
     return (
@@ -342,16 +346,10 @@ def _by_words(
     candidates: list[tuple[FrameField, set[str]]] = []
     for field in fields:
         if _has_indices_of(key, field.name):
-            candidates.append(
-                (
-                    field,
-                    {
-                        word
-                        for name in _names(field)
-                        for word in naming.words(name, vocabulary)
-                    },
-                )
-            )
+            words: set[str] = set()
+            for name in _names(field):
+                words.update(naming.words(name, vocabulary))
+            candidates.append((field, words))
     matches = [field for field, words in candidates if wanted <= words]
     if matches:
         return matches

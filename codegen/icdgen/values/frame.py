@@ -1,6 +1,7 @@
 """Decoded frame: a message with its bytes and the value of each field.
 
-Decoding and encoding return it.
+`decoded_frame` makes it from the bytes of a frame. Encoding (`icdgen.values.encode`)
+returns it, too. `icdgen.values.text` shows it as a table.
 """
 
 from __future__ import annotations

@@ -183,4 +183,4 @@ def code_now(icd: Icd, language: str) -> str:
     Raises `UserError` for an unknown language.
     """
     backend = backends.get(language)
-    return measured.code_digest(backend.files(icd, Renderer.of(backend)))
+    return measured.code_digest(backend.files(icd, Renderer.of_backend(backend)))

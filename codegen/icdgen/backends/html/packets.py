@@ -159,7 +159,7 @@ def _packets_of(packets: Packets, message: Message) -> list[Packet]:
         packet
         for direction, id in ids.items()
         if id is not None
-        for packet in packets.of(message.name, direction)
+        for packet in packets.packets_of_message(message.name, direction)
     ]
 
 

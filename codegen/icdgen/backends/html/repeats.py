@@ -107,7 +107,7 @@ class Repeats:
             # in the drawing, the table and the decoder.
             size = place.scalar_count // (place.count or 1)
             for index, element in enumerate(elements):
-                text = element.steps[-1].text(place.node.name)
+                text = element.steps[-1].with_index(place.node.name)
                 label = owner + (f"{place.node.name}[]" if is_represented else text)
                 first_key = key + index * size
                 if element.struct is not None:

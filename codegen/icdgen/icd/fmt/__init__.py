@@ -1,4 +1,10 @@
-"""Formatter for ICD files and errata overlays: ``icdgen fmt``."""
+"""Formatter for ICD files and errata overlays: ``icdgen fmt``.
+
+`format_text` reads a text into a tree with comments (`read`, `commented`), converts
+keys of earlier versions (`earlier`, `earlier_buses`) and writes the tree in the
+canonical layout (`write`). It then reads the result back and compares it with the
+original.
+"""
 
 from __future__ import annotations
 

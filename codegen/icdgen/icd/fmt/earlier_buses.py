@@ -243,12 +243,12 @@ def _convert_can(can: Branch, packets: Branch) -> None:
     uses: dict[str, dict[str, ScalarText | Branch]] = {}
     for direction, keys in _TYPES.items():
         section = value_of(can, direction)
-        for key, (sender, whole) in keys.items():
-            given, whole_name = value_of(section, key), value_of(section, whole)
+        for key, (sender, whole_key) in keys.items():
+            given, segmented = value_of(section, key), value_of(section, whole_key)
             if isinstance(given, ScalarText):
                 use = uses.setdefault(str(given.value), {"from": word(sender)})
-                if whole and isinstance(whole_name, ScalarText):
-                    use["segment_of"] = whole_name
+                if whole_key and isinstance(segmented, ScalarText):
+                    use["segment_of"] = segmented
     types = entry_of(can, "message_types")
     source = value_of(types.value, "source") if types else None
     for row in items_of(value_of(types.value, "values")) if types else ():

@@ -1,4 +1,8 @@
-"""Conversion of trees of plain values, which importers make, to canonical YAML."""
+"""Conversion of trees of plain values, which importers make, to canonical YAML.
+
+A tree consists of dicts, lists and scalars, as in JSON. `Spelled` is a number with a
+spelling, such as ``0x5A``.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Reader of YAML text with comments.
+"""Reader of YAML text with comments, for the formatter.
 
-PyYAML's events omit comments, so the reader searches the text between events.
+`read_commented` returns the tree of `icdgen.icd.fmt.commented`. PyYAML's events omit
+comments, so the reader searches the text between events.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def read_commented(text: str, values: Map) -> Branch:
 
     ``values`` is the result of `source.parse` for the same text.
     """
-    return _CommentReader(text, values).read()
+    return _CommentReader(text, values).read_tree()
 
 
 def comments(text: str) -> list[str]:
@@ -69,7 +70,7 @@ class _CommentReader:
         self.last_end = 0
         self.comment_end = 0
 
-    def read(self) -> Branch:
+    def read_tree(self) -> Branch:
         """Return the tree."""
         from yaml import events
 
@@ -211,9 +212,10 @@ class _CommentReader:
             if (
                 breaks == 0
                 and previous_end == self.reached
-                and self.follows_something(start)
+                and self.last is not None
+                and not self.breaks(self.last_end, start)
             ):
-                target = self.last.trailing if self.last else target
+                target = self.last.trailing
             # After the last entry of a container, the column decides whether a comment
             # belongs to the container or follows it.
             elif breaks and closing and not self.pending:
@@ -230,10 +232,6 @@ class _CommentReader:
             target.append(self.text[start:end].rstrip())
             earlier, previous_end = target, end
         self.comment_end = previous_end
-
-    def follows_something(self, start: int) -> bool:
-        """Return whether the previous element ends on the same line."""
-        return self.last is not None and not self.breaks(self.last_end, start)
 
     def breaks(self, start: int, end: int) -> int:
         """Return the number of line breaks in a range of the text."""

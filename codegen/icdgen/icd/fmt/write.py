@@ -1,5 +1,9 @@
 """Writer of trees in the canonical layout, which ``docs/reference/icd-format.md``
 describes.
+
+For each mapping and list, `write_canonical` chooses between one line, rows of a table,
+and block style. `kinds` has the order of keys, `scalars` the spelling of values, and
+`rows` aligns tables.
 """
 
 from __future__ import annotations
@@ -205,8 +209,10 @@ def _one_line(branch: Branch, kind: SchemaKind, column: int) -> str | None:
         if branch.mapping:
             if kind.name in BLOCKS:
                 return None
-            if kind.name not in ROWS and not (
-                _small(branch, kind) and not branch.commented()
+            is_small = bool(kind.name) or len(branch.children) <= MOST_ENTRIES
+            is_row = kind.name in ROWS
+            if not is_row and not (
+                is_small and _simple(branch) and not branch.commented()
             ):
                 return None
         elif branch.commented() or not _inline(branch, kind):
@@ -215,11 +221,6 @@ def _one_line(branch: Branch, kind: SchemaKind, column: int) -> str | None:
     if branch.children and kind.name not in ROWS and column + len(text) > WIDTH:
         return None
     return text
-
-
-def _small(branch: Branch, kind: SchemaKind) -> bool:
-    """Return whether a mapping is small enough for one line."""
-    return _simple(branch) and (bool(kind.name) or len(branch.children) <= MOST_ENTRIES)
 
 
 def _inline(branch: Branch, kind: SchemaKind) -> bool:

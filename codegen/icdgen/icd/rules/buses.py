@@ -126,17 +126,17 @@ def packets_of_responses_exist(ctx: Context) -> Iterator[Fault]:
     for link in links_on_buses(ctx):
         named = bus_link(ctx.protocol_of(link.node)["link"], CAN).packets
         for section in _sections(link):
-            whole = section.get("segment_of")
-            if not isinstance(whole, str):
+            name = section.get("segment_of")
+            if not isinstance(name, str):
                 continue
-            packet = named.by_name(whole)
+            packet = named.by_name(name)
             if packet is None:
                 names = [each.name for each in named.all]
-                text = f"there is no packet {quote(whole)} on `{CAN}`"
-                remedy = suggestion(whole, names, "correct the name")
+                text = f"there is no packet {quote(name)} on `{CAN}`"
+                remedy = suggestion(name, names, "correct the name")
                 yield Fault.at(section, "segment_of", text, *remedy)
             elif packet.section.get("from") != section.get("from"):
-                text = f"{quote(whole)} is not sent by the same side"
+                text = f"{quote(name)} is not sent by the same side"
                 help = "correct the name, or `from`"
                 yield Fault.at(section, "segment_of", text, help)
 
@@ -265,8 +265,12 @@ def _compared_fields(
     if responses.bus == CAN:
         return  # The responses have no fields.
     if declared.packet is None and telemetry_of(ctx, declared) is None:
-        if not declared.is_packet:
-            yield from _no_telemetry(ctx, declared)
+        telecommands = ids_of(ctx, declared.link.node, TELECOMMAND)
+        is_telecommand = any(each.name == declared.name for _, each in telecommands)
+        # ICD093 reports other names, and ICD095 packets.
+        if is_telecommand and not declared.is_packet:
+            text = f"{quote(declared.name)} is a telecommand, and a response comes from the device"
+            yield declared.fault("message", text, "name telemetry")
         return
     yield from comparison_faults(ctx, declared)
     for key in ("until", "detail"):
@@ -277,27 +281,21 @@ def _compared_fields(
                 yield Fault.at(declared.row, key, text, help)
 
 
-def _no_telemetry(ctx: Context, declared: DeclaredResponse) -> Iterator[Fault]:
-    """Yield the fault of a response that is a telecommand. ICD093 reports other names."""
-    telecommands = ids_of(ctx, declared.link.node, TELECOMMAND)
-    if any(each.name == declared.name for _, each in telecommands):
-        text = f"{quote(declared.name)} is a telecommand, and a response comes from the device"
-        yield declared.fault("message", text, "name telemetry")
-
-
 def _reasons(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     """Yield the faults of reasons that no response on a bus has."""
     commands = link.section.get(COMMANDS)
     reasons = commands.get(REASONS) if isinstance(commands, Map) else None
     if not isinstance(reasons, Map):
         return
-    with_status = [
-        declared
-        for responses in responses_on_buses(ctx)
-        if responses.link.node in ctx.users(link.node)
-        for declared in responses.declared(ctx)
-        if "status" in declared.row and (declared.packet or telemetry_of(ctx, declared))
-    ]
+    with_status: list[DeclaredResponse] = []
+    for responses in responses_on_buses(ctx):
+        if responses.link.node not in ctx.users(link.node):
+            continue
+        for declared in responses.declared(ctx):
+            # ICD093 or ICD095 reports a response without telemetry or packet.
+            exists = declared.packet or telemetry_of(ctx, declared)
+            if "status" in declared.row and exists:
+                with_status.append(declared)
     enums = [enum_of(ctx, each, each.row["status"]) for each in with_status]
     named = [enum for enum in enums if enum is not None]
     names = [member.name for enum in named for member in enum.members]
@@ -438,7 +436,7 @@ def _keys(
         yield Fault.at(section, "from", text, "add what it has, or remove the packet")
     if "messages" in section or ("header" in section and not is_response):
         yield from _unasked(ctx, link, packet, section)
-    is_checked = bool(packet.of("checksum"))
+    is_checked = bool(packet.fields_of_role("checksum"))
     if is_checked and TELEMETRY in packet.directions and CAN in buses:
         yield _on_can(section)
 

@@ -90,7 +90,11 @@ def _of_telecommands(ctx: Context, node: Node) -> Mapping[str, Any]:
     if not isinstance(link, Mapping) or framed_link(protocol):
         return {}
     for packet in declared_packets(link).all:
-        for row in packet.of("checksum") if TELECOMMAND in packet.directions else ():
+        for row in (
+            packet.fields_of_role("checksum")
+            if TELECOMMAND in packet.directions
+            else ()
+        ):
             return row
     return {}
 

@@ -150,7 +150,9 @@ class Context:
         self.struct_of: dict[int, tuple[Struct, Node]] = {
             id(struct.layout): (struct, node) for struct, node in self.structs
         }
-        self.declared: list[Any] | None = None  # cache of `declarations.declared`
+        self.declared: list[Any] | None = (
+            None  # cache of `declarations.declared_identifiers`
+        )
         self._scopes: dict[int, tuple[Node, ...]] = {}
 
     @cached_property

@@ -215,13 +215,10 @@ def _ambiguous_aliases(
         """Return the form in which a search compares names."""
         return "".join(naming.words(text, vocabulary)) or text.casefold()
 
-    # Reversed, so that the first item of a name remains.
-    names = {
-        words(text): item
-        for item in reversed(items)
-        for text in (item.name, item.identifier)
-        if text
-    }
+    names: dict[str, Aliased] = {}  # the first item of each name
+    for item in items:
+        for text in filter(None, (item.name, item.identifier)):
+            names.setdefault(words(text), item)
     by_alias: dict[str, Aliased] = {}  # the first item of each alias
     for item in items:
         for index, alias in enumerate(item.aliases):

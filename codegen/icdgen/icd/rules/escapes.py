@@ -78,12 +78,11 @@ def _contents(
             for id, message in carried_in(ctx, link, packet.packet, direction)
         ]
         # A packet without messages can have the id of any.
-        everything = [
-            (id, quote(message.name))
-            for each in DIRECTIONS
-            for id, message in ids_of(ctx, link.node, each)
-        ]
-        for id, name in carried or everything or [(0, "each message")]:
+        if not carried:
+            for each in DIRECTIONS:
+                messages = ids_of(ctx, link.node, each)
+                carried += ((id, quote(message.name)) for id, message in messages)
+        for id, name in carried or [(0, "each message")]:
             yield direction, id, name
 
 

@@ -1,4 +1,6 @@
-"""Formulas, lookup tables and units."""
+"""Formulas, lookup tables and units: whether they are valid, can be computed in all
+languages, and can be inverted for telecommands.
+"""
 
 from __future__ import annotations
 
@@ -150,13 +152,13 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
     """
     # A field with `formula_for` of its own has its own finding.
     for kind, stated_for in stated.items():
-        messages = (message for message in node.messages if message.kind == kind)
-        contrary = [
-            field
-            for message in messages
-            for field in lines(message.layout)
-            if _depends_on_kind(field.scalar) and _gives(field.scalar) != stated_for
-        ]
+        contrary = []
+        for each in node.messages:
+            for field in lines(each.layout) if each.kind == kind else ():
+                source = field.scalar.source
+                is_affected = "formula" in source and "formula_for" not in source
+                if is_affected and _gives(field.scalar) != stated_for:
+                    contrary.append(field)
         if contrary:
             fields = count(len(contrary), "field")
             other = f"that of {quote(contrary[0].name)} gives the other one, as in {fields} altogether"
@@ -166,11 +168,6 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
             message = f"no formula of a {kind} message gives anything but the {stated_for} value, so the key is not needed"
             help = f"remove `{kind}`"
         yield Fault.at(stated, kind, message, help)
-
-
-def _depends_on_kind(field: Scalar) -> bool:
-    """Return whether `formula_for` of the ICD applies to the formula of a field."""
-    return "formula" in field.source and "formula_for" not in field.source
 
 
 def _gives(field: Scalar) -> str:

@@ -1,5 +1,8 @@
 """Protocol section `link`: links whose frames have header and trailer fields with
 roles.
+
+`links` and `links_on_buses` list the links of an ICD for the themes `packets`,
+`responses`, `escapes` and `buses`, too.
 """
 
 from __future__ import annotations
@@ -60,7 +63,7 @@ class LinkPacket(NamedTuple):
     title: str
     rows: list[tuple[str, Map]]  # header or trailer, and a field, in order
 
-    def of(self, *roles: str) -> list[Map]:
+    def fields_of_roles(self, *roles: str) -> list[Map]:
         """Return the fields of these roles."""
         return [row for _, row in self.rows if row.get("role") in roles]
 
@@ -136,20 +139,12 @@ def _links(ctx: Context) -> Iterator[DeclaredLink]:
             continue
         telecommands = [message for _, message in ids_of(ctx, node, TELECOMMAND)]
         declared = declared_packets(section, telecommands)
-        packets = [
-            LinkPacket(
-                packet,
-                f" of the packet {quote(packet.name)}" if packet.name else "",
-                [
-                    (part, row)
-                    for part, rows in zip(
-                        PARTS, (packet.header, packet.trailer), strict=True
-                    )
-                    for row in mappings(rows)
-                ],
-            )
-            for packet in declared.all
-        ]
+        packets = []
+        for packet in declared.all:
+            title = f" of the packet {quote(packet.name)}" if packet.name else ""
+            rows = [("header", row) for row in mappings(packet.header)]
+            rows += [("trailer", row) for row in mappings(packet.trailer)]
+            packets.append(LinkPacket(packet, title, rows))
         # Otherwise the schema check reports the fields.
         if all(_is_sound(row) for packet in packets for _, row in packet.rows):
             yield DeclaredLink(node, section, declared, packets)
@@ -262,7 +257,7 @@ def _missing(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     is_delimited = link.framing != "length"
     for packet in link.packets:
         place = link.place(packet)
-        lengths = packet.of("length")
+        lengths = packet.fields_of_roles("length")
         is_answering = packet.packet.name == link.declared.answering
         parts = {part for part, row in packet.rows if row["role"] == "length"}
         for _, row in packet.rows:
@@ -275,7 +270,7 @@ def _missing(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
         }
         for direction, messages in carried.items():
             is_many = len({id for id, _ in messages}) > 1
-            if is_many and not packet.of("id") and not is_answering:
+            if is_many and not packet.fields_of_roles("id") and not is_answering:
                 message = f"no field{packet.title} has the role `id`, and there are several messages in one direction ({direction})"
                 help = "add one: the link has no other way to distinguish them"
                 yield Fault.at(*place, message, help)
@@ -319,7 +314,7 @@ def carried_in(
     return [
         (id, message)
         for id, message in ids_of(ctx, link.node, direction)
-        if packet in link.declared.of(message.name, direction)
+        if packet in link.declared.packets_of_message(message.name, direction)
     ]
 
 
@@ -381,12 +376,10 @@ def _contents(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
     messages.
     """
     for packet in link.packets:
-        messages = [
-            carried
-            for direction in packet.packet.directions
-            for carried in carried_in(ctx, link, packet.packet, direction)
-        ]
-        parts = packet.of("id")
+        messages: list[tuple[int, Message]] = []
+        for direction in packet.packet.directions:
+            messages += carried_in(ctx, link, packet.packet, direction)
+        parts = packet.fields_of_roles("id")
         bits = sum(row["bits"] for row in parts)
         id, message = max(messages, key=lambda pair: pair[0], default=(0, None))
         if message is not None and parts and id >> bits:
@@ -399,7 +392,7 @@ def _contents(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
             text = f"no byte is sent for {quote(empty.name)}, which can have no data"
             help = "add a field to `header`, such as an id"
             yield Fault.at(*link.place(packet), text, help)
-        for row in packet.of("length"):
+        for row in packet.fields_of_roles("length"):
             yield from _lengths(row, messages, overhead)
     for _, row in link.rows:
         if row["role"] == "sequence" and row["bits"] > MOST_SEQUENCE_BITS:
@@ -448,14 +441,14 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                     if name
                     else "the field names no checksum"
                 )
-                known = (
-                    listing(f"`{key}`" for key in names) if names else "there are none"
-                )
+                existing = "there are none"
+                if names:
+                    existing = listing(f"`{key}`" for key in names)
                 yield Fault.at(
                     row,
                     "role",
                     message,
-                    f"name one of `checksums` in `checksum:`: {known}",
+                    f"name one of `checksums` in `checksum:`: {existing}",
                 )
             elif isinstance(declared, Map) and _is_valid(declared):
                 yield from _field_of(row, declared)
@@ -480,7 +473,9 @@ def _used_checksums(ctx: Context, node: Node) -> set[str]:
         used.update(_checksums_in_steps(protocol.get("procedures")))
         link = protocol.get("link")
         for packet in declared_packets(link).all if isinstance(link, Mapping) else ():
-            used.update(str(row.get("checksum")) for row in packet.of("checksum"))
+            used.update(
+                str(row.get("checksum")) for row in packet.fields_of_role("checksum")
+            )
     return used
 
 
@@ -595,7 +590,11 @@ def _covered(
             help = "`from` names a field of the header or `data`, `to` one of the trailer or `data`"
             yield Fault.at(covers, key, message, help)
             return
-        bounds[key] = None if role == DATA else matches[0 if key == "from" else -1][1]
+        if role == DATA:
+            bounds[key] = None
+        else:
+            # Of several fields of a role, all are covered.
+            _, bounds[key] = matches[0] if key == "from" else matches[-1]
     first, last = bounds["from"], bounds["to"]
     begin = first["at"] if first else None
     end = last["at"] + last["bits"] if last else 0

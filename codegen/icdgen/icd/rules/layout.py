@@ -63,13 +63,13 @@ def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
         end = node.at + bits_of_node(node)
         # ICD121 reports fields of fixed size after a variable-length field.
         if end > room and id(source) not in ctx.behind_variable_fields:
-            is_array, size_key = (
-                isinstance(node, Array),
-                ("struct" if struct_layout_of(node) else "bits"),
-            )
+            is_array = isinstance(node, Array)
+            size_key = "struct" if struct_layout_of(node) else "bits"
             # Point to the key that is most likely wrong: `at` if the field begins
             # behind the end, otherwise what makes it too long.
-            key = "at" if node.at >= room else "count" if is_array else size_key
+            key = "count" if is_array else size_key
+            if node.at >= room:
+                key = "at"
             has = f"{quote(owner.name)} has {count(room, 'bit')} ({count(owner.length, 'byte')})"
             length = line_of(owner.source.at("length"), source.at(key))
             help = f"correct `at`{', `count`' if is_array else ''} or `{size_key}`, or the `length` in {length}"
@@ -98,11 +98,9 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
         if _are_apart(owner.layout):
             continue
         own = [place for place in places_in(owner.layout) if _has_own_bits(place)]
-        elements = [
-            element
-            for place in own
-            for element in (place.elements() if place.count else (place,))
-        ]
+        elements: list[NodePlace] = []
+        for place in own:
+            elements += place.elements()
         # Positions of different bit orders, and optional fields, must be compared in
         # pairs.
         if any(

@@ -151,17 +151,12 @@ def _raw_values(field: Scalar, within: Bounds) -> range:
         # A negative factor exchanges the lower and the upper limit.
         if field.scale.factor < 0:
             low, high, above, below = high, low, below, above
+    first, last = field.raw_min, field.raw_max
     # The smallest integer above an open limit, or at or above a closed one.
-    first = (
-        field.raw_min
-        if low is None
-        else max(field.raw_min, floor(low) + 1 if above else ceil(low))
-    )
-    last = (
-        field.raw_max
-        if high is None
-        else min(field.raw_max, ceil(high) - 1 if below else floor(high))
-    )
+    if low is not None:
+        first = max(first, floor(low) + 1 if above else ceil(low))
+    if high is not None:
+        last = min(last, ceil(high) - 1 if below else floor(high))
     return range(first, last + 1)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import KEYS_OF_IDS, TELEMETRY, Message, Node
+from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
@@ -36,12 +36,11 @@ def loggable_frames_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         frames = _telemetry(ctx, node)
         # Frames that the manual lists in the table but does not describe.
-        missing = {
-            entry.id
-            for owner in ctx.scope(node)
-            for entry in owner.missing
-            if entry.kind != "telecommand"
-        }
+        missing: set[int] = set()
+        for owner in ctx.scope(node):
+            missing.update(
+                entry.id for entry in owner.missing if entry.kind != TELECOMMAND
+            )
         by_name = {
             frame.name: (frame.source, _id_key(frame)) for frame in frames.values()
         }

@@ -51,11 +51,10 @@ def _lists(ctx: Context, link: DeclaredLink, packets: Map) -> Iterator[Fault]:
             help = "remove it; the reserved bytes of a request are `requests: reserved`"
             yield Fault.at_key(section, "reserved", text, help)
         names = section.get("messages")
-        sent = {
-            message.name
-            for direction in packet.directions
-            for _, message in ids_of(ctx, link.node, direction)
-        }
+        sent: set[str] = set()
+        for direction in packet.directions:
+            messages = ids_of(ctx, link.node, direction)
+            sent.update(message.name for _, message in messages)
         for name, place in names.placed() if isinstance(names, Seq) else ():
             if not isinstance(name, str) or name in broken:
                 continue
@@ -73,7 +72,7 @@ def _lists(ctx: Context, link: DeclaredLink, packets: Map) -> Iterator[Fault]:
 
 def _packet_of(link: DeclaredLink, message: Message, direction: str) -> Iterator[Fault]:
     """Yield the fault of a message that is in no packet, or in one of several."""
-    packets = link.declared.of(message.name, direction)
+    packets = link.declared.packets_of_message(message.name, direction)
     if len(packets) == 1 or any(packet.messages for packet in packets):
         return
     what = f"{direction} {quote(message.name)}"
@@ -166,7 +165,7 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
         if TELECOMMAND not in packet.directions:
             text = f"the device sends the packet {quote(packet.name)}, and a request comes from the host"
             yield Fault.at_key(owner, key, text, f"name a packet `from: {HOST}`")
-        elif not packet.of("id"):
+        elif not packet.fields_of_role("id"):
             text = "the packet has no field with the role `id`, so a request could not say what it requests"
             yield Fault.at_key(owner, key, text, "add one, or name another packet")
         elif "response" not in requests:  # otherwise ICD187
@@ -200,7 +199,7 @@ def requested_telemetry_is_recognized(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(
                 requests, "response", text, f"name a packet `from: {DEVICE}`"
             )
-        elif packet.of("id"):
+        elif packet.fields_of_role("id"):
             text = f"the packet {quote(name)} has an id, which says what telemetry it carries"
             yield Fault.at(requests, "response", text, "remove `response`")
         elif name in link.declared.responding:
@@ -222,12 +221,12 @@ def _nameless(
     ids = [id for id, _ in telecommands]
     commands = link.section.get("commands")
     commands = commands if isinstance(commands, Map) else {}
-    responding = {
-        row["message"]: message
-        for _, message in telecommands
-        for row in declared_responses(commands, message).values()
-        if isinstance(row.get("message"), str)
-    }
+    # Telemetry that responds to a telecommand, with the telecommand.
+    responding: dict[str, Message] = {}
+    for _, message in telecommands:
+        for row in declared_responses(commands, message).values():
+            if isinstance(row.get("message"), str):
+                responding[row["message"]] = message
     where = f"is sent in the packet {quote(packet.name)}, which does not say what it carries"
     carried = [message for _, message in carried_in(ctx, link, packet, TELEMETRY)]
     for message in carried:
@@ -244,7 +243,7 @@ def _nameless(
         text = f"no telemetry is sent in the packet {quote(packet.name)}"
         help = "remove `response`, or correct the packets"
         yield Fault.at(requests, "response", text, help)
-    for row in mappings(packet.of("checksum")):
+    for row in mappings(packet.fields_of_role("checksum")):
         declared = link.checksums.get(row.get("checksum", ""))
         if isinstance(declared, Map) and "seeds" in declared:
             text = "the checksum has a seed for each message, and the packet does not say which message it carries"
@@ -256,7 +255,7 @@ def lengths_are_whole_units(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         reported: set[int] = set()
         for packet in link.packets:
-            for row in packet.of("length", "response_length"):
+            for row in packet.fields_of_roles("length", "response_length"):
                 if id(row) in reported:
                     continue
                 for fault in _units(ctx, link, packet, row):
@@ -270,11 +269,10 @@ def _units(
 ) -> Iterator[Fault]:
     """Yield the faults of a length that cannot be counted in its unit."""
     unit, around = row.get("unit", 1), 0
-    messages = [
-        message
-        for direction in packet.packet.directions
-        for _, message in carried_in(ctx, link, packet.packet, direction)
-    ]
+    messages: list[Message] = []
+    for direction in packet.packet.directions:
+        carried = carried_in(ctx, link, packet.packet, direction)
+        messages += (message for _, message in carried)
     is_of_response = row["role"] == "response_length"
     if is_of_response:
         if packet.packet.name != link.declared.requesting or messages:

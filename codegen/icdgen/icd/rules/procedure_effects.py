@@ -127,13 +127,11 @@ def _fields(
     """Yield the faults of fields that describe an object."""
     fields = effect.get("fields")
     # An object is described by the telemetry that the procedure requests last.
-    requested = [
-        step[kind]
-        for step in nested_steps(procedure.get("steps"))
-        for kind in ("get", "poll")
-        if kind in step
-    ]
-    message = named(messages, requested[-1]) if requested else None
+    requested: object = None
+    for step in nested_steps(procedure.get("steps")):
+        for request in ("get", "poll"):
+            requested = step.get(request, requested)
+    message = named(messages, requested)
     kind = next((effect[verb] for verb in EFFECTS if verb in effect), None)
     # Also the inputs of procedures that read or write objects of this kind: `list` and
     # `describe` return the values to give to them.

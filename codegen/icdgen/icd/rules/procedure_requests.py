@@ -24,16 +24,14 @@ def telemetry_of_steps_can_be_requested(ctx: Context) -> Iterator[Fault]:
         messages = {message.name: message for message in ctx.messages_of(link.node)}
         telecommands = ids_of(ctx, link.node, TELECOMMAND)
         commands = link.section.get("commands")
+        commands = commands if isinstance(commands, Map) else unread()
         # Telemetry that responds to a telecommand comes when the telecommand is sent,
         # so nothing else needs to request it.
-        replies = {
-            row.get("message")
-            for _, message in telecommands
-            for kind, row in declared_responses(
-                commands if isinstance(commands, Map) else unread(), message
-            ).items()
-            if kind == REPLY
-        }
+        replies: set[object] = set()
+        for _, telecommand in telecommands:
+            responses = declared_responses(commands, telecommand)
+            if REPLY in responses:
+                replies.add(responses[REPLY].get("message"))
         for step, name, place in _requests(ctx, link):
             message = named(messages, name)
             if message is None or name in replies:

@@ -1,4 +1,8 @@
-"""Procedures: steps, the names and numbers that they use, and their limits."""
+"""Procedures: steps, the names and numbers that they use, and their limits.
+
+`steps_in` yields each step with the loops around it, also for the themes
+`procedure_effects` and `procedure_requests`.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +53,7 @@ STEPS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 }
 _ANYWHERE = ("if", "unless", "assumptions")
 
-# Lists of steps in a step, by the names that `Placed.inside` has for them.
+# Lists of steps in a step, by the names that `PlacedStep.inside` has for them.
 _BLOCKS, _EACH, _ROUND, _REPEAT = "blocks", "each", "missing", "repeat"
 
 
@@ -80,6 +84,7 @@ class ProcedureNames(NamedTuple):
 
     @property
     def inputs(self) -> Map:
+        """Return the declarations of the inputs, by name."""
         return _map(self.procedure, "inputs")
 
     def type_of(self, name: object) -> object:
@@ -90,6 +95,7 @@ class ProcedureNames(NamedTuple):
         return "enum" if "enum" in row else row.get("type", "uint")
 
     def field(self, frame: str, name: str) -> NodePlace | None:
+        """Return a field of requested telemetry; None if there is no such field."""
         message = self.frames.get(frame)
         return field_of(message, name) if message else None
 
@@ -285,12 +291,9 @@ def _fields(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
         return
     step = placed.step
     keyed = [(step, key) for key in ("number", "data", "field") if key in step]
-    in_mappings = [
-        (owner, name)
-        for key in ("with", "until", "fail")
-        if isinstance(owner := step.get(key), Map)
-        for name in owner
-    ]
+    in_mappings: list[tuple[Map, str]] = []
+    for key in ("with", "until", "fail"):
+        in_mappings += [(_map(step, key), name) for name in _map(step, key)]
     for owner, key in (*keyed, *in_mappings):
         name = owner[key] if owner is step else key
         if not isinstance(name, str):
@@ -351,7 +354,9 @@ def _values(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
         if isinstance(step.get(key), str):
             yield from _flag(names, placed, key)
     if placed.kind in ("collect", "end_if_zeros"):
-        yield from _last_frame(names, placed)
+        name = step[placed.kind]
+        if isinstance(name, str) and name not in names.frames:
+            yield _unknown(step, placed.kind, "telemetry", names.frames)
     verify = step.get("verify")
     if not isinstance(verify, Map):
         return
@@ -403,8 +408,8 @@ def _packet_data(
     field = field_of(message, key) if message else None
     size = placed.missing.get("packet")
     if field and isinstance(size, int) and field.bits != 8 * size:
-        held = count(field.bits // 8, "byte")
-        text = f"{quote(key)} holds {held}, and a packet has {size}"
+        capacity = count(field.bits // 8, "byte")
+        text = f"{quote(key)} holds {capacity}, and a packet has {size}"
         yield Fault.at(owner, key, text, "correct `packet`, or name another field")
 
 
@@ -448,25 +453,21 @@ def _flag(names: ProcedureNames, placed: PlacedStep, key: str) -> Iterator[Fault
         yield Fault.at(placed.step, key, text, help)
 
 
-def _last_frame(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
-    """Yield the fault of a frame that no step requests."""
-    name = placed.step[placed.kind]
-    if isinstance(name, str) and name not in names.frames:
-        yield _unknown(placed.step, placed.kind, "telemetry", names.frames)
+def _texts_in_step(step: Map) -> Iterator[str]:
+    """Yield the texts among the values of a step, and of mappings in it such as `with`,
+    `verify` and `blocks`.
+    """
+    for owner in (step, *step.values()):
+        for value in owner.values() if isinstance(owner, Map) else ():
+            if isinstance(value, str):
+                yield value
 
 
 def _inputs(names: ProcedureNames, steps: list[PlacedStep]) -> Iterator[Fault]:
     """Yield the faults of inputs that no step uses, or that lack their size."""
-    # Values of the step itself, and of mappings in it such as `with`, `verify` and
-    # `blocks`.
-    used = {
-        value
-        for placed in steps
-        for place in (placed.step, *placed.step.values())
-        if isinstance(place, Map)
-        for value in place.values()
-        if isinstance(value, str)
-    }
+    used: set[str] = set()
+    for placed in steps:
+        used.update(_texts_in_step(placed.step))
     enums = {enum.name: enum for node in names.nodes.values() for enum in node.enums}
     for name, row in names.inputs.items():
         if not isinstance(row, Map):
@@ -605,21 +606,13 @@ def sizes_of_procedures_fit(ctx: Context) -> Iterator[Fault]:
         for placed in steps:
             if placed.kind in ("map", "receive", "send"):
                 yield from _sizes(names, placed)
-        kept = {
-            value
-            for placed in steps
-            for owner in (placed.step, *placed.step.values())
-            if isinstance(owner, Map)
-            for value in owner.values()
-            if isinstance(value, str) and name_of(value)[0] in names.frames
-        }
-        tested = sum(
-            len(placed.step[key])
-            for placed in steps
-            for key in ("until", "fail")
-            if isinstance(placed.step.get(key), Map)
-        )
-        numbers = len(FIXED_NAMES) + len(names.inputs) + len(kept) + tested
+        stored: set[str] = set()  # fields of requested telemetry
+        tested = 0  # numbers of `until` and `fail`
+        for placed in steps:
+            texts = _texts_in_step(placed.step)
+            stored.update(text for text in texts if name_of(text)[0] in names.frames)
+            tested += len(_map(placed.step, "until")) + len(_map(placed.step, "fail"))
+        numbers = len(FIXED_NAMES) + len(names.inputs) + len(stored) + tested
         if numbers > MOST_REGISTERS:
             text = f"the procedure keeps {numbers} numbers, at most {MOST_REGISTERS} are possible"
             yield Fault.at_key(names.procedure, "steps", text, "write two procedures")
@@ -650,8 +643,8 @@ def _sizes(names: ProcedureNames, placed: PlacedStep) -> Iterator[Fault]:
         field = field_of(message, step.get("number"))
         last = int(placed.missing.get("first", 0)) + packets - 1
         if field and last >= 1 << field.bits:
-            held = (1 << field.bits) - 1
-            text = f"{quote(field.name)} holds 0 to {held}, and the last packet of a block is {last}"
+            highest = (1 << field.bits) - 1
+            text = f"{quote(field.name)} holds 0 to {highest}, and the last packet of a block is {last}"
             yield Fault.at(step, "number", text, "correct `size`, `packet` or `first`")
         data = field_of(message, step.get("data"))
         if data and data.bits != 8 * packet:
@@ -693,6 +686,6 @@ def _numbers_of_block(
         field = field_of(message, name)
         most = largest.get(value) if isinstance(value, str) else None
         if field and most is not None and most >= 1 << field.bits:
-            held = (1 << field.bits) - 1
-            text = f"{quote(name)} holds 0 to {held}, and `{value}` can be {most}"
+            highest = (1 << field.bits) - 1
+            text = f"{quote(name)} holds 0 to {highest}, and `{value}` can be {most}"
             yield Fault.at(values, name, text, "correct `size`, or name another field")

@@ -111,12 +111,11 @@ def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
         room = can.get("max_data_bytes", CAN_DATA_BYTES)
         link = bus_link(ctx.protocol_of(node)["link"], CAN)
         has_segments = isinstance(can.get("segments"), Map)
-        short = {
-            direction
-            for direction in (TELECOMMAND, TELEMETRY)
-            if (packet := link.carrying(direction)) is not None
-            and not (has_segments and link.segment_of(packet))
-        }
+        short = set()  # directions in which a message is one packet
+        for direction in (TELECOMMAND, TELEMETRY):
+            packet = link.carrying(direction)
+            if packet is not None and not (has_segments and link.segment_of(packet)):
+                short.add(direction)
         for message in ctx.messages_of(node):
             is_short = any(
                 direction in short for _, direction in KEYS_OF_IDS[message.kind]

@@ -194,8 +194,8 @@ def _packet_faults(declared: DeclaredResponse) -> Iterator[Fault]:
     packet, names = declared.packet, [each.name for each in declared.link.declared.all]
     if packet is None:
         message = f"there is no packet {quote(declared.name)}"
-        known = [name for name in names if name]
-        remedy = suggestion(declared.name, known, "add it to `packets`")
+        existing = [name for name in names if name]
+        remedy = suggestion(declared.name, existing, "add it to `packets`")
         yield declared.fault("packet", message, *remedy)
     elif TELEMETRY not in packet.directions:
         message = f"the host sends the packet {quote(declared.name)}, and a response comes from the device"
@@ -250,15 +250,15 @@ def compared_field(
     if packet is not None:
         row = packet.named(name)
         if row is not None:
-            parts = packet.of(ID_ROLE) if row["role"] == ID_ROLE else [row]
+            parts = packet.fields_of_role(ID_ROLE) if row["role"] == ID_ROLE else [row]
             id_bits = sum(part["bits"] for part in parts)
             return ComparedField(name, row["bits"], enum, False, id_bits), "", ""
-        known = [row.get("name", row["role"]) for row in packet.rows]
+        existing = [row.get("name", row["role"]) for row in packet.rows]
         text = f"the packet {quote(packet.name)} has no field {quote(name)}"
         return (
             None,
             text,
-            suggestion(name, known, "name a field by its name or role")[0],
+            suggestion(name, existing, "name a field by its name or role")[0],
         )
     response = telemetry_of(ctx, declared)
     assert response is not None, "rule ICD176 checks the telemetry"
@@ -399,16 +399,16 @@ def _reason_against_header_echo(
     packets = declared.link.declared
     sent = [packets.by_name(packets.requesting)] if declared.is_of_request else []
     for message in declared.telecommands:
-        sent += packets.of(message.name, TELECOMMAND)[:1]
+        sent += packets.packets_of_message(message.name, TELECOMMAND)[:1]
     for packet in sent:
         if packet is None:
             continue  # ICD186
         row = packet.named(repeated)
         title = f"the packet {quote(packet.name)}" if packet.name else "the link"
         if row is None or not any(row is each for each in packet.header):
-            known = [each.get("name", each["role"]) for each in packet.header]
+            existing = [each.get("name", each["role"]) for each in packet.header]
             text = f"{title} has no field {quote(repeated)} in its header"
-            return text, suggestion(repeated, known, "name a field of the header")[0]
+            return text, suggestion(repeated, existing, "name a field of the header")[0]
         if row["role"] == "checksum":
             return "a checksum is not repeated", "name another field of the header"
         if row["bits"] > width:

@@ -1,4 +1,7 @@
-"""Class of the rules, and the decorator that registers them."""
+"""Class of the rules, and the decorator that registers them.
+
+A rule is a function that takes the `Context` and yields a `Fault` for each violation.
+"""
 
 from __future__ import annotations
 

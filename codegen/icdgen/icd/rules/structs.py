@@ -67,11 +67,13 @@ def structs_exist(ctx: Context) -> Iterator[Fault]:
 @rule("ICD141")
 def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        uses = {
-            struct["name"]: _rows_with_struct(struct)
-            for struct in mappings(node.source.get("structs"))
-            if isinstance(struct.get("name"), str)
-        }
+        # Fields of each struct that are structs.
+        uses: dict[str, list[Map]] = {}
+        for struct in mappings(node.source.get("structs")):
+            if isinstance(struct.get("name"), str):
+                rows = mappings(struct.get("fields"))
+                inner = [row for row in rows if isinstance(row.get("struct"), str)]
+                uses[struct["name"]] = inner
         for name, rows in uses.items():
             for row in rows:
                 path = _shortest_path(row["struct"], name, uses)
@@ -79,12 +81,6 @@ def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
                     message = f"the struct {quote(name)} contains itself: {' -> '.join((name, *path))}"
                     help = "write the inner fields directly into the struct"
                     yield Fault.at(row, "struct", message, help)
-
-
-def _rows_with_struct(struct: Map) -> list[Map]:
-    """Return the fields of a struct that are structs."""
-    rows = mappings(struct.get("fields"))
-    return [row for row in rows if isinstance(row.get("struct"), str)]
 
 
 def _shortest_path(

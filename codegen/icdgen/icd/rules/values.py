@@ -31,13 +31,11 @@ def members_fit_their_fields(ctx: Context) -> Iterator[Fault]:
             misfits = sum(
                 not _can_represent(field, member) for member in field.enum.members
             )
-            also = (
-                f" (nor do {misfits - 1} others)"
-                if misfits > 2
-                else " (nor does another)"
-                if misfits == 2
-                else ""
-            )
+            also = ""
+            if misfits == 2:
+                also = " (nor does another)"
+            elif misfits > 2:
+                also = f" (nor do {misfits - 1} others)"
             member = f"{quote(top.name)} = {top.values} of the enumeration {quote(field.enum.name)}"
             text = f"{member} does not fit the {count(field.bits, 'bit')} of the field {quote(field.name)}{also}"
             help = f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
@@ -174,16 +172,10 @@ def display_suits(ctx: Context) -> Iterator[Fault]:
             )
         elif format_.kind in OF_BITS and not has_bits:
             message = f"{name} is {_in_words(field, line.node)}, which `{format_.kind}` does not display"
-            help = (
-                "use `{decimals: N}` or `{digits: N}`"
-                if field.type == "float"
-                else "remove `display`"
-            )
-            help = (
-                "use `type: uint` for a bit pattern, or remove `display`"
-                if field.type == "int"
-                else help
-            )
+            help = {
+                "float": "use `{decimals: N}` or `{digits: N}`",
+                "int": "use `type: uint` for a bit pattern, or remove `display`",
+            }.get(field.type, "remove `display`")
             yield Fault.at(field.source, "display", message, help)
         elif format_.kind not in OF_BITS and field.type != "float" and not is_scaled:
             without = " without a scale" if field.type in ("uint", "int") else ""
