@@ -156,15 +156,10 @@ def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | No
     if kind == "enum":
         enum = enums.get(field.get("enum", ""))
         if isinstance(value, str):
-            members = enum.members if enum else ()
-            return next(
-                (
-                    member.value
-                    for member in members
-                    if member.name == value and member.to is None
-                ),
-                None,
-            )
+            for member in enum.members if enum else ():
+                if member.name == value and member.to is None:
+                    return member.value
+            return None
         if type(value) is not int:
             return None
         low, high = integer_range(bits, enum is not None and enum.signed)

@@ -129,10 +129,8 @@ class Curve(NamedTuple):
                 high = middle
         # Doubles, not fractions: all languages round both differences, and so agree on
         # ties.
-        below, above = (
-            abs(physical - self.double(low)),
-            abs(self.double(high) - physical),
-        )
+        below = abs(physical - self.double(low))
+        above = abs(self.double(high) - physical)
         return low if below < above or (below == above and low % 2 == 0) else high
 
 

@@ -184,14 +184,10 @@ def frame_fields(
     Caches the last results of each layout.
     """
     frames = _frames(layout)
-    key = (
-        orders,
-        (
-            None
-            if sizes is None or not layout.sequence
-            else tuple(map(sizes.__getitem__, layout.parts_by_size))
-        ),
-    )
+    numbers: tuple[int, ...] | None = None
+    if sizes is not None and layout.sequence:
+        numbers = tuple(map(sizes.__getitem__, layout.parts_by_size))
+    key = (orders, numbers)
     fields = frames.get(key)
     if fields is None:
         cached_scalars = sum(map(len, frames.values()))
@@ -243,11 +239,8 @@ def flatten(
             end += bits_of_node(node)
             continue
         part, size = next(parts), size_of(node)
-        number, gaps = (
-            (size.most, ())
-            if sizes is None
-            else (sizes[part.name], part.gaps_of(sizes))
-        )
+        number = size.most if sizes is None else sizes[part.name]
+        gaps = () if sizes is None else part.gaps_of(sizes)
         step = 8 * (part.step - sum(gap.length for gap in gaps))
         if isinstance(node, Array):
             for element in range(number):

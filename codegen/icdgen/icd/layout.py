@@ -301,12 +301,10 @@ class Layout:
                 begin += bits_of_node(node) // 8
                 continue
             size, step = size_of(node), stride(node) // 8
-            is_rest = isinstance(size, Rest)
-            counter, plus = (
-                (size.counter.name, 0)
-                if isinstance(size, Rest)
-                else (size.counter, size.plus)
-            )
+            if isinstance(size, Rest):
+                counter, plus, is_rest = size.counter.name, 0, True
+            else:
+                counter, plus, is_rest = size.counter, size.plus, False
             parts.append(
                 VariablePart(node, counter, is_rest, begin, step, size.most, plus)
             )

@@ -117,10 +117,8 @@ class _Loader:
             )
             self.unreadable = True
         elif not result.icds:
-            text, help = (
-                "the folder has no ICD: no file *.yaml in it, or in a folder below",
-                "name another folder, or a file",
-            )
+            text = "the folder has no ICD: no file *.yaml in it, or in a folder below"
+            help = "name another folder, or a file"
             if other_files:
                 name = other_files[0].name
                 text = f"the folder has no ICD: no file *.yaml has the key `icdgen`, `{name}` for instance"

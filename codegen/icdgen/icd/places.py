@@ -305,11 +305,9 @@ def _place_of_node(
     """Return the place of a node of fixed size in a frame, struct or element that
     begins at bit `begin`.
     """
-    own, at, steps = (
-        node.orders.within(orders),
-        begin + node.at,
-        (*owners, PathStep(node)),
-    )
+    own = node.orders.within(orders)
+    at = begin + node.at
+    steps = (*owners, PathStep(node))
     match node:
         case Array(item=item, most=count):
             return _place_of_item(steps, item, at, own, count)

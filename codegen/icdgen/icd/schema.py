@@ -157,10 +157,8 @@ def _explain(
         ]
     if name == "type":
         wanted = rule.get("type", "")
-        words = " or ".join(
-            _TYPES.get(type, type)
-            for type in ([wanted] if isinstance(wanted, str) else wanted)
-        )
+        types = [wanted] if isinstance(wanted, str) else wanted
+        words = " or ".join(_TYPES.get(each, each) for each in types)
         message = f"{what} must be {words}, not {_describe(error.instance)}"
         is_text = wanted == "string" and {"enum", "pattern"}.isdisjoint(rule)
         if isinstance(error.instance, str) or (

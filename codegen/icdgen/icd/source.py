@@ -188,11 +188,9 @@ class TreeBuilder:
         stack: list[tuple[Any, str | None, Spot]] = []  # the containers around it
         cache = self.scalars  # also the marker for 'not in the cache'
         next_event = event_parser(self.text, self.name).get_event
-        scalar, mapping, sequence = (
-            events.ScalarEvent,
-            events.MappingStartEvent,
-            events.SequenceStartEvent,
-        )
+        scalar = events.ScalarEvent
+        mapping = events.MappingStartEvent
+        sequence = events.SequenceStartEvent
         try:
             # This loop runs once per event, tens of thousands of times. Inline code is
             # faster than calls here.
@@ -236,10 +234,8 @@ class TreeBuilder:
                     container.append(value)
                     container.spots.append(spot)
                 elif key is None:
-                    key, key_spot = (
-                        (value if type(value) is str else self.key(value, event)),
-                        spot,
-                    )
+                    key = value if type(value) is str else self.key(value, event)
+                    key_spot = spot
                 else:
                     if key in container:
                         self.add_duplicate_key(

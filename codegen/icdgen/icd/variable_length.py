@@ -208,10 +208,8 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
         yield Fault.at(item, key, text, help)
         return
     # The largest number of elements that the counter can express.
-    most, elements = (
-        (1 << counter["bits"]) - 1 + plus,
-        ("bytes" if key == "size" else "elements"),
-    )
+    most = (1 << counter["bits"]) - 1 + plus
+    elements = "bytes" if key == "size" else "elements"
     if most < item["up_to"]:
         added = f" plus {plus}" if plus else ""
         counter_text = f"`{counter['name']}` ({counter['bits']} bits{added})"

@@ -179,10 +179,8 @@ def faults_of_inner_counts(
         # have.
         for other in _inner_arrays_before(message, inner, structs):
             other_name, other_plus = counting(other)
-            low, high = (
-                max(0, -plus, -other_plus),
-                min(inner.get("up_to", 0) - plus, other.get("up_to", 0) - other_plus),
-            )
+            low = max(0, -plus, -other_plus)
+            high = min(inner.get("up_to", 0) - plus, other.get("up_to", 0) - other_plus)
             if other_name == counter_name and low > high:
                 text = f"`{counter_name}` counts {array} and `{other['name']}`, and no value suits both"
                 yield Fault.at(
@@ -201,11 +199,8 @@ def _inner_arrays_before(
     them.
     """
     for item in variable_fields(message):
-        for other in (
-            arrays_of_struct(structs[item["struct"]])
-            if item.get("struct") in structs
-            else ()
-        ):
+        struct = structs.get(item.get("struct", ""))
+        for other in arrays_of_struct(struct) if struct is not None else ():
             if other is inner:
                 return
             yield other

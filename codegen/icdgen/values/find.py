@@ -398,7 +398,9 @@ def _suggest_named(key: str, items: Sequence[_HasName] | Sequence[FrameField]) -
     """Return a question with similar names; an item with a similar alias is listed by
     its name.
     """
-    names = {alias: item.name for item in items for alias in _aliases(item)} | {
-        item.name: item.name for item in items
-    }
+    names: dict[str, str] = {}
+    for item in items:
+        names.update((alias, item.name) for alias in _aliases(item))
+    # A name takes precedence over an equal alias of another item.
+    names.update((item.name, item.name) for item in items)
     return question(dict.fromkeys(names[text] for text in close_words(key, names)))

@@ -184,8 +184,8 @@ def _convert_row(row: Branch, end: int) -> int:
     if first != end:
         field["at"] = number(8 * first)
     field |= {"bits": number(8 * count), "role": word(present)}
-    kept = [entry_of(row, key) for key in ("name", "enum", "summary")]
-    row.children = mapping(field).children + [child for child in kept if child]
+    unchanged = [entry_of(row, key) for key in ("name", "enum", "summary")]
+    row.children = mapping(field).children + [child for child in unchanged if child]
     return first + count
 
 

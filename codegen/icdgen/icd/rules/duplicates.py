@@ -232,18 +232,14 @@ def _ambiguous_aliases(
                 text, help = f"{text}its own name", "remove the alias"
             elif key in names:
                 line = line_of(other.source.at("name"), place)
-                text, help = (
-                    f"{text}also the name of {quote(other.name)}, in {line}",
-                    "choose another alias",
-                )
+                text = f"{text}also the name of {quote(other.name)}, in {line}"
+                help = "choose another alias"
             elif other is item:
                 text, help = f"{text}listed twice", "remove one of them"
             else:
                 line = line_of(other.source.at("aliases"), place)
-                text, help = (
-                    f"{text}also an alias of {quote(other.name)}, in {line}",
-                    "keep one of them",
-                )
+                text = f"{text}also an alias of {quote(other.name)}, in {line}"
+                help = "keep one of them"
             yield Fault(item.source, place, text, help)
 
 

@@ -625,10 +625,8 @@ def _seeds(ctx: Context, link: DeclaredLink, checksum: Map) -> Iterator[Fault]:
     seeds = checksum.get("seeds")
     if not isinstance(seeds, Map):
         return
-    names, broken = (
-        [message.name for message in ctx.messages_of(link.node)],
-        ctx.broken_messages(link.node),
-    )
+    names = [message.name for message in ctx.messages_of(link.node)]
+    broken = ctx.broken_messages(link.node)
     for name in seeds:
         if name not in names and name not in broken:
             help = suggestion(name, names, "correct the name")

@@ -216,10 +216,8 @@ def _mask(begin: int, bits: int, bit_order: str) -> int:
 def _fault(overlap: Overlap) -> Fault:
     """Return the fault of an overlap, at its second field."""
     first, second, bits = overlap
-    start, end = (
-        max(first.at, second.at),
-        min(first.at + first.bits, second.at + second.bits),
-    )
+    start = max(first.at, second.at)
+    end = min(first.at + first.bits, second.at + second.bits)
     bits = bits or (
         f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}"
     )

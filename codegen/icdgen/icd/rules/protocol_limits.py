@@ -45,10 +45,8 @@ def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
 @rule("ICD099")
 def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        can, extended = (
-            section_in_effect(ctx, node, *PATH_OF_BUSES, "can"),
-            section_in_effect(ctx, node, *PATH_OF_BUSES, "can", "segments"),
-        )
+        can = section_in_effect(ctx, node, *PATH_OF_BUSES, "can")
+        extended = section_in_effect(ctx, node, *PATH_OF_BUSES, "can", "segments")
         size = extended.get("data_bytes") if extended is not None else None
         if can is None or extended is None or not isinstance(size, int) or size < 1:
             continue

@@ -70,10 +70,8 @@ def _bit(
 
 def _overlap(telecommands: Map, telemetry: Map) -> Iterator[Fault]:
     """Yield a fault if the ranges of ids of the two directions overlap."""
-    first, last = (
-        max(telecommands["first"], telemetry["first"]),
-        min(telecommands["last"], telemetry["last"]),
-    )
+    first = max(telecommands["first"], telemetry["first"])
+    last = min(telecommands["last"], telemetry["last"])
     if first <= last:
         ids = f"ids {first} to {last} are" if first < last else f"id {first} is"
         message = f"{ids} in the range of telecommands, too"
@@ -91,10 +89,8 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
             buses = section.get("buses") if isinstance(section, Map) else None
             for bus, place in buses.placed() if isinstance(buses, Seq) else ():
                 if not any(bus in buses_of(ctx.protocol_of(user)) for user in users):
-                    text, help = (
-                        f"`link: buses` has no `{bus}`",
-                        f"add it, or remove `{bus}`",
-                    )
+                    text = f"`link: buses` has no `{bus}`"
+                    help = f"add it, or remove `{bus}`"
                     yield Fault(section, place, text, help)
 
 

@@ -99,11 +99,9 @@ def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
     """Yield a fault if the byte that counts the packets left is in the data, or outside
     of the packet.
     """
-    data, left, room = (
-        extended.get("data_bytes"),
-        extended.get("packets_left_byte"),
-        can.get("max_data_bytes"),
-    )
+    data = extended.get("data_bytes")
+    left = extended.get("packets_left_byte")
+    room = can.get("max_data_bytes")
     if isinstance(data, int) and isinstance(left, int) and left < data:
         message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
         yield Fault.at(

@@ -58,17 +58,16 @@ def undeclared(
     """Return message, help and fix for a name that no ``section`` in the scope of a
     node declares.
     """
-    declaring = next(
-        (
-            other
-            for other in ctx.icd.nodes
-            for item in getattr(other, section)
-            if item.name == name
-        ),
-        None,
-    )
-    if declaring is not None:
-        help, fix = f"`{declaring.name}` declares it: include {declaring.file}", ""
+    declaring = [
+        other
+        for other in ctx.icd.nodes
+        if any(item.name == name for item in getattr(other, section))
+    ]
+    if declaring:
+        help, fix = (
+            f"`{declaring[0].name}` declares it: include {declaring[0].file}",
+            "",
+        )
     else:
         names = (
             item.name for other in ctx.scope(node) for item in getattr(other, section)
@@ -122,10 +121,8 @@ def units_exist(ctx: Context) -> Iterator[Fault]:
     for field, (_, _, node) in ctx.fields_with["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
-            help, fix = (
-                "declare it in `units:`; `icdgen units` lists the built-in units",
-                "",
-            )
+            help = "declare it in `units:`; `icdgen units` lists the built-in units"
+            fix = ""
             symbols = (
                 declared.symbol for owner in ctx.scope(node) for declared in owner.units
             )
