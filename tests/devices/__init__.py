@@ -1,8 +1,8 @@
-"""Public definitions of other devices, held by the format and compared with the library
-that everybody trusts.
+"""Public definitions of devices, converted to ICDs and compared with their established
+libraries.
 
 ``python -m tests.devices`` turns the tables of these libraries into ICDs, drops what
-`icdgen check` refuses, generates code, and compares each value that it reads with the
-library's. Nothing of the libraries is kept: their definitions are read where they are
-installed.
+`icdgen check` rejects, generates code, and compares each value that it decodes with the
+library's value. The repository contains no part of the libraries: their definitions are
+read where they are installed.
 """

@@ -1,5 +1,5 @@
-"""``python -m tests.devices``: a table of what the format holds of other protocols, and
-of how the values agree.
+"""``python -m tests.devices``: how many messages of other protocols icdgen supports,
+and whether their values agree with the protocol's library.
 """
 
 from __future__ import annotations
@@ -18,42 +18,47 @@ from tests.conformance.build import build
 from tests.conformance.driver import Testee
 from tests.conformance.languages import all_languages
 from tests.devices.agree import Agreement, compare
-from tests.devices.held import Held, held
 from tests.devices.protocols import PROTOCOLS
+from tests.devices.supported import SupportedNode, supported_messages
 
 AT_ONCE = 400  # messages that are compiled together
 
 
 @dataclass
 class Row:
-    """One protocol."""
+    """Counts of one protocol: its messages, their support and the agreement in each
+    language.
+    """
 
     total: int = 0
     causes: Counter[str] = field(default_factory=Counter)
-    nodes: list[Held] = field(default_factory=list)
+    nodes: list[SupportedNode] = field(default_factory=list)
     by_language: dict[str, Agreement] = field(default_factory=dict)
 
     @property
-    def held(self) -> int:
+    def supported(self) -> int:
         return sum(len(node.messages) for node in self.nodes)
 
     @property
     def unread(self) -> Counter[str]:
-        """What stands in the library's tables and is not counted, for the library
-        itself reads no frame of it.
+        """Messages that the library itself never decodes, by cause. They are not
+        counted.
         """
         return Counter(
-            one.unread
+            message.unread
             for node in self.nodes
-            for one in node.definitions.messages
-            if one.unread
+            for message in node.definitions.messages
+            if message.unread
         )
 
     @property
     def raw_only(self) -> Counter[str]:
-        """Of what is held, why some physical values are not."""
+        """Supported messages of which some physical values are not supported, by cause."""
         return Counter(
-            one.raw_only for node in self.nodes for one in node.messages if one.raw_only
+            message.raw_only
+            for node in self.nodes
+            for message in node.messages
+            if message.raw_only
         )
 
 
@@ -66,31 +71,33 @@ def measure(
     sample: int | None = None,
     nodes: int | None = None,
 ) -> Row:  # fmt: skip
-    """What the format holds of a protocol, and how it agrees with the library; of
-    ``nodes`` nodes, ``sample`` messages of each.
+    """Convert the messages of a protocol and compare their values with the library's.
 
-    Raises `BuildError`, and `ImportError` where the library is not installed.
+    Only the first ``nodes`` nodes, and ``sample`` random messages of each. Raises
+    `BuildError`, and `ImportError` if the library is not installed.
     """
-    row, taken = Row(by_language={language: Agreement() for language in languages}), []
+    row, batch = Row(by_language={language: Agreement() for language in languages}), []
     for definitions in islice(PROTOCOLS[name].load(), nodes):
         if sample is not None and len(definitions.messages) > sample:
             definitions.messages = random.Random(seed).sample(
                 definitions.messages, sample
             )
-        one = held(definitions, folder)
-        row.total += sum(not one.unread for one in definitions.messages)
-        row.causes.update(one.causes.values())
-        row.nodes.append(one)
-        if one.messages:
-            taken.append(one)
-        if sum(len(node.messages) for node in taken) >= AT_ONCE:
-            _compare(taken, row, frames, seed, folder)
-            taken = []
-    _compare(taken, row, frames, seed, folder)
+        node = supported_messages(definitions, folder)
+        row.total += sum(not message.unread for message in definitions.messages)
+        row.causes.update(node.causes.values())
+        row.nodes.append(node)
+        if node.messages:
+            batch.append(node)
+        if sum(len(node.messages) for node in batch) >= AT_ONCE:
+            _compare(batch, row, frames, seed, folder)
+            batch = []
+    _compare(batch, row, frames, seed, folder)
     return row
 
 
-def _compare(nodes: list[Held], row: Row, frames: int, seed: int, folder: Path) -> None:
+def _compare(
+    nodes: list[SupportedNode], row: Row, frames: int, seed: int, folder: Path
+) -> None:
     if not nodes or not row.by_language:
         return
     files = [folder / f"{node.definitions.name}.yaml" for node in nodes]
@@ -144,19 +151,19 @@ def main(arguments: list[str] | None = None) -> int:
                 options.sample,
             )
         print(
-            f"{name} ({PROTOCOLS[name].library}): {row.held} of {row.total} messages held"
+            f"{name} ({PROTOCOLS[name].library}): {row.supported} of {row.total} messages supported"
         )
         for cause, count in row.causes.most_common():
             print(f"    {count:5} {cause}")
         for cause, count in row.unread.most_common():
             print(f"    {count:5} not counted: {cause}")
         for cause, count in row.raw_only.most_common():
-            print(f"    {count:5} held, some values only raw: {cause}")
-        for language, one in row.by_language.items():
-            differences += len(one.differences)
-            print(f"  {language}: {one}")
+            print(f"    {count:5} supported, some values only raw: {cause}")
+        for language, agreement in row.by_language.items():
+            differences += len(agreement.differences)
+            print(f"  {language}: {agreement}")
             print(
-                "".join(f"    {text}\n" for text in one.differences[:10]),
+                "".join(f"    {text}\n" for text in agreement.differences[:10]),
                 end="",
                 flush=True,
             )

@@ -1,4 +1,4 @@
-"""What generated code reads of random frames, beside what the library reads."""
+"""Compare what generated code decodes from random frames with what the library decodes."""
 
 from __future__ import annotations
 
@@ -17,14 +17,13 @@ from icdgen.icd.meanings import special
 from tests.conformance.driver import Answering
 from tests.devices.definition import Definition, NotSupported, Values
 
-# As far as a library's double may be from the exact value, relative to it or as so many
-# units.
+# Largest deviation of a library's double from the exact value, relative or in units.
 ROUNDS_OFF = 1e-9
 
 
 @dataclass
 class Agreement:
-    """What came of the comparison in one language."""
+    """Counts and differences of the comparison in one language."""
 
     messages: int = 0
     frames: int = 0
@@ -32,12 +31,11 @@ class Agreement:
     # ours is the double nearest to the exact value, the library's is not
     rounded: int = 0
     impossible: int = 0  # the library's value has more bits than the field
-    # Values that have a meaning, where the library has a value or says that there is
-    # none.
+    # Special values of the ICD, and values that the library reports as absent.
     special: int = 0
     # frames of the library, from its raw values and from its physical ones
     encoded: int = 0
-    refused: int = 0  # frames that the library takes for another message
+    refused: int = 0  # frames that the library identifies as another message
     unread: set[str] = field(
         default_factory=set
     )  # messages of which the library reads no frame at all
@@ -66,105 +64,102 @@ def compare(
     seed: int,
     into: Agreement,
 ) -> None:
-    """Puts ``frames`` random frames of each message to the testee and to the library."""
+    """Decode ``frames`` random frames of each message with the testee and the library.
+
+    Supported frames are also encoded again and compared with the library's frame.
+    Counts and differences are added to ``into``.
+    """
     chance = random.Random(f"{seed} {node}")
-    asked = [
-        (one, data) for one in messages for data in random_frames(one, chance, frames)
+    samples = [
+        (definition, data)
+        for definition in messages
+        for data in random_frames(definition, chance, frames)
     ]
-    sharing = Counter((one.kind, one.id) for one in messages)
+    sharing = Counter((definition.kind, definition.id) for definition in messages)
     requests = [
         {
             "op": "decode",
             "node": node,
-            "kind": one.kind,
-            "id": one.id,
+            "kind": definition.kind,
+            "id": definition.id,
             "bytes": data.hex(),
         }
-        for one, data in asked
+        for definition, data in samples
     ]
-    plain = testee.ask(
-        [json.dumps(request).encode() for request in requests]
-    )  # of a shared id: which message it is
+    # If messages share the id, this response identifies the message.
+    plain = testee.ask([json.dumps(request).encode() for request in requests])
     named = [
-        {**request, "message": one.name}
-        for request, (one, _) in zip(requests, asked, strict=True)
+        {**request, "message": definition.name}
+        for request, (definition, _) in zip(requests, samples, strict=True)
     ]
-    shared = [sharing[one.kind, one.id] > 1 for one, _ in asked]
+    shares_id = [
+        sharing[definition.kind, definition.id] > 1 for definition, _ in samples
+    ]
+    # The second request names the message, so that the values can be compared.
     of_shared = iter(
         testee.ask(
             [
-                json.dumps(one).encode()
-                for one, is_shared in zip(named, shared, strict=True)
-                if is_shared
+                json.dumps(request).encode()
+                for request, is_shared_id in zip(named, shares_id, strict=True)
+                if is_shared_id
             ]
         )
     )
-    read, again = set(), []
-    for (one, data), answer, is_shared in zip(asked, plain, shared, strict=True):
-        told = json.loads(answer or b"{}").get("message") if is_shared else one.name
-        answer = next(of_shared) if is_shared else answer
+    read, to_encode = set(), []
+    for (definition, data), answer, is_shared_id in zip(
+        samples, plain, shares_id, strict=True
+    ):
+        identified = (
+            json.loads(answer or b"{}").get("message")
+            if is_shared_id
+            else definition.name
+        )
+        answer = next(of_shared) if is_shared_id else answer
         try:
-            raw, physical = one.raw(data), one.physical(data)
+            raw, physical = definition.raw(data), definition.physical(data)
         except NotSupported:
             into.refused += 1
             continue
         into.frames += 1
-        read.add(one.name)
-        said = json.loads(answer or b"{}")
-        about = f"{node} {one.name} {data.hex()}"
-        if not said.get("ok"):
-            into.differences.append(f"{about}: {said}")
+        read.add(definition.name)
+        decoded = json.loads(answer or b"{}")
+        about = f"{node} {definition.name} {data.hex()}"
+        if not decoded.get("ok"):
+            into.differences.append(f"{about}: {decoded}")
             continue
-        if told != one.name:
-            into.differences.append(f"{about}: taken for {told}")
+        if identified != definition.name:
+            into.differences.append(f"{about}: taken for {identified}")
         formulas = {}
-        for name, part, ours in _values(one, said["raw"]):
+        for name, part, ours in _values(definition, decoded["raw"]):
             formulas[name] = part.get("formula", "")
-            if "when" in part and (ours is None) != (name not in raw):
-                into.differences.append(
-                    f"{about}: {name} is {ours!r}, the library says {raw.get(name, 'nothing')!r}"
-                )
-            elif name in raw:
-                into.values += 1
-                value = raw[name]
-                if value is None or (
-                    isinstance(value, int) and _means_something(value, part)
-                ):
-                    into.special += 1
-                if value is None:
-                    if not _means_something(ours, part):
-                        into.differences.append(
-                            f"{about}: {name} is a number, the library says it is none"
-                        )
-                elif isinstance(value, int) and value.bit_length() > part["bits"]:
-                    into.impossible += 1
-                elif not _same(ours, value, part):
-                    into.differences.append(
-                        f"{about}: {name} is {ours!r}, the library says {value!r}"
-                    )
-        for name, bits in said["physical"].items():
+            _compare_raw(about, name, part, ours, raw, into)
+        for name, bits in decoded["physical"].items():
             if name in physical and bits is not None:
                 into.values += 1
-                _physical(
-                    about,
-                    name,
-                    _double(bits),
-                    physical[name],
-                    _exact(formulas[name], said["raw"][name]),
-                    into,
+                exact = _exact(formulas[name], decoded["raw"][name])
+                _compare_physical(
+                    about, name, _double(bits), physical[name], exact, into
                 )
-        if one.encoded is not None:
-            expected = one.encoded(data).hex()
-            if said["bytes"] != expected:
+        if definition.encoded is not None:
+            expected = definition.encoded(data).hex()
+            if decoded["bytes"] != expected:
                 into.differences.append(
-                    f"{about}: is encoded as {said['bytes']}, by the library as {expected}"
+                    f"{about}: is encoded as {decoded['bytes']}, by the library as {expected}"
                 )
-            request = {"op": "encode", "node": node, "kind": one.kind, "id": one.id}
-            again.append(
-                ({**request, **_to_encode(one, said["raw"], physical)}, expected)
+            request = {
+                "op": "encode",
+                "node": node,
+                "kind": definition.kind,
+                "id": definition.id,
+            }
+            to_encode.append(
+                (
+                    {**request, **_to_encode(definition, decoded["raw"], physical)},
+                    expected,
+                )
             )
-        for end in one.ends:
-            elements = _there(end, said["raw"])
+        for end in definition.ends:
+            elements = _present_elements(end, decoded["raw"])
             extra = [
                 name for name in raw if name.startswith(f"{end['name']}[{elements}]")
             ]
@@ -172,24 +167,54 @@ def compare(
                 f"{about}: {elements} elements, the library says more"
                 for _ in extra[:1]
             ]
-    made = testee.ask([json.dumps(request).encode() for request, _ in again])
-    for (request, expected), answer in zip(again, made, strict=True):
+    responses = testee.ask([json.dumps(request).encode() for request, _ in to_encode])
+    for (request, expected), answer in zip(to_encode, responses, strict=True):
         into.encoded += 1
         if json.loads(answer or b"{}").get("bytes") != expected:
             into.differences.append(
                 f"{request}: is encoded as {answer!r}, by the library as {expected}"
             )
     into.messages += len(messages)
-    into.unread |= {one.name for one in messages} - read
+    into.unread |= {definition.name for definition in messages} - read
+
+
+def _compare_raw(
+    about: str, name: str, part: dict, ours: object, theirs: Values, into: Agreement
+) -> None:
+    """Compare the raw value of a field with the library's, if it has one."""
+    # An optional field is absent in both readings or in none.
+    if "when" in part and (ours is None) != (name not in theirs):
+        into.differences.append(
+            f"{about}: {name} is {ours!r}, the library says {theirs.get(name, 'nothing')!r}"
+        )
+        return
+    if name not in theirs:
+        return
+    into.values += 1
+    value = theirs[name]
+    if value is None or (isinstance(value, int) and _is_special(value, part)):
+        into.special += 1
+    if value is None:
+        if not _is_special(ours, part):
+            into.differences.append(
+                f"{about}: {name} is a number, the library has no value"
+            )
+    elif isinstance(value, int) and value.bit_length() > part["bits"]:
+        into.impossible += 1
+    elif not _is_equal(ours, value, part):
+        into.differences.append(
+            f"{about}: {name} is {ours!r}, the library says {value!r}"
+        )
 
 
 def _to_encode(
-    one: Definition, raw: dict[str, object], physical: Values
+    definition: Definition, raw: dict[str, object], physical: Values
 ) -> dict[str, dict[str, object]]:
-    """The values of a frame to be encoded: physical ones as the library has them, where
-    they can be set.
+    """Return the values of a frame for an encode request.
+
+    Values that the library has as physical values are given as such if they can be set.
     """
-    own = [part for part in one.fields if "view" not in part]
+    own = [part for part in definition.fields if "view" not in part]
     scaled = {
         part["name"] for part in own if "formula" in part and part["type"] != "float"
     }
@@ -200,41 +225,51 @@ def _to_encode(
     }
     return {
         "raw": {
-            one["name"]: raw[one["name"]] for one in own if one["name"] not in given
+            part["name"]: raw[part["name"]] for part in own if part["name"] not in given
         },
         "physical": given,
     }
 
 
 def _values(
-    one: Definition, raw: dict[str, object]
+    definition: Definition, raw: dict[str, object]
 ) -> Iterator[tuple[str, dict, object]]:
-    """Name, field and value of all that an answer has; of an array a list, of what is
-    open at the end as much as there is.
+    """Yield name, field and value of everything that was decoded.
+
+    The value of an array is a list. Of a variable-length field it has the present
+    elements.
     """
-    for part in one.fields:
+    for part in definition.fields:
         name = part["name"]
-        count = _there(part, raw) if "up_to" in part else part.get("count")
+        count = _present_elements(part, raw) if "up_to" in part else part.get("count")
         if "size" in part:
             yield name, part, str(raw[name])[: 2 * count]
         else:
-            yield from _values_of(one, part, name, count, raw)
+            yield from _values_of(definition, part, name, count, raw)
 
 
 def _values_of(
-    one: Definition, part: dict, name: str, count: int | None, raw: dict[str, object]
+    definition: Definition,
+    part: dict,
+    name: str,
+    count: int | None,
+    raw: dict[str, object],
 ) -> Iterator[tuple[str, dict, object]]:
-    """A field that stands for itself or is an array; of an array of structs, the fields
-    of each element.
+    """Yield a single field or an array; of an array of structs, the fields of each
+    element.
     """
     if "struct" not in part:
         yield name, part, _value(raw, name, count)
         return
     for index in range(count or 0):
-        for inner in one.parts(part):
-            there = _there(inner, raw) if "up_to" in inner else inner.get("count")
+        for inner in definition.parts(part):
+            elements = (
+                _present_elements(inner, raw)
+                if "up_to" in inner
+                else inner.get("count")
+            )
             yield from _values_of(
-                one, inner, f"{name}[{index}].{inner['name']}", there, raw
+                definition, inner, f"{name}[{index}].{inner['name']}", elements, raw
             )
 
 
@@ -246,17 +281,17 @@ def _value(raw: dict[str, object], name: str, count: int | None) -> object:
     )
 
 
-def _there(end: dict, raw: dict[str, object]) -> int:
-    """How many elements, or bytes, of an open end are there."""
-    said, plus = _counter(end)
+def _present_elements(end: dict, raw: dict[str, object]) -> int:
+    """Return how many elements, or bytes, of a variable-length field are present."""
+    counter, plus = _counter(end)
     return (
         int(
             str(
                 raw[
                     (
                         f"{end['name']} {'Size' if 'size' in end else 'Count'}"
-                        if said == "rest"
-                        else said
+                        if counter == "rest"
+                        else counter
                     )
                 ]
             )
@@ -266,32 +301,38 @@ def _there(end: dict, raw: dict[str, object]) -> int:
 
 
 def _counter(end: dict) -> tuple[str, int]:
-    """What counts the elements, or bytes, of an open end, and what is added to it."""
-    said = end.get("count") or end["size"]
-    return (said["field"], said["plus"]) if isinstance(said, dict) else (str(said), 0)
+    """Return the counter of a variable-length field, and the number that is added to
+    it.
+    """
+    counter = end.get("count") or end["size"]
+    return (
+        (counter["field"], counter["plus"])
+        if isinstance(counter, dict)
+        else (str(counter), 0)
+    )
 
 
-def _means_something(raw: object, part: dict) -> bool:
-    """Whether a raw value is one that the ICD gives a meaning; of a float its bits are
-    given.
+def _is_special(raw: object, part: dict) -> bool:
+    """Return whether a raw value is a special value of the ICD; a float is given as its
+    bits.
     """
     if part["type"] != "float":
-        return any(one["value"] == raw for one in part.get("special", ()))
-    named = (
-        special("float", part["bits"], one["value"], one["meaning"])
-        for one in part.get("special", ())
+        return any(entry["value"] == raw for entry in part.get("special", ()))
+    specials = (
+        special("float", part["bits"], entry["value"], entry["meaning"])
+        for entry in part.get("special", ())
     )
-    one = Scalar(
+    scalar = Scalar(
         name="",
         at=0,
         bits=part["bits"],
         type="float",
-        special=tuple(found for found in named if found),
+        special=tuple(filter(None, specials)),
     )
-    return codec.special_of(one, int(str(raw), 16)) is not None
+    return codec.special_of(scalar, int(str(raw), 16)) is not None
 
 
-def _physical(
+def _compare_physical(
     about: str, name: str, ours: float, theirs: object, exact: float, into: Agreement
 ) -> None:
     assert isinstance(theirs, (int, float))
@@ -306,67 +347,69 @@ def _physical(
             )
 
 
-def random_frames(one: Definition, chance: random.Random, count: int) -> list[bytes]:
-    """Frames of a message: zeros, ones, random bytes; with its constants, and as many
-    elements as they say.
+def random_frames(
+    definition: Definition, chance: random.Random, count: int
+) -> list[bytes]:
+    """Return frames of a message: all zeros, all ones, then random bytes.
+
+    Constants are set, and the variable-length fields have as many elements as their
+    counters state.
     """
-    if not one.ends and not one.length:
+    if not definition.ends and not definition.length:
         return [b""]
-    found = []
+    frames = []
     for number in range(count):
-        there = [(end, _elements(end, number, chance)) for end in one.ends]
+        lengths = [(end, _elements(end, number, chance)) for end in definition.ends]
         # Arrays in elements can have the same counter.
         inner = {
             _counter(part)[0]: (part, _elements(part, number, chance))
-            for part in one.inner
+            for part in definition.inner
         }
         counts = {name: elements for name, (_, elements) in inner.items()}
-        length = one.length + sum(
-            elements * one.element(end, counts) for end, elements in there
+        length = definition.length + sum(
+            elements * definition.element(end, counts) for end, elements in lengths
         )
-        data = (
-            bytes(length)
-            if number == 0
-            else b"\xff" * length
-            if number == 1
-            else chance.randbytes(length)
-        )
-        if len(there) == 1 and there[0][0].get("type") == "text":
-            data = data[: one.length] + bytes(
-                chance.choices(range(32, 127), k=length - one.length)
+        if number < 2:
+            data = bytes([0xFF * number]) * length
+        else:
+            data = chance.randbytes(length)
+        if len(lengths) == 1 and lengths[0][0].get("type") == "text":
+            data = data[: definition.length] + bytes(
+                chance.choices(range(32, 127), k=length - definition.length)
             )
-        for part in one.fields:
+        for part in definition.fields:
             if "const" in part:
-                data = _put(data, part, part["const"])
-            for end, elements in (*there, *inner.values()):
+                data = _with_value(data, part, part["const"])
+            for end, elements in (*lengths, *inner.values()):
                 if part["name"] == _counter(end)[0]:
-                    data = _put(data, part, elements - _counter(end)[1])
-        data = _chosen(one, data, chance) if number % 4 else data
-        if (
-            one.may_end_early and number % 2
-        ):  # with zeros at the end, which are not sent
+                    data = _with_value(data, part, elements - _counter(end)[1])
+        data = _with_discriminators(definition, data, chance) if number % 4 else data
+        # Zeros at the end are not sent.
+        if definition.may_end_early and number % 2:
             data = data[: chance.randint(1, len(data))].rstrip(b"\0") or data[:1]
-        found.append(data)
-    return found
+        frames.append(data)
+    return frames
 
 
-def _chosen(one: Definition, data: bytes, chance: random.Random) -> bytes:
-    """The frame with a value on which others depend, for each field that some depend
-    on.
-    """
+def _with_discriminators(
+    definition: Definition, data: bytes, chance: random.Random
+) -> bytes:
+    """Return the frame with a random one of the values on which optional fields depend."""
     wanted: dict[str, list[int]] = {}
-    for part in one.fields:
+    for part in definition.fields:
         for name, values in part.get("when", {}).items():
             wanted.setdefault(name, []).extend(values)
-    for part in one.fields:
+    for part in definition.fields:
         if part["name"] in wanted:
-            data = _put(data, part, chance.choice(wanted[part["name"]]))
+            data = _with_value(data, part, chance.choice(wanted[part["name"]]))
     return data
 
 
 def _elements(end: dict, number: int, chance: random.Random) -> int:
-    """How many elements the frame of a number has: as few as can be, all, one more, or
-    any number.
+    """Return the number of elements in the frame with a number.
+
+    The first frames have the fewest, the most and one more than the fewest elements;
+    others have a random number.
     """
     least, most = max(0, _counter(end)[1]), end["up_to"]
     return (
@@ -376,9 +419,10 @@ def _elements(end: dict, number: int, chance: random.Random) -> int:
     )
 
 
-def _put(data: bytes, part: dict, value: int) -> bytes:
-    """The frame with another value in a field, whose bits are counted from the least
-    significant one unless it says so.
+def _with_value(data: bytes, part: dict, value: int) -> bytes:
+    """Return the frame with another value in a field.
+
+    Bits are counted from the least significant bit unless the bit order is ``msb0``.
     """
     at, is_big = part["at"], part.get("bit_order") == "msb0"
     if is_big:  # and the most significant byte first: the frame is one number that begins with its highest bit
@@ -412,14 +456,14 @@ def _double(bits: str) -> float:
     return struct.unpack(">d", bytes.fromhex(bits))[0]
 
 
-def _same(ours: object, theirs: object, part: dict) -> bool:
-    """Whether a testee's raw value is the library's.
+def _is_equal(ours: object, theirs: object, part: dict) -> bool:
+    """Return whether the testee's raw value equals the library's.
 
-    Of text a library keeps what stands before a NUL.
+    Libraries return text only up to its first NUL.
     """
     if isinstance(ours, list) and part["type"] == "text":
         return isinstance(theirs, list) and all(
-            _same(*pair, part) for pair in zip(ours, theirs, strict=True)
+            _is_equal(*pair, part) for pair in zip(ours, theirs, strict=True)
         )
     if part["type"] in ("bytes", "text"):
         wide = isinstance(theirs, int)  # some read bytes as one number
@@ -430,7 +474,7 @@ def _same(ours: object, theirs: object, part: dict) -> bool:
         )
     if isinstance(theirs, (list, tuple)):
         return isinstance(ours, list) and all(
-            _same(*pair, part) for pair in zip(ours, theirs, strict=True)
+            _is_equal(*pair, part) for pair in zip(ours, theirs, strict=True)
         )
     if isinstance(theirs, float) and isinstance(ours, str):
         code = {16: "e", 32: "f", 64: "d"}[part["bits"]]

@@ -1,5 +1,5 @@
-"""CAN databases of the opendbc package: read as `icdgen import` reads them; cantools
-judges.
+"""CAN databases of the opendbc package as `icdgen import` reads them, compared with
+cantools.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ from tests.devices.definition import Definition, Definitions, Values
 
 
 def databases(words: str = "") -> Iterator[Definitions]:
-    """Every DBC file of the package whose name contains these words. cantools judges
-    what is left without the faults for which it would refuse all of it.
+    """Yield every DBC file of the package whose name contains ``words``.
+
+    Messages that cantools would reject because of a fault elsewhere in the file are
+    decoded without these faults.
     """
     reader = can.Dbc()
     for number, path in enumerate(files()):
@@ -29,21 +31,23 @@ def databases(words: str = "") -> Iterator[Definitions]:
             read = run.read(path, reader)
         except Findings:
             continue  # parts of databases, without a message
-        judge = reader.database(
+        reference = reader.database(
             str(path), path.read_bytes(), model.Definitions(str(path))
         )
         (tree,) = read.trees.values()
         tree["node"]["name"] = f"{tree['node']['name'][:35].rstrip('_')}_{number}"
-        held = {one["name"]: one for one in tree["messages"]}
+        imported = {message["name"]: message for message in tree["messages"]}
         messages = [
-            _definition(one, held.get(one.name), tree["node"], read.definitions)
-            for one in judge.messages
+            _definition(
+                message, imported.get(message.name), tree["node"], read.definitions
+            )
+            for message in reference.messages
         ]
         yield Definitions(tree["node"], messages, tree)
 
 
 def files() -> list[Path]:
-    """The DBC files of the package, by name."""
+    """Return the DBC files of the package, sorted by name."""
     import opendbc
 
     folder = importlib.resources.files(opendbc)
@@ -52,26 +56,28 @@ def files() -> list[Path]:
 
 
 def _definition(
-    message: Any, held: dict | None, node: dict, read: model.Definitions
+    message: Any, imported: dict | None, node: dict, read: model.Definitions
 ) -> Definition:
     head = (
         message.name,
-        message.frame_id if held is None else int(held["id"]),
+        message.frame_id if imported is None else int(imported["id"]),
         "telemetry",
         message.length,
     )
-    if held is None:
-        said = [
-            one.message
-            for one in read.import_findings
-            if f"message `{message.name}` is not imported" in one.message
+    if imported is None:
+        findings = [
+            finding.message
+            for finding in read.import_findings
+            if f"message `{message.name}` is not imported" in finding.message
         ]
-        code = re.search(r"ICD\d{3}", said[0])
+        code = re.search(r"ICD\d{3}", findings[0])
         return Definition(
-            *head, [], cause=code[0] if code else said[0].split(": ", 1)[1]
+            *head, [], cause=code[0] if code else findings[0].split(": ", 1)[1]
         )
-    orders = {key: held.get(key, node[key]) for key in ("byte_order", "bit_order")}
-    fields = [{**orders, **one, **_when(one)} for one in held.get("fields", ())]
+    orders = {key: imported.get(key, node[key]) for key in ("byte_order", "bit_order")}
+    fields = [
+        {**orders, **field, **_when(field)} for field in imported.get("fields", ())
+    ]
     decode, encode = _reader(message, fields)
     return Definition(
         *head,
@@ -83,53 +89,59 @@ def _definition(
 
 
 def _when(field: dict) -> dict:
-    """The key of a condition, with a list of numbers each."""
-    said = field.get("when", {})
+    """Return the key of the condition of a field, with a list of numbers for each name."""
+    condition = field.get("when", {})
     listed = {
-        name: [int(one) for one in (value if isinstance(value, list) else [value])]
-        for name, value in said.items()
+        name: [
+            int(number) for number in (value if isinstance(value, list) else [value])
+        ]
+        for name, value in condition.items()
     }
     return {"when": listed} if listed else {}
 
 
-def _said_of(signal: Any, is_multiplexer: bool) -> Any:
-    """The same signal of the library, but for what it is said to be."""
-    found = copy(signal)
-    found.is_multiplexer = is_multiplexer
-    return found
+def _with_role(signal: Any, is_multiplexer: bool) -> Any:
+    """Return a copy of the library's signal that is, or is not, a multiplexer."""
+    changed = copy(signal)
+    changed.is_multiplexer = is_multiplexer
+    return changed
 
 
 def _reader(
     message: Any, fields: list[dict]
 ) -> tuple[Callable[[bytes, bool], Values], Callable[[bytes], bytes]]:
-    """The library's reading, raw or scaled, and its frame of these values; signals that
-    overlap, or that no selector has, it knows only one by one.
+    """Return the library's decoder and its encoder of the raw values of a frame.
+
+    The decoder takes the frame and whether to return physical values. cantools cannot
+    decode overlapping signals, or signals of no selector value, together. They are
+    decoded one by one.
     """
     from cantools.database import Message
     from cantools.database.errors import DecodeError
 
     parts, head = [message], (message.frame_id, message.name, message.length)
-    names = {one["name"] for one in fields}
-    known = [one for one in message.signals if one.name in names]
-    selecting = {one.multiplexer_signal for one in known} - {
+    names = {signal["name"] for signal in fields}
+    signals = [signal for signal in message.signals if signal.name in names]
+    selecting = {signal.multiplexer_signal for signal in signals} - {
         None
     }  # a file may not mark them
     if (
         selecting
-        or any("view" in one for one in fields)
-        or len(known) < len(message.signals)
+        or any("view" in signal for signal in fields)
+        or len(signals) < len(message.signals)
     ):
         selectors = {
-            one.name: _said_of(one, is_multiplexer=True)
-            for one in known
-            if one.name in selecting
+            signal.name: _with_role(signal, is_multiplexer=True)
+            for signal in signals
+            if signal.name in selecting
         }
-        alone = [_said_of(one, is_multiplexer=False) for one in known]
+        unmultiplexed = [_with_role(signal, is_multiplexer=False) for signal in signals]
         groups = [
-            [*filter(None, [selectors.get(one.multiplexer_signal)]), one]
-            for one in alone
+            [*filter(None, [selectors.get(signal.multiplexer_signal)]), signal]
+            for signal in unmultiplexed
         ]
         parts = [
+            # Without `strict`, cantools accepts signals that exceed the message.
             Message(*head, group, is_extended_frame=True, strict=False)
             for group in groups
         ]

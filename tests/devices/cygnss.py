@@ -1,5 +1,5 @@
-"""Packets of the CYGNSS satellites, whose definitions lie among the tests of ccsdspy;
-ccsdspy reads the frames and judges.
+"""Packets of the CYGNSS satellites, defined in the tests of ccsdspy and compared with
+it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ TYPES = {"U": "uint", "I": "int", "F": "float"}
 
 
 def packets() -> Iterator[Definitions]:
-    """All packets of the mission, by their APID."""
+    """Yield all packets of the mission, in the order of the overview."""
     import ccsdspy
 
     folder = importlib.resources.files(ccsdspy) / "tests" / "data" / "split" / "defs"
@@ -55,26 +55,28 @@ def _definition(overview: list[str], rows: list[dict[str, str]]) -> Definition:
     for row in rows:
         if not re.fullmatch(r"[UIF]\d+", row["Type"]):
             continue
+        # Positions count from the primary header, which an ICD of packets does not
+        # describe.
         at = 8 * (int(row["Start Byte"]) - HEADER) + int(row["Start Bit"])
         if at < 0:
             continue
         kind, order = TYPES[row["Type"][0]], row["Type"][1:]
-        one = {
+        field = {
             "at": at,
             "bits": int(row["Data Size"]),
             "name": row["Mnemonic"],
             "type": kind,
             **unit(row["Units"]),
         }
-        if one["bits"] > 64:
-            one["type"] = "bytes"
+        if field["bits"] > 64:
+            field["type"] = "bytes"
         if order[0] != "1":
-            one |= {"byte_order": "little"}
+            field |= {"byte_order": "little"}
         if re.search(r"\b(iif|ln)\(", row["Conversion Formula"], re.IGNORECASE):
             raw_only = "formulas with logarithms"
         elif row["Conversion Formula"]:
-            one |= {"formula": _spelled(row["Conversion Formula"])}
-        fields.append(one)
+            field |= {"formula": _spelled(row["Conversion Formula"])}
+        fields.append(field)
     if not fields:
         cause = "a packet without a table of fixed places"
     return Definition(
@@ -90,8 +92,9 @@ def _definition(overview: list[str], rows: list[dict[str, str]]) -> Definition:
 
 
 def _spelled(formula: str) -> str:
-    """A formula as an ICD spells it; some are the coefficients of a line, its constant
-    first.
+    """Return a formula in the notation of an ICD.
+
+    Some are given as the two coefficients of a line, constant first.
     """
     line = re.fullmatch(r"(\S+) (\S+)", formula)
     return (
@@ -102,31 +105,32 @@ def _spelled(formula: str) -> str:
 
 
 def _read(fields: list[dict], data: bytes) -> dict[str, object]:
-    """What ccsdspy makes of a packet with this data.
+    """Return what ccsdspy decodes from a packet with this data.
 
-    Of little-endian numbers it swaps the bytes of 16, 32 or 64 bits that hold them, so
-    that those of another width, fills all of them, come out wider than they are: these
-    are left out.
+    ccsdspy swaps the bytes of the 16, 32 or 64 bits that contain a little-endian
+    number. Values of other widths have all bits of the container, and are left out.
     """
     from ccsdspy import FixedLength, PacketField
 
     swapped = [
-        one
-        for one in fields
-        if one.get("byte_order") == "little"
-        and one["bits"] not in (*range(1, 9), 16, 32, 64)
+        field
+        for field in fields
+        if field.get("byte_order") == "little"
+        and field["bits"] not in (*range(1, 9), 16, 32, 64)
     ]
-    narrow = [one for one in fields if one["type"] != "bytes" and one not in swapped]
+    narrow = [
+        field for field in fields if field["type"] != "bytes" and field not in swapped
+    ]
     columns: list[Any] = [
         PacketField(
-            one["name"],
-            one["type"],
-            one["bits"],
-            8 * HEADER + one["at"],
-            one.get("byte_order", "big"),
+            field["name"],
+            field["type"],
+            field["bits"],
+            8 * HEADER + field["at"],
+            field.get("byte_order", "big"),
         )
-        for one in narrow
+        for field in narrow
     ]
     header = bytes(4) + (len(data) - 1).to_bytes(2, "big")
-    found = FixedLength(columns).load(io.BytesIO(header + data))
-    return {one["name"]: found[one["name"]][0].item() for one in narrow}
+    decoded = FixedLength(columns).load(io.BytesIO(header + data))
+    return {field["name"]: decoded[field["name"]][0].item() for field in narrow}

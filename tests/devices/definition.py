@@ -1,4 +1,4 @@
-"""A library's message as an ICD says it, or why it cannot."""
+"""A message of a library as an ICD describes it, or the reason why it cannot."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ Values = dict[
 
 
 class NotSupported(ValueError):
-    """The format cannot say this; the text is the cause, short enough to be counted."""
+    """The format does not support a construct; the text is a short cause, for counting."""
 
 
 @dataclass
 class Definition:
-    """One message: what an ICD says of it, or why it cannot be said; and the library's
-    own reading of a frame.
+    """One message: its description in an ICD, or the cause why it is not supported.
+
+    It also has the library's own decoder of a frame.
     """
 
     name: str
@@ -36,54 +37,58 @@ class Definition:
     physical: Callable[[bytes], Values] = lambda _: {}
     more: dict = field(default_factory=dict)
     structs: list[dict] = field(default_factory=list)
-    raw_only: str = ""  # why some physical values of it cannot be said
-    # Why the library itself reads no frame of it, so that it is no message to be held.
+    raw_only: str = ""  # why some of its physical values are not supported
+    # Why the library itself decodes no frame of it. Such a message is not counted.
     unread: str = ""
     may_end_early: bool = False  # whether zeros at the end may be cut off
     # the library's own frame of the values of a frame
     encoded: Callable[[bytes], bytes] | None = None
 
     def tree(self) -> dict:
-        """As it stands in an ICD; bytes at the end that nothing describes are reserved."""
-        closed = [one for one in self.fields if "up_to" not in one]
+        """Return the message as it appears in an ICD. Bytes at the end without a field
+        are reserved.
+        """
+        fixed = [field for field in self.fields if "up_to" not in field]
         end = max(
-            (one["at"] + one["bits"] * one.get("count", 1) for one in closed), default=0
+            (field["at"] + field["bits"] * field.get("count", 1) for field in fixed),
+            default=0,
         )
-        rest = self.length - -(-end // 8)
+        reserved = self.length - -(-end // 8)
         return {
             "name": self.name, "id": self.id, "kind": self.kind, "length": self.length, **self.more,
-            **({"reserved": rest} if rest > 0 else {}), "fields": self.fields,
+            **({"reserved": reserved} if reserved > 0 else {}), "fields": self.fields,
         }  # fmt: skip
 
     @property
     def ends(self) -> list[dict]:
-        """The fields of which not every frame has all."""
-        return [one for one in self.fields if "up_to" in one]
+        """The variable-length fields."""
+        return [field for field in self.fields if "up_to" in field]
 
     def parts(self, part: dict) -> list[dict]:
-        """The fields of the struct that a part is made of; none where it is a field."""
+        """Return the fields of the struct of an array; an empty list for other fields."""
         return next(
             (
-                one["fields"]
-                for one in self.structs
-                if one["name"] == part.get("struct")
+                struct["fields"]
+                for struct in self.structs
+                if struct["name"] == part.get("struct")
             ),
             [],
         )
 
     @property
     def inner(self) -> list[dict]:
-        """The arrays of variable length in elements of the ends."""
+        """The variable-length arrays within the elements of the variable-length fields."""
         return [
             part for end in self.ends for part in self.parts(end) if "up_to" in part
         ]
 
     def element(self, end: dict, counts: dict[str, int] | None = None) -> int:
-        """Bytes of an element of the open end, whose arrays have as many elements as
-        ``counts`` says by the counters.
+        """Return the size of an element of a variable-length field in bytes.
+
+        ``counts`` has the numbers of elements of arrays within it, by their counters.
         """
         struct = next(
-            (one for one in self.structs if one["name"] == end.get("struct")), None
+            (each for each in self.structs if each["name"] == end.get("struct")), None
         )
         if struct is None:
             return end.get("bits", 8) // 8
@@ -96,11 +101,13 @@ class Definition:
         return size
 
 
-def open_end(
+def variable_length_field(
     name: str, at: int, bits: int, type_: str, counter: str | dict, most: int
 ) -> dict:
-    """What ends a message of variable length: elements that a field counts, or up to
-    the end (`rest`); bytes and text as one.
+    """Return a variable-length field at the end of a message.
+
+    Its elements are counted by a field, or it goes up to the end (`rest`). Bytes and
+    text are one value.
     """
     number = (
         {"size": counter}
@@ -110,7 +117,7 @@ def open_end(
     return {"at": at, "name": name, "type": type_, **number, "up_to": most}
 
 
-def open_structs(
+def variable_length_structs(
     owner: str,
     name: str,
     at: int,
@@ -119,8 +126,7 @@ def open_structs(
     counter: str | dict,
     most: int,
 ) -> tuple[dict, dict]:
-    """Likewise with elements that are structs of so many bits: the field, and the
-    struct.
+    """Return a variable-length array of structs of ``bits`` bits, and its struct.
 
     Raises `NotSupported`.
     """
@@ -138,11 +144,11 @@ def open_structs(
 
 @dataclass
 class Definitions:
-    """The messages that stand in one node: a CAN database, a dialect."""
+    """The messages of one node: a CAN database, or a dialect."""
 
     node: dict
     messages: list[Definition]
-    tree: dict | None = None  # the ICD, where `icdgen import` made it
+    tree: dict | None = None  # the ICD, if `icdgen import` created it
 
     @property
     def name(self) -> str:
@@ -151,8 +157,9 @@ class Definitions:
 
 @dataclass(frozen=True)
 class Protocol:
-    """``load`` gives the definitions; it raises `ImportError` where the library is not
-    installed.
+    """A protocol; ``load`` yields its definitions.
+
+    ``load`` raises `ImportError` if the library is not installed.
     """
 
     name: str
@@ -161,7 +168,7 @@ class Protocol:
 
 
 def node(name: str, title: str, **more: object) -> dict:
-    """The head of an ICD."""
+    """Return the head of an ICD."""
     return {
         "name": words(name)[:40].rstrip("_"),
         "title": title,
@@ -172,22 +179,25 @@ def node(name: str, title: str, **more: object) -> dict:
 
 
 def words(text: str) -> str:
-    """Words that every language takes for the name of a node."""
+    """Return words that are valid as the name of a node in every language."""
     plain = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")
     return plain if plain[:1].isalpha() else f"n{plain}"
 
 
 def unit(text: str | None) -> dict:
-    """The key of a unit that the built-in table has; others are left out, as no value
-    depends on them.
+    """Return the key of a unit of the built-in table; other units are omitted.
+
+    No value depends on a unit.
     """
-    found = SPELLINGS.get(text or "", text or "")
-    return {"unit": found} if found in STANDARD else {}
+    standard = SPELLINGS.get(text or "", text or "")
+    return {"unit": standard} if standard in STANDARD else {}
 
 
 def formula(factor: str, offset: str = "0") -> dict:
-    """The key of the formula of a factor and an offset as they are printed; none where
-    the raw value is meant.
+    """Return the key of the formula of a factor and an offset, both as printed
+    decimals.
+
+    It is empty if the value is the raw value.
     """
     slope, constant = Fraction(factor), Fraction(offset)
     if slope == 1 and constant == 0:
@@ -200,10 +210,12 @@ def formula(factor: str, offset: str = "0") -> dict:
     return {"formula": text}
 
 
-def twice(fields: list[dict]) -> set[str]:
-    """Names that stand there more than once: a library keeps only the last of them."""
+def repeated_names(fields: list[dict]) -> set[str]:
+    """Return names that occur more than once; a library keeps only the last of such
+    fields.
+    """
     return {
         name
-        for name, count in Counter(one["name"] for one in fields).items()
+        for name, count in Counter(field["name"] for field in fields).items()
         if count > 1
     }

@@ -1,8 +1,8 @@
-"""Electronic data sheets, as `icdgen import` reads them.
+"""Electronic data sheets (EDS), as `icdgen import` reads them.
 
-No library reads frames by them from Python, so a reader of bits judges that is written
-for this: it walks the XML for each frame, entry by entry, and shares no code with what
-is judged.
+No Python library decodes frames by data sheets. The reference implementation is
+therefore a bit reader of our own: it walks the XML for each frame, entry by entry, and
+shares no code with the importer.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import os
 import re
 import struct
 from collections.abc import Callable, Iterator
+from itertools import chain
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -22,7 +23,7 @@ from tests.conftest import ROOT
 from tests.devices.definition import Definition, Definitions, NotSupported, Values
 
 OWN = ROOT / "tests" / "definitions" / "files" / "eds"
-# In the environment: a folder with data sheets of others, such as those of cFS, and
+# Environment variable: a folder with further data sheets, such as those of cFS, and
 # their parameters.
 OTHERS = "EDS_FILES"
 _SUMS = {
@@ -31,85 +32,87 @@ _SUMS = {
 
 
 def sheets() -> Iterator[Definitions]:
-    """A node for each data sheet of ours, and of the folder that the environment names."""
+    """Yield a node for each data sheet of the tests and of the folder in the
+    environment.
+    """
     reader = eds.Eds()
     for folder in (OWN, *map(Path, filter(None, [os.environ.get(OTHERS)]))):
-        judge = _Judge(folder)
+        reference = _Reference(folder)
         for path in sorted(folder.glob("*.xml")):
             if not reader.knows(path.read_text("utf-8")):
                 continue
             try:
                 read = run.read(path, reader)
             except Findings:
-                continue  # of what only others use
+                continue  # packages that only other data sheets use
             (tree,) = read.trees.values()
             missing = [
-                one.message
-                for one in read.definitions.import_findings
-                if one.severity == "error"
+                finding.message
+                for finding in read.definitions.import_findings
+                if finding.severity == "error"
             ]
-            # a message that ends in bytes for fields which are not imported counts as
-            # one that is missing
+            # A message whose last fields are imported as bytes counts as missing.
             tree["messages"] = [
-                one
-                for one in tree["messages"]
-                if not any(_is_cut(one, text) for text in missing)
+                message
+                for message in tree["messages"]
+                if not any(_is_cut(message, text) for text in missing)
             ]
             messages = [
-                _definition(judge, judge.packages(path), one, tree)
-                for one in tree["messages"]
+                _definition(reference, reference.packages(path), message, tree)
+                for message in tree["messages"]
             ]
             messages += [
-                Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[1])
-                for said in missing
+                Definition(
+                    finding, 0, "telemetry", 0, [], cause=finding.split(": ", 1)[1]
+                )
+                for finding in missing
             ]
             yield Definitions(tree["node"], messages, tree)
 
 
 def _is_cut(message: dict, finding: str) -> bool:
-    """Whether a finding says that only bytes are held of the end of a message."""
+    """Return whether a finding reports that the end of a message is imported as bytes."""
     return finding.startswith(f"message `{message['name']}`: from ")
 
 
 def _definition(
-    judge: _Judge, packages: list[str], held: dict, tree: dict
+    reference: _Reference, packages: list[str], message: dict, tree: dict
 ) -> Definition:
+    # The default of data sheets.
     orders = {"byte_order": "big", "bit_order": "msb0"}
-    fields = [{**orders, **one} for one in held.get("fields", ())]
+    fields = [{**orders, **field} for field in message.get("fields", ())]
     structs = [
-        {**one, "fields": [{**orders, **part} for part in one["fields"]]}
-        for one in tree.get("structs", ())
+        {**struct_, "fields": [{**orders, **part} for part in struct_["fields"]]}
+        for struct_ in tree.get("structs", ())
     ]
-    name = held["name"].rsplit(" ", 1)[-1]  # behind the package, if several have it
-    container = next(
-        found
-        for found in (judge.types.get(f"{one}/{name}") for one in packages)
-        if found is not None
-    )
+    name = message["name"].rsplit(" ", 1)[-1]  # behind the package, if several have it
+    types = (reference.types.get(f"{package}/{name}") for package in packages)
+    container = next(type_ for type_ in types if type_ is not None)
     header = tree.get("protocol", {}).get("link", {}).get("header", [])
-    skipped = sum(one["bits"] for one in header)  # they follow each other
+    skipped = sum(part["bits"] for part in header)  # they follow each other
 
     def raw(data: bytes) -> Values:
+        decoded = reference.read(container, data, skipped)
         return _named(
-            fields,
-            structs,
-            [one for one in judge.read(container, data, skipped) if one[1] >= skipped],
+            fields, structs, [value for value in decoded if value[1] >= skipped]
         )
 
     def physical(data: bytes) -> Values:
-        found = judge.read(container, data, skipped)
-        curves = {at: curve for _, at, _, curve in found if curve is not None}
-        values = {at: value for _, at, value, _ in found}
-        return {
-            one["name"]: curves[one["at"] + skipped](values[one["at"] + skipped])
-            for one in fields if "formula" in one and one["at"] + skipped in curves
-        }  # fmt: skip
+        decoded = reference.read(container, data, skipped)
+        curves = {at: curve for _, at, _, curve in decoded if curve is not None}
+        values = {at: value for _, at, value, _ in decoded}
+        scaled = {}
+        for field in fields:
+            at = field["at"] + skipped
+            if "formula" in field and at in curves:
+                scaled[field["name"]] = curves[at](values[at])
+        return scaled
 
     return Definition(
-        held["name"],
-        held["id"],
-        held["kind"],
-        held["length"],
+        message["name"],
+        message["id"],
+        message["kind"],
+        message["length"],
         fields,
         raw=raw,
         physical=physical,
@@ -118,31 +121,40 @@ def _definition(
 
 
 Curve = Callable[[float], float]
-Found = tuple[str, int, object, "Curve | None"]  # path, bit, raw value, calibration
+Decoded = tuple[str, int, object, "Curve | None"]  # path, bit, raw value, calibration
 
 
-def _named(fields: list[dict], structs: list[dict], found: list[Found]) -> Values:
-    """Values by the names that the ICD gives them: in the order of the bits, each name
-    the end of a path, and none left over.
+def _named(fields: list[dict], structs: list[dict], decoded: list[Decoded]) -> Values:
+    """Return the values by the names that the ICD gives them.
+
+    The fields are taken in the order of their bits. Each name must be the end of the
+    path in the data sheet, and no value may remain.
     """
-    left = list(found)
+    remaining = list(decoded)
     values: Values = {}
 
     def take(name: str) -> object:
-        path, _, value, _ = left.pop(0)
+        path, _, value, _ = remaining.pop(0)
         if not path.endswith(name.replace(" ", ".")):
             raise AssertionError(f"{name} is {path}")
         return value
 
-    for one in sorted(fields, key=lambda field: field["at"]):
-        name = one["name"]
+    for field in sorted(fields, key=lambda each: each["at"]):
+        name = field["name"]
         parts = next(
-            (of["fields"] for of in structs if of["name"] == one.get("struct")), None
+            (
+                struct_["fields"]
+                for struct_ in structs
+                if struct_["name"] == field.get("struct")
+            ),
+            None,
         )
-        count = one.get("count")
+        count = field.get("count")
         if parts is not None:
             number = 0
-            while left and f"{name}[{number}]" in left[0][0].replace(".", " "):
+            while remaining and f"{name}[{number}]" in remaining[0][0].replace(
+                ".", " "
+            ):
                 for part in parts:
                     inner = [take(part["name"]) for _ in range(part.get("count", 1))]
                     values[f"{name}[{number}].{part['name']}"] = (
@@ -150,42 +162,44 @@ def _named(fields: list[dict], structs: list[dict], found: list[Found]) -> Value
                     )
                 number += 1
         elif count is not None:
-            several = []
-            while left and f".{left[0][0]}".endswith(
-                f".{name.replace(' ', '.')}[{len(several)}]"
+            elements = []
+            while remaining and f".{remaining[0][0]}".endswith(
+                f".{name.replace(' ', '.')}[{len(elements)}]"
             ):
-                several.append(left.pop(0)[2])
-            values[name] = several
-        elif one["type"] == "bytes" and left[0][0].endswith(
+                elements.append(remaining.pop(0)[2])
+            values[name] = elements
+        elif field["type"] == "bytes" and remaining[0][0].endswith(
             "[0]"
         ):  # a long array of bytes
-            length = one["bits"] // 8
-            values[name] = bytes(int(str(value)) for _, _, value, _ in left[:length])
-            del left[:length]
+            length = field["bits"] // 8
+            values[name] = bytes(
+                int(str(value)) for _, _, value, _ in remaining[:length]
+            )
+            del remaining[:length]
         else:
             values[name] = take(name)
-    assert not left, left
+    assert not remaining, remaining
     return values
 
 
-class _Judge:
-    """A folder of data sheets."""
+class _Reference:
+    """Decoder of a folder of data sheets."""
 
     def __init__(self, folder: Path) -> None:
         self.types: dict[str, ElementTree.Element] = {}
-        self.of: dict[int, str] = {}
+        self.package_of: dict[int, str] = {}
         self.defines: dict[str, str] = {}
         for path in sorted(folder.glob("*.xml")):
             for package in self._packages(path):
                 name = package.get("name", "")
-                for one in package.iter():
-                    self.of[id(one)] = name
+                for element in package.iter():
+                    self.package_of[id(element)] = name
                 self.defines |= {
-                    f"{name}/{one.get('name')}": one.get("value", "")
-                    for one in package.findall("Define")
+                    f"{name}/{define.get('name')}": define.get("value", "")
+                    for define in package.findall("Define")
                 }
-                for one in package.iterfind("DataTypeSet/*"):
-                    self.types[f"{name}/{one.get('name')}"] = one
+                for type_ in package.iterfind("DataTypeSet/*"):
+                    self.types[f"{name}/{type_.get('name')}"] = type_
 
     @staticmethod
     def _packages(path: Path) -> list[ElementTree.Element]:
@@ -193,14 +207,14 @@ class _Judge:
         return ElementTree.fromstring(text.encode()).findall("Package")
 
     def packages(self, path: Path) -> list[str]:
-        return [one.get("name", "") for one in self._packages(path)]
+        return [package.get("name", "") for package in self._packages(path)]
 
-    def text(self, of: ElementTree.Element, key: str, default: str = "") -> str:
-        return self._filled(of.get(key, default), self.of[id(of)])
+    def text(self, element: ElementTree.Element, key: str, default: str = "") -> str:
+        return self._filled(element.get(key, default), self.package_of[id(element)])
 
     def _filled(self, text: str, package: str) -> str:
-        def value(found: re.Match[str]) -> str:
-            name = found[1] if found[1] in self.defines else f"{package}/{found[1]}"
+        def value(match: re.Match[str]) -> str:
+            name = match[1] if match[1] in self.defines else f"{package}/{match[1]}"
             filled = self._filled(self.defines[name], name.rsplit("/", 1)[0])
             try:
                 return str(_sum(filled))
@@ -209,32 +223,32 @@ class _Judge:
 
         return re.sub(r"\$\{([^}]*)\}", value, text)
 
-    def number(self, of: ElementTree.Element, key: str, default: str = "") -> int:
-        return int(_sum(self.text(of, key, default)))
+    def number(self, element: ElementTree.Element, key: str, default: str = "") -> int:
+        return int(_sum(self.text(element, key, default)))
 
-    def type(self, of: ElementTree.Element, key: str) -> ElementTree.Element:
-        name = self.text(of, key)
-        found = self.types.get(f"{self.of[id(of)]}/{name}")
-        return self.types[name] if found is None else found
+    def type(self, element: ElementTree.Element, key: str) -> ElementTree.Element:
+        name = self.text(element, key)
+        type_ = self.types.get(f"{self.package_of[id(element)]}/{name}")
+        return self.types[name] if type_ is None else type_
 
     def read(
         self, container: ElementTree.Element, data: bytes, skipped: int
-    ) -> list[Found]:
-        """Everything in a frame, and zeros of its header of so many bits.
+    ) -> list[Decoded]:
+        """Return everything in a frame, and zeros for ``skipped`` bits of its header.
 
-        Raises `NotSupported` where a constraint is broken.
+        Raises `NotSupported` if a constraint is violated.
         """
         frame = _Frame(self, bytes(skipped // 8) + data, skipped)
         frame.container(container, "")
-        return frame.found
+        return frame.decoded
 
 
 class _Frame:
-    """A frame that is being read."""
+    """A frame that is being decoded."""
 
-    def __init__(self, judge: _Judge, data: bytes, skipped: int) -> None:
-        self.judge, self.data, self.skipped, self.at = judge, data, skipped, 0
-        self.found: list[Found] = []
+    def __init__(self, reference: _Reference, data: bytes, skipped: int) -> None:
+        self.reference, self.data, self.skipped, self.at = reference, data, skipped, 0
+        self.decoded: list[Decoded] = []
 
     def bits(self, count: int, is_little: bool = False) -> int:
         if self.at + count > 8 * len(self.data):
@@ -250,46 +264,52 @@ class _Frame:
             else value
         )
 
-    def container(self, of: ElementTree.Element, before: str) -> None:
-        chain = [of]
+    def container(self, container: ElementTree.Element, before: str) -> None:
+        """Decode a container: entries from the outermost base on, trailers in the
+        opposite order.
+        """
+        chain = [container]
         while chain[-1].get("baseType"):
-            chain.append(self.judge.type(chain[-1], "baseType"))
-        for one in reversed(chain):
-            for entry in one.iterfind("EntryList/*"):
+            chain.append(self.reference.type(chain[-1], "baseType"))
+        for base in reversed(chain):
+            for entry in base.iterfind("EntryList/*"):
                 self.entry(entry, before)
-        for one in chain:
-            for entry in one.iterfind("TrailerEntryList/*"):
+        for base in chain:
+            for entry in base.iterfind("TrailerEntryList/*"):
                 self.entry(entry, before)
-        for one in (
-            constraint for of in chain for constraint in of.iterfind("ConstraintSet/*")
-        ):
-            self.constrained(one, before + one.get("entry", ""))
+        for base in chain:
+            for constraint in base.iterfind("ConstraintSet/*"):
+                self.constrained(constraint, before + constraint.get("entry", ""))
 
-    def constrained(self, one: ElementTree.Element, path: str) -> None:
+    def constrained(self, constraint: ElementTree.Element, path: str) -> None:
+        """Raise `NotSupported` if the value at ``path`` violates a constraint."""
         at, value = next(
-            (at, value) for name, at, value, _ in reversed(self.found) if name == path
+            (at, value) for name, at, value, _ in reversed(self.decoded) if name == path
         )
-        if at < self.skipped:  # of a header that is not there
+        if at < self.skipped:  # of the header, which the frame does not contain
             return
-        if one.tag == "ValueConstraint":
-            said = self.judge.text(one, "value")
-            if re.fullmatch("(0x)?[0-9A-Fa-f]+", said) and value != int(said, 0):
-                raise NotSupported(f"{path} is not {said}")
+        if constraint.tag == "ValueConstraint":
+            expected = self.reference.text(constraint, "value")
+            if re.fullmatch("(0x)?[0-9A-Fa-f]+", expected) and value != int(
+                expected, 0
+            ):
+                raise NotSupported(f"{path} is not {expected}")
         else:
-            (limits,) = one
+            (limits,) = constraint
             if (
-                not self.judge.number(limits, "min")
+                not self.reference.number(limits, "min")
                 <= int(str(value))
-                <= self.judge.number(limits, "max")
+                <= self.reference.number(limits, "max")
             ):
                 raise NotSupported(f"{path} is not in its range")
 
     def entry(self, entry: ElementTree.Element, before: str) -> None:
+        """Decode an entry, which can be an array, a list with a counter, or padding."""
         if entry.tag == "PaddingEntry":
-            self.at += self.judge.number(entry, "sizeInBits")
+            self.at += self.reference.number(entry, "sizeInBits")
             return
         type_, path, count = (
-            self.judge.type(entry, "type"),
+            self.reference.type(entry, "type"),
             before + entry.get("name", ""),
             1,
         )
@@ -297,21 +317,21 @@ class _Frame:
         is_array = bool(sizes[0])
         while type_.tag == "ArrayDataType":
             sizes.append(type_.findall("DimensionList/Dimension"))
-            type_, is_array = self.judge.type(type_, "dataTypeRef"), True
-        for size in (one for of in sizes for one in of):
+            type_, is_array = self.reference.type(type_, "dataTypeRef"), True
+        for size in chain.from_iterable(sizes):
             if size.get("indexTypeRef"):
-                labels = self.judge.type(size, "indexTypeRef").findall(
+                labels = self.reference.type(size, "indexTypeRef").findall(
                     "EnumerationList/Enumeration"
                 )
-                values = [int(one.get("value", "0")) for one in labels]
+                values = [int(label.get("value", "0")) for label in labels]
                 count *= max(values) - min(values) + 1
             else:
-                count *= self.judge.number(size, "size")
+                count *= self.reference.number(size, "size")
         if entry.tag == "ListEntry":
             is_array = True
             counter = before + entry.get("listLengthField", "")
             count = next(
-                int(str(value)) for name, _, value, _ in self.found if name == counter
+                int(str(value)) for name, _, value, _ in self.decoded if name == counter
             )
         for number in range(count):
             where = (
@@ -323,23 +343,25 @@ class _Frame:
                 self.container(type_, f"{where}.")
             else:
                 at = self.at
-                self.found.append((where, at, self.scalar(type_, entry), _curve(entry)))
+                self.decoded.append(
+                    (where, at, self.scalar(type_, entry), _curve(entry))
+                )
 
     def scalar(self, type_: ElementTree.Element, entry: ElementTree.Element) -> object:
-        judge = self.judge
+        """Decode a single value by its encoding, which the entry can replace."""
+        reference = self.reference
         while type_.tag == "SubRangeDataType":
-            type_ = judge.type(type_, "baseType")
+            type_ = reference.type(type_, "baseType")
         encoding = next(
             (
-                one
-                for of in (entry, type_)
-                for one in of
-                if one.tag.endswith("DataEncoding")
+                element
+                for element in (*entry, *type_)
+                if element.tag.endswith("DataEncoding")
             ),
             None,
         )
         if type_.tag == "StringDataType":
-            size = judge.number(type_, "length")
+            size = reference.number(type_, "length")
             if type_.get("fixedLength") == "false":
                 size = len(self.data) - self.at // 8
             value = self.bits(8 * size).to_bytes(size, "big")
@@ -349,27 +371,30 @@ class _Frame:
                 else value
             )
         if type_.tag == "BinaryDataType":
-            size = judge.number(type_, "sizeInBits")
+            size = reference.number(type_, "sizeInBits")
             return self.bits(size).to_bytes(size // 8, "big")
         if encoding is None:
             assert type_.tag == "BooleanDataType"
             return self.bits(1)
-        size = judge.number(encoding, "sizeInBits")
-        value = self.bits(size, judge.text(encoding, "byteOrder") == "littleEndian")
-        if judge.text(encoding, "encodingAndPrecision").startswith("IEEE754"):
+        size = reference.number(encoding, "sizeInBits")
+        value = self.bits(size, reference.text(encoding, "byteOrder") == "littleEndian")
+        if reference.text(encoding, "encodingAndPrecision").startswith("IEEE754"):
             kind = {32: "f", 64: "d"}[size]
             return float(struct.unpack(f">{kind}", value.to_bytes(size // 8, "big"))[0])
-        if judge.text(encoding, "encoding") == "twosComplement" and value >> size - 1:
+        if (
+            reference.text(encoding, "encoding") == "twosComplement"
+            and value >> size - 1
+        ):
             value -= 1 << size
         return value
 
 
 def _curve(entry: ElementTree.Element) -> Curve | None:
-    """A polynomial as it stands there."""
-    found = entry.iterfind("PolynomialCalibrator/Term")
+    """Return the polynomial of an entry as a function of the raw value."""
+    elements = entry.iterfind("PolynomialCalibrator/Term")
     terms = [
-        (float(one.get("coefficient", "")), int(one.get("exponent", "")))
-        for one in found
+        (float(term.get("coefficient", "")), int(term.get("exponent", "")))
+        for term in elements
     ]
     return (
         (lambda raw: sum(factor * raw**power for factor, power in terms))
@@ -379,7 +404,7 @@ def _curve(entry: ElementTree.Element) -> Curve | None:
 
 
 def _sum(text: str) -> int:
-    """A sum of numbers, as Python computes it."""
+    """Evaluate an arithmetic expression of a data sheet."""
 
     def value(node: ast.AST) -> int:
         if isinstance(node, ast.Constant):

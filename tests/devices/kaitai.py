@@ -1,5 +1,5 @@
-"""Frames of satellites that `satnogs-decoders` reads, as `icdgen import` reads their
-.ksy; what kaitaistruct runs judges.
+"""Frames of satellites that `satnogs-decoders` decodes, as `icdgen import` reads their
+.ksy files, compared with kaitaistruct.
 """
 
 from __future__ import annotations
@@ -34,26 +34,29 @@ FORMATS = (
     "cosmo",
     "cas9",
 )
+# Appended to a frame, because kaitaistruct can read on behind the imported fields.
 _BEHIND = 4096  # bytes of zeros
 
 
 def satellites() -> Iterator[Definitions]:
-    """A node for each format."""
+    """Yield a node for each format."""
     import kaitaistruct  # noqa: F401
 
     spec = find_spec("satnogsdecoders")
     if spec is None or not spec.submodule_search_locations:
         raise ImportError("satnogs-decoders is not installed")
     for name in FORMATS:
-        made = node(Path(spec.submodule_search_locations[0], "decoder", f"{name}.py"))
-        if made is not None:
-            yield made
+        definitions = node(
+            Path(spec.submodule_search_locations[0], "decoder", f"{name}.py")
+        )
+        if definitions is not None:
+            yield definitions
 
 
 def node(path: Path) -> Definitions | None:
-    """The messages of a compiled format; None if nothing of it is held."""
+    """Return the messages of a compiled format; None if it cannot be imported."""
     module = ast.parse(path.read_text("utf-8"))
-    definition = ksy.of(module, path.stem)
+    definition = ksy.definition_of(module, path.stem)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, f"{path.stem}.ksy")
         file.write_text(yaml.safe_dump(definition, sort_keys=False), "utf-8")
@@ -62,27 +65,33 @@ def node(path: Path) -> Definitions | None:
         except Findings:
             return None
     (tree,) = read.trees.values()
-    judge = _judge(module)
+    reference = _reference(module)
     missing = [
-        one.message for one in read.definitions.import_findings if one.code == "IMP070"
+        finding.message
+        for finding in read.definitions.import_findings
+        if finding.code == "IMP070"
     ]
     orders = {key: tree["node"][key] for key in ("byte_order", "bit_order")}
     structs = [
-        {**one, "fields": [{**orders, **part} for part in one["fields"]]}
-        for one in tree.get("structs", ())
+        {**struct, "fields": [{**orders, **part} for part in struct["fields"]]}
+        for struct in tree.get("structs", ())
     ]
-    for one in tree["messages"]:  # of bytes of any number the judge may make something
-        one["fields"] = [part for part in one["fields"] if "up_to" not in part]
-    messages = [_definition(judge, one, orders, structs) for one in tree["messages"]]
+    for message in tree["messages"]:
+        # kaitaistruct may decode fields from variable-length bytes
+        fields = message["fields"]
+        message["fields"] = [part for part in fields if "up_to" not in part]
+    messages = [
+        _definition(reference, message, orders, structs) for message in tree["messages"]
+    ]
     messages += [
-        Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[-1])
-        for said in missing
+        Definition(finding, 0, "telemetry", 0, [], cause=finding.split(": ", 1)[-1])
+        for finding in missing
     ]
     return Definitions(tree["node"], messages, tree)
 
 
 class _Unchecked(ast.NodeTransformer):
-    """Reads any bytes: without the checks of what is valid, and text as its bytes."""
+    """Removes validity checks and the decoding of text, so that any bytes are accepted."""
 
     def visit_If(self, node: ast.If) -> ast.AST | None:
         self.generic_visit(node)
@@ -102,7 +111,7 @@ class _Unchecked(ast.NodeTransformer):
         )
 
 
-def _judge(module: ast.Module) -> Any:
+def _reference(module: ast.Module) -> Any:
     names: dict[str, Any] = {}
     exec(
         compile(
@@ -110,86 +119,88 @@ def _judge(module: ast.Module) -> Any:
         ),
         names,
     )
-    root = next(one.name for one in module.body if isinstance(one, ast.ClassDef))
+    root = next(
+        definition.name
+        for definition in module.body
+        if isinstance(definition, ast.ClassDef)
+    )
     return names[root]
 
 
 def _definition(
-    judge: Any, held: dict, orders: dict, structs: list[dict]
+    reference: Any, message: dict, orders: dict, structs: list[dict]
 ) -> Definition:
-    fields = [{**orders, **one} for one in held["fields"]]
+    fields = [{**orders, **field} for field in message["fields"]]
     return Definition(
-        held["name"],
-        held["id"],
+        message["name"],
+        message["id"],
         "telemetry",
-        held["length"],
+        message["length"],
         fields,
-        raw=_reader(judge, fields),
+        raw=_reader(reference, fields),
         structs=structs,
     )
 
 
-def _reader(judge: Any, fields: list[dict]) -> Callable[[bytes], Values]:
+def _reader(reference: Any, fields: list[dict]) -> Callable[[bytes], Values]:
     from kaitaistruct import BytesIO, KaitaiStream
 
     def read(data: bytes) -> Values:
-        try:  # behind the bytes that are held as such it reads on
-            found = _flat(judge(KaitaiStream(BytesIO(data + bytes(_BEHIND)))), ())
+        try:  # it may read on behind fields that are imported as bytes
+            decoded = _flat(reference(KaitaiStream(BytesIO(data + bytes(_BEHIND)))), ())
         except (EOFError, ValueError, AttributeError, KeyError, TypeError) as error:
             raise NotSupported(str(error)) from None
-        made: Values = {}
+        values: Values = {}
         for part in fields:
-            same = [
+            matches = [
                 path
-                for path in found
+                for path in decoded
                 if " ".join(path[-1 - part["name"].count(" ") :]) == part["name"]
             ]
-            if len(same) == 1:
-                made |= _values(part, found[same[0]])
+            if len(matches) == 1:
+                values |= _values(part, decoded[matches[0]])
             elif (
                 part["type" if "type" in part else "struct"] != "bytes"
                 and " bit" not in part["name"]
             ):
                 raise NotSupported(f"there is no {part['name']}")
-        return made
+        return values
 
     return read
 
 
 def _flat(owner: Any, path: tuple[str, ...]) -> dict[tuple[str, ...], Any]:
-    found = {}
+    values = {}
     for name, value in vars(owner).items():
         if name.startswith("_"):
             continue
-        found |= (
+        values |= (
             _flat(value, (*path, name))
             if hasattr(value, "_io")
             else {(*path, name): value}
         )
-    return found
+    return values
 
 
 def _values(part: dict, value: Any) -> Values:
     if "struct" in part:
         return {
             f"{part['name']}[{index}].{' '.join(path)}": _plain(inner)
-            for index, one in enumerate(value)
-            for path, inner in _flat(one, ()).items()
+            for index, item in enumerate(value)
+            for path, inner in _flat(item, ()).items()
         }
     if isinstance(value, bytes) and part["type"] == "uint":
         return {part["name"]: int.from_bytes(value, "big")}
     return {
         part["name"]: (
-            [_plain(one) for one in value] if isinstance(value, list) else _plain(value)
+            [_plain(item) for item in value]
+            if isinstance(value, list)
+            else _plain(value)
         )
     }
 
 
 def _plain(value: Any) -> Any:
-    return (
-        value.value
-        if isinstance(value, Enum)
-        else int(value)
-        if isinstance(value, bool)
-        else value
-    )
+    if isinstance(value, Enum):
+        return value.value
+    return int(value) if isinstance(value, bool) else value

@@ -1,5 +1,7 @@
-"""What the compiler of Kaitai Struct has made of a format, made a .ksy again:
-`satnogs-decoders` carries only its Python.
+"""Reconstructs a .ksy file from the Python that the compiler of Kaitai Struct
+generated.
+
+`satnogs-decoders` contains only the generated Python.
 """
 
 from __future__ import annotations
@@ -11,71 +13,81 @@ _READ = re.compile(r"read_([usf][1248])(le|be)?\Z")
 _RESOLVED = "KaitaiStream.resolve_enum"
 
 
-def of(module: ast.Module, name: str) -> dict:
-    """The definition.
+def definition_of(module: ast.Module, name: str) -> dict:
+    """Return the definition.
 
-    What is nothing of it that can be recognized stays as a size that no reader knows.
+    A part that is not recognized becomes a size that no importer supports.
     """
-    root = next(one for one in module.body if isinstance(one, ast.ClassDef))
+    root = next(node for node in module.body if isinstance(node, ast.ClassDef))
     return {"meta": {"id": name}, **_type(root)}
 
 
-def _type(made: ast.ClassDef) -> dict:
-    found: dict = {"seq": []}
-    for one in made.body:
-        if isinstance(one, ast.FunctionDef) and one.name == "_read":
-            found["seq"] = _sequence(one.body)
-        elif isinstance(one, ast.FunctionDef) and one.decorator_list:
-            value = [text for text in map(_instance, one.body) if text]
-            found.setdefault("instances", {})[one.name] = (
+def _type(compiled: ast.ClassDef) -> dict:
+    definition: dict = {"seq": []}
+    for node in compiled.body:
+        if isinstance(node, ast.FunctionDef) and node.name == "_read":
+            definition["seq"] = _sequence(node.body)
+        elif isinstance(node, ast.FunctionDef) and node.decorator_list:
+            value = [text for text in map(_instance, node.body) if text]
+            definition.setdefault("instances", {})[node.name] = (
                 {"value": value[0]} if len(value) == 1 else {"pos": "unknown"}
             )
-        elif isinstance(one, ast.ClassDef) and ast.unparse(one.bases[0]) == "Enum":
+        elif isinstance(node, ast.ClassDef) and ast.unparse(node.bases[0]) == "Enum":
             members = {
-                ast.literal_eval(each.value): each.targets[0].id  # type: ignore[attr-defined]
-                for each in one.body
-                if isinstance(each, ast.Assign)
+                ast.literal_eval(assignment.value): assignment.targets[0].id  # type: ignore[attr-defined]
+                for assignment in node.body
+                if isinstance(assignment, ast.Assign)
             }
-            found.setdefault("enums", {})[_snake(one.name)] = members
-        elif isinstance(one, ast.ClassDef):
-            found.setdefault("types", {})[_snake(one.name)] = _type(one)
-    return found
+            definition.setdefault("enums", {})[_snake(node.name)] = members
+        elif isinstance(node, ast.ClassDef):
+            definition.setdefault("types", {})[_snake(node.name)] = _type(node)
+    return definition
 
 
 def _sequence(statements: list[ast.stmt]) -> list[dict]:
-    found: list[dict] = []
+    attributes: list[dict] = []
     switch = ""
-    for one in statements:
-        if isinstance(one, ast.If) and isinstance(one.body[0], ast.Raise):
-            said = re.fullmatch(r"not self\.(\w+) == (b'.*')", ast.unparse(one.test))
-            if said and found and found[-1]["id"] == said[1]:
-                found[-1] = {"id": said[1], "contents": list(ast.literal_eval(said[2]))}
-        elif isinstance(one, ast.If) and switch:
-            found.append(_switched(one, switch))
+    for statement in statements:
+        if isinstance(statement, ast.If) and isinstance(statement.body[0], ast.Raise):
+            match = re.fullmatch(
+                r"not self\.(\w+) == (b'.*')", ast.unparse(statement.test)
+            )
+            if match and attributes and attributes[-1]["id"] == match[1]:
+                attributes[-1] = {
+                    "id": match[1],
+                    "contents": list(ast.literal_eval(match[2])),
+                }
+        elif isinstance(statement, ast.If) and switch:
+            attributes.append(_switched(statement, switch))
             switch = ""
-        elif isinstance(one, ast.If):
-            found += [
-                {**each, "if": _expression(one.test)} for each in _sequence(one.body)
+        elif isinstance(statement, ast.If):
+            attributes += [
+                {**each, "if": _expression(statement.test)}
+                for each in _sequence(statement.body)
             ]
-        elif isinstance(one, ast.For) and found and isinstance(one.body[-1], ast.Expr):
-            found[-1] = _repeated(one, found[-1]["id"])
-        elif isinstance(one, ast.Assign):
-            target = ast.unparse(one.targets[0])
+        elif (
+            isinstance(statement, ast.For)
+            and attributes
+            and isinstance(statement.body[-1], ast.Expr)
+        ):
+            attributes[-1] = _repeated(statement, attributes[-1]["id"])
+        elif isinstance(statement, ast.Assign):
+            target = ast.unparse(statement.targets[0])
             if target == "_on":
-                switch = _expression(one.value)
+                switch = _expression(statement.value)
             elif target.startswith("self."):
                 name = re.sub(r"^self\.(_raw_)*", "", target)
-                attribute = {"id": name, **_attribute(one.value)}
+                attribute = {"id": name, **_attribute(statement.value)}
                 if (
-                    found and found[-1]["id"] == name
+                    attributes and attributes[-1]["id"] == name
                 ):  # bytes of which a type is read, or that are processed
-                    attribute = {**found.pop(), **attribute}
-                found.append(attribute)
-    return found
+                    attribute = {**attributes.pop(), **attribute}
+                attributes.append(attribute)
+    return attributes
 
 
 def _attribute(value: ast.expr) -> dict:
-    """Keys of an attribute but for its name."""
+    """Return the keys of an attribute except its name."""
     text = ast.unparse(value)
     if text.startswith(_RESOLVED) and isinstance(value, ast.Call):
         return {**_attribute(value.args[1]), "enum": _path(ast.unparse(value.args[0]))}
@@ -118,25 +130,25 @@ def _repeated(loop: ast.For, name: str) -> dict:
 
 def _switched(chain: ast.If, switch: str) -> dict:
     cases: dict = {}
-    found: dict = {}
-    one: ast.stmt | None = chain
-    while isinstance(one, ast.If):
-        (inner,) = _sequence(one.body)[-1:]
-        key = re.sub(r"^_on == ", "", ast.unparse(one.test))
+    keys: dict = {}
+    statement: ast.stmt | None = chain
+    while isinstance(statement, ast.If):
+        (inner,) = _sequence(statement.body)[-1:]
+        key = re.sub(r"^_on == ", "", ast.unparse(statement.test))
         cases[
             int(key) if key.isdigit() else _expression(ast.parse(key, mode="eval").body)
         ] = inner.get("type", "")
-        found |= {name: value for name, value in inner.items() if name != "type"}
-        one, rest = (
-            (one.orelse[0], [])
-            if one.orelse and isinstance(one.orelse[0], ast.If)
-            else (None, one.orelse)
+        keys |= {name: value for name, value in inner.items() if name != "type"}
+        statement, otherwise = (
+            (statement.orelse[0], [])
+            if statement.orelse and isinstance(statement.orelse[0], ast.If)
+            else (None, statement.orelse)
         )
-        for last in _sequence(rest)[-1:]:
+        for last in _sequence(otherwise)[-1:]:
             cases["_"] = last.get("type", "")
-            found |= {name: value for name, value in last.items() if name != "type"}
-    known = {key: of for key, of in cases.items() if of}  # others are bytes
-    return {**found, "type": {"switch-on": switch, "cases": known}}
+            keys |= {name: value for name, value in last.items() if name != "type"}
+    typed = {key: type_ for key, type_ in cases.items() if type_}  # others are bytes
+    return {**keys, "type": {"switch-on": switch, "cases": typed}}
 
 
 def _instance(statement: ast.stmt) -> str:
@@ -151,18 +163,18 @@ def _instance(statement: ast.stmt) -> str:
 
 
 def _expression(value: ast.expr) -> str:
-    """As Kaitai writes it."""
+    """Return an expression in the notation of Kaitai Struct."""
     text = re.sub(r"\bself\.", "", ast.unparse(value)).replace("//", "/")
     text = re.sub(
         r"\b[A-Z]\w*((?:\.[A-Z]\w*)+)\.([a-z]\w*)",
-        lambda found: f"{_path('Root' + found[1])}::{found[2]}",
+        lambda match: f"{_path('Root' + match[1])}::{match[2]}",
         text,
     )
     return text.replace("True", "true").replace("False", "false")
 
 
 def _path(dotted: str) -> str:
-    return "::".join(_snake(one) for one in dotted.split(".")[1:])
+    return "::".join(_snake(part) for part in dotted.split(".")[1:])
 
 
 def _snake(name: str) -> str:

@@ -1,4 +1,6 @@
-"""Dialects of MAVLink 2 and 1 as `icdgen import` reads their XML; pymavlink judges."""
+"""Dialects of MAVLink 2 and 1 as `icdgen import` reads their XML, compared with
+pymavlink.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +17,12 @@ FIRST = "common"
 
 
 def dialects() -> Iterator[Definitions]:
-    """All dialects that pymavlink ships, for links of version 2."""
+    """Yield all dialects that pymavlink ships, for links of version 2."""
     yield from _all("v20", mavlink.MavLink2())
 
 
 def dialects_of_version_1() -> Iterator[Definitions]:
-    """Those for links of version 1."""
+    """Yield all dialects that have messages for links of version 1."""
     yield from _all("v10", mavlink.MavLink1())
 
 
@@ -36,30 +38,34 @@ def _all(version: str, reader: mavlink.MavLink2) -> Iterator[Definitions]:
             continue  # all its ids are too large for version 1
         (tree,) = run.read(file, reader).trees.values()
         tree["node"]["name"] = f"{reader.name}_{file.stem.lower()}"
-        held = {one["name"]: one for one in tree["messages"]}
+        imported = {message["name"]: message for message in tree["messages"]}
         messages = [
-            _definition(dialect, one, held.get(one.msgname))
-            for one in dialect.mavlink_map.values()
+            _definition(dialect, message, imported.get(message.msgname))
+            for message in dialect.mavlink_map.values()
         ]
         yield Definitions(tree["node"], messages, tree)
 
 
-def _definition(dialect: Any, message: Any, held: dict | None) -> Definition:
+def _definition(dialect: Any, message: Any, imported: dict | None) -> Definition:
     head = message.msgname, message.id, "telemetry", message.unpacker.size
-    if held is None:
+    if imported is None:
         return Definition(*head, [], cause="not imported")
-    is_cut = "may_end_early" in held
+    is_cut = "may_end_early" in imported
     return Definition(
         *head,
-        held["fields"],
+        imported["fields"],
         raw=lambda data: _read(dialect, message, data),
         may_end_early=is_cut,
     )
 
 
 def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
-    """What pymavlink makes of the frame, in the packet format that it wants."""
+    """Return what pymavlink decodes from the frame, which is put into its packet
+    format.
+    """
     if dialect.WIRE_PROTOCOL_VERSION == "1.0":
+        # Length, sequence number, system, component, id; version 2 also has two bytes
+        # of flags.
         start, head = b"\xfe", bytes([len(data), 0, 1, 1, message.id])
     else:
         start, head = (
@@ -68,10 +74,10 @@ def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
         )
     crc = dialect.x25crc(head + data)
     crc.accumulate(bytes([message.crc_extra]))
-    found = dialect.MAVLink(None).decode(
+    decoded = dialect.MAVLink(None).decode(
         bytearray(start + head + data + struct.pack("<H", crc.crc))
     )
     names = message.ordered_fieldnames
     return {
-        name: getattr(found, f"_{name}_raw", getattr(found, name)) for name in names
-    }  # of text its bytes, up to a NUL
+        name: getattr(decoded, f"_{name}_raw", getattr(decoded, name)) for name in names
+    }  # the bytes of text, up to a NUL

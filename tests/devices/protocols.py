@@ -1,4 +1,6 @@
-"""The protocols whose definitions are read, and the libraries that judge."""
+"""The protocols whose definitions are converted, and the libraries they are compared
+with.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +8,8 @@ from tests.devices import can, cygnss, eds, kaitai, mavlink, sbp, sunspec, ubx, 
 from tests.devices.definition import Protocol
 
 PROTOCOLS = {
-    one.name: one
-    for one in (
+    protocol.name: protocol
+    for protocol in (
         Protocol("can", "opendbc through cantools", can.databases),
         Protocol("ubx", "pyubx2", ubx.tables),
         Protocol("sbp", "sbp", sbp.tables),
@@ -16,7 +18,7 @@ PROTOCOLS = {
         Protocol("cygnss", "ccsdspy", cygnss.packets),
         Protocol("sunspec", "pysunspec2", sunspec.models),
         Protocol("xtce", "space-packet-parser", xtce.packets),
-        Protocol("eds", "a reader of our own, apart from what is judged", eds.sheets),
+        Protocol("eds", "an independent bit reader of these tests", eds.sheets),
         Protocol("kaitai", "satnogs-decoders through kaitaistruct", kaitai.satellites),
     )
 }

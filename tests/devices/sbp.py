@@ -1,4 +1,4 @@
-"""Messages of the Swift Binary Protocol as the sbp package has them."""
+"""Messages of the Swift Binary Protocol as the sbp package defines them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from tests.devices.definition import (
     Definitions,
     NotSupported,
     node,
-    open_end,
-    open_structs,
+    variable_length_field,
+    variable_length_structs,
 )
 
 LONGEST = 255  # bytes of a payload
@@ -21,10 +21,10 @@ LETTERS = {"B": ("uint", 8), "H": ("uint", 16), "L": ("uint", 32), "Q": ("uint",
 
 
 def tables() -> Iterator[Definitions]:
-    """The table of all message classes."""
+    """Yield the table of all message classes."""
     from sbp.table import _SBP_TABLE
 
-    messages = [_definition(id, one) for id, one in sorted(_SBP_TABLE.items())]
+    messages = [_definition(id, message) for id, message in sorted(_SBP_TABLE.items())]
     yield Definitions(node("sbp", "Swift Binary Protocol", id_bits=16), messages)
 
 
@@ -54,8 +54,9 @@ def _fields(
     structs: list[dict],
     owner: str,
 ) -> int:
-    """Appends the parts' fields, and the struct of what is open at the end; where they
-    end. Raises `NotSupported`.
+    """Append the fields of ``parts``, and the struct of a variable-length array.
+
+    Return the bit at which they end. Raises `NotSupported`.
     """
     for part in parts:
         name, inner = before + part.name, part.subcon
@@ -105,45 +106,54 @@ def _fields(
 def _end(
     name: str, kind: str, inner: Any, at: int, structs: list[dict], owner: str
 ) -> dict:
-    """What goes up to the end of a frame. Raises `NotSupported`."""
-    left = LONGEST - at // 8
+    """Return the variable-length field that goes up to the end of a frame.
+
+    Raises `NotSupported`.
+    """
+    available = LONGEST - at // 8
     if kind == "GreedyBytes":
-        return open_end(name, at, 8, "bytes", "rest", left)
+        return variable_length_field(name, at, 8, "bytes", "rest", available)
     if type(inner.subcon).__name__ == "FormatField":
         type_, bits = LETTERS[inner.subcon.fmtstr[-1]]
-        return open_end(name, at, bits, type_, "rest", left * 8 // bits)
+        return variable_length_field(
+            name, at, bits, type_, "rest", available * 8 // bits
+        )
     parts: list[dict] = []
     bits = _fields(inner.subcon.subcons, parts, 0, "", [], owner)
-    end, struct = open_structs(owner, name, at, parts, bits, "rest", left * 8 // bits)
+    end, struct = variable_length_structs(
+        owner, name, at, parts, bits, "rest", available * 8 // bits
+    )
     structs.append(struct)
     return end
 
 
 def _read(parser: Any, data: bytes, end: dict) -> dict[str, object]:
-    found: dict[str, object] = {}
-    _flat(parser.parse(data), "", found, end)
-    return found
+    values: dict[str, object] = {}
+    _flat(parser.parse(data), "", values, end)
+    return values
 
 
-def _flat(values: Any, before: str, found: dict[str, object], end: dict) -> None:
-    """Names of parts within parts, as `_fields` gives them."""
+def _flat(values: Any, before: str, flat: dict[str, object], end: dict) -> None:
+    """Add values to ``flat``, with the names of nested parts that `_fields` gives
+    them.
+    """
     for name, value in values.items():
-        whole = before + name
+        path = before + name
         if name == "_io":
             continue
         if hasattr(value, "items"):
-            _flat(value, f"{whole} ", found, end)
+            _flat(value, f"{path} ", flat, end)
         elif isinstance(value, list) and value and hasattr(value[0], "items"):
-            for number, one in enumerate(value):
+            for number, item in enumerate(value):
                 _flat(
-                    one,
+                    item,
                     (
-                        f"{whole}[{number}]."
-                        if whole == end["name"]
-                        else f"{whole} {number + 1} "
+                        f"{path}[{number}]."
+                        if path == end["name"]
+                        else f"{path} {number + 1} "
                     ),
-                    found,
+                    flat,
                     end,
                 )
         else:
-            found[whole] = list(value) if isinstance(value, list) else value
+            flat[path] = list(value) if isinstance(value, list) else value

@@ -1,5 +1,5 @@
-"""Models of SunSpec (Modbus) as `icdgen import` reads those that pysunspec2 ships;
-pysunspec2 judges.
+"""SunSpec models (Modbus) that pysunspec2 contains, as `icdgen import` reads them,
+compared with pysunspec2.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from icdgen.definitions import run
 from icdgen.definitions.sunspec import SunSpec
 from tests.devices.definition import Definition, Definitions
 
-NOT_COMPARED = ("ID", "L", "Pad")  # what the library keeps for itself
+NOT_COMPARED = ("ID", "L", "Pad")  # points that the library does not return as values
 ORDERS = {"byte_order": "big", "bit_order": "msb0"}
 
 
 def models() -> Iterator[Definitions]:
-    """All models of the package, as those of one device."""
+    """Yield all models of the package, as models of one device."""
     yield imported(trees())
 
 
 def trees() -> list[dict]:
-    """The JSON of all models of the package."""
+    """Return the JSON of all models of the package."""
     import sunspec2
 
     folder = importlib.resources.files(sunspec2) / "models" / "json"
@@ -38,8 +38,8 @@ def trees() -> list[dict]:
 
 
 def with_fixed_count(tree: dict, counter: str, count: int) -> dict:
-    """A copy of a model for a device that has always so many of the groups that a point
-    counts.
+    """Return a copy of a model in which the groups that a point counts have a fixed
+    count.
     """
     tree = copy.deepcopy(tree)
     for group in _groups(tree["group"]):
@@ -52,64 +52,69 @@ def with_fixed_count(tree: dict, counter: str, count: int) -> dict:
 
 
 def imported(trees: list[dict]) -> Definitions:
-    """Models as `icdgen import` reads them from one file."""
+    """Return models as `icdgen import` reads them from one file."""
     with tempfile.TemporaryDirectory() as name:
         file = Path(name, "sunspec.json")
         file.write_text(json.dumps(trees), encoding="utf-8")
         read = run.read(file, SunSpec())
     (tree,) = read.trees.values()
     structs = [
-        {**one, "fields": [{**ORDERS, **part} for part in one["fields"]]}
-        for one in tree["structs"]
+        {**struct, "fields": [{**ORDERS, **part} for part in struct["fields"]]}
+        for struct in tree["structs"]
     ]
-    held = {one["id"]: one for one in tree["messages"]}
-    why = {
-        one.message.split("`")[1]: one.message.split(": ", 1)[1]
-        for one in read.definitions.import_findings
-        if one.severity == "error"
+    messages = {message["id"]: message for message in tree["messages"]}
+    causes = {
+        finding.message.split("`")[1]: finding.message.split(": ", 1)[1]
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     }
     return Definitions(
         tree["node"],
-        [_definition(one, held.get(one["id"]), structs, why) for one in trees],
+        [
+            _definition(model, messages.get(model["id"]), structs, causes)
+            for model in trees
+        ],
         tree,
     )
 
 
 def _definition(
-    tree: dict, held: dict | None, structs: list[dict], why: dict[str, str]
+    tree: dict, message: dict | None, structs: list[dict], causes: dict[str, str]
 ) -> Definition:
-    if held is None:
+    if message is None:
         return Definition(
             f"Model {tree['id']}",
             tree["id"],
             "telemetry",
             0,
             [],
-            cause=why[tree["group"]["name"]],
+            cause=causes[tree["group"]["name"]],
         )
-    fields = [{**ORDERS, **one} for one in held["fields"]]
-    scaled = any(
+    fields = [{**ORDERS, **field} for field in message["fields"]]
+    has_scale_factors = any(
         isinstance(point.get("sf"), str)
-        for one in _groups(tree["group"])
-        for point in one["points"]
+        for group in _groups(tree["group"])
+        for point in group["points"]
     )
     return Definition(
-        held["name"], held["id"], "telemetry", held["length"], fields, structs=structs,
+        message["name"], message["id"], "telemetry", message["length"], fields, structs=structs,
         raw=lambda data: _read(tree, data, False),
         physical=lambda data: _read(tree, data, True),
-        raw_only="factors that stand in another register" if scaled else "",
+        raw_only="scale factors in another register" if has_scale_factors else "",
     )  # fmt: skip
 
 
 def _groups(group: dict) -> Iterator[dict]:
-    """A group and all in it."""
+    """Yield a group and all groups within it."""
     yield group
-    for one in group.get("groups", ()):
-        yield from _groups(one)
+    for inner in group.get("groups", ()):
+        yield from _groups(inner)
 
 
 def _read(tree: dict, data: bytes, scaled: bool) -> dict[str, object]:
-    """What pysunspec2 makes of the block, raw or those that have a factor of their own;
+    """Return what pysunspec2 decodes from the block: raw values, or the scaled values
+    of points with a constant factor.
+
     None is 'not implemented'.
     """
     from sunspec2.device import Model
@@ -131,11 +136,13 @@ def _values(group: Any, before: str, scaled: bool) -> Iterator[tuple[str, object
             continue
         if not scaled:
             yield before + name, point.value
+        # A scale factor that is a number is constant; a name refers to another
+        # register.
         elif type(point.pdef.get("sf")) is int and point.value is not None:
             yield before + name, point.cvalue
     for name, inner in group.groups.items():
         if isinstance(inner, list):
-            for number, one in enumerate(inner):
-                yield from _values(one, f"{before}{name}[{number}].", scaled)
+            for number, element in enumerate(inner):
+                yield from _values(element, f"{before}{name}[{number}].", scaled)
         else:
             yield from _values(inner, f"{before}{name} ", scaled)

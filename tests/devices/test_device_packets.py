@@ -1,5 +1,5 @@
-"""Packets that a device sends without a message: the same bytes, counts and errors in C,
-Rust and Python.
+"""Packets without a message, which a device sends, have the same bytes, counts and
+errors in C, Rust and Python.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def sender_of(node: str, **values: int) -> Sender:
 
 @pytest.fixture(scope="module")
 def expected() -> list[str]:
-    """As Python sends them."""
+    """The lines that Python sends."""
     sender, values = sender_of("formats", reason=1), {"reason": 2, "sequence": 77}
     lines = [
         sender.encode_packet(1, 0x010203, values),

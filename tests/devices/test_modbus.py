@@ -1,5 +1,7 @@
-"""Modbus RTU beside pymodbus: its server is the device of the generated client, its
-client talks to `icdgen sim`; and frames of the specification are read.
+"""Modbus RTU interoperates with pymodbus, and published frames are decoded.
+
+A server of pymodbus is the device of the generated client; a client of pymodbus talks
+to `icdgen sim`.
 """
 
 from __future__ import annotations
@@ -91,14 +93,14 @@ def import_server():
 
 @contextmanager
 def served():
-    one, started = Server(), threading.Event()
-    thread = threading.Thread(target=lambda: asyncio.run(one.listen(started)))
+    server, started = Server(), threading.Event()
+    thread = threading.Thread(target=lambda: asyncio.run(server.listen(started)))
     thread.start()
     assert started.wait(10)
     try:
-        yield one
+        yield server
     finally:
-        one.loop.call_soon_threadsafe(one.stop.set)
+        server.loop.call_soon_threadsafe(server.stop.set)
         thread.join(10)
 
 
@@ -150,7 +152,7 @@ def test_an_exception_of_a_server_refuses_with_its_reason(device, meter, what):
     assert len(server.requests) == 1
 
 
-def test_what_a_busy_server_defers_is_sent_again(device):
+def test_a_request_that_a_busy_server_defers_is_repeated(device):
     server, module, session = device
     server.codes = [code_of("DEVICE_BUSY")]
     assert session.get(module.Energy).exported == 7
@@ -272,7 +274,7 @@ def test_a_response_without_a_request_is_a_stray_and_a_late_one_is_late():
     assert client.output()
 
 
-def test_an_exception_refuses_and_a_busy_meter_is_asked_again():
+def test_an_exception_refuses_and_a_busy_meter_gets_the_request_again():
     client = Client(LINK, settings=LINK.settings._replace(retries=1))
     client.start(0, Request("telemetry", ENERGY_ID))
     assert client.output()
@@ -334,8 +336,8 @@ def published(tmp_path_factory):
 def test_published_requests_and_responses_are_read(published):
     (first,) = recognize(published, "01 03 00 00 00 0A C5 CD")
     assert (first.what, first.message.name) == ("request", "Measurements")
-    asked, read, sent, accepted = recognize(published, " ".join((*READ, *WRITTEN)))
-    assert (asked.what, asked.message.name) == ("request", "Readings")
+    requested, read, sent, accepted = recognize(published, " ".join((*READ, *WRITTEN)))
+    assert (requested.what, requested.message.name) == ("request", "Readings")
     # `Limits` has the same length: the request tells which one it is.
     assert (read.what, read.message.name) == ("telemetry", "Readings")
     assert read.data == bytes.fromhex("AE 41 56 52 43 40")
@@ -344,7 +346,7 @@ def test_published_requests_and_responses_are_read(published):
     assert (accepted.what, accepted.message.name) == ("acknowledge", "Presets")
 
 
-def test_a_response_alone_is_read_as_what_the_user_says(published):
+def test_a_response_alone_is_read_as_the_message_that_the_user_names(published):
     with pytest.raises(Ambiguous, match=r"`Readings` .*, or `Limits`"):
         recognize(published, READ[1])
     (read,) = recognize(published, READ[1], "meter", "Readings")

@@ -1,5 +1,6 @@
-"""Outcomes of commands on public protocols: other people's programs, and recorded
-frames of devices, are the other end.
+"""Commands end with the outcome that a public protocol defines for the response.
+
+The device is the protocol's own library, or a recording of frames of a device.
 """
 
 from __future__ import annotations
@@ -176,7 +177,7 @@ CHARGE = bytes.fromhex("a5 01 90 08 02 03 00 00 77 24 03 38 19")
 STATUS = bytes.fromhex("a5 01 94 08 10 01 00 00 02 00 05 c0 1a")
 
 
-def test_daly_batteries_are_asked_with_reserved_bytes_and_answer():
+def test_daly_batteries_are_requested_with_reserved_bytes_and_respond():
     client, _ = client_of(ROOT / "examples" / "links" / "daly.yaml")
     client.start(0, Request("telemetry", 0x90))
     assert client.output() == bytes.fromhex("a5 40 90 08 00 00 00 00 00 00 00 00 7d")

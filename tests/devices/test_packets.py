@@ -1,5 +1,5 @@
-"""Protocols with several packet formats, with frames that devices have sent and frames
-of their manuals.
+"""Links with several packet formats decode recorded frames of devices and frames of
+their manuals.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ def test_requests_of_a_daly_battery_have_eight_reserved_bytes():
 
 
 @pytest.mark.parametrize("icd", [JBD, TFMINI, DALY], ids=["jbd", "tfmini", "daly"])
-def test_what_the_device_answers_to_a_request_is_taken_for_it(icd):
+def test_the_response_of_the_device_completes_the_request(icd):
     link = link_to(icd)
     requested = [row.id for row in link.stream.telemetry if row.is_requested]
     assert requested
@@ -200,8 +200,8 @@ def test_verification_reports_count_for_the_sequence_number_that_they_repeat():
             assert isinstance(done, Done)
     first, second = headers
     assert first[2:4] == bytes([0xC0, 0]) and second[2:4] == bytes([0xC0, 1])
-    again = response_to(link, exposure, b"\0\1", "ack", header=first)
-    (stray,) = client.received(20, payload.encode(*again))
+    repeated = response_to(link, exposure, b"\0\1", "ack", header=first)
+    (stray,) = client.received(20, payload.encode(*repeated))
     assert isinstance(stray, Stray)
     refusal = response_to(link, exposure, b"\0\1", "nak", 3, header=second)
     (refused,) = client.received(30, payload.encode(*refusal))

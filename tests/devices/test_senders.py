@@ -1,5 +1,7 @@
-"""What is sent one after the other is counted, and has the values that were chosen: the
-same bytes in C, Rust and Python.
+"""Senders of C, Rust and Python count sequence numbers and use the given header values
+alike.
+
+All three must send the same bytes.
 """
 
 from __future__ import annotations
@@ -107,7 +109,7 @@ fn main() -> Result<(), Error> {
 
 @pytest.fixture(scope="module")
 def expected() -> list[str]:
-    """As Python sends them."""
+    """The lines that Python sends."""
     from icdgen_runtime.wire.sender import Sender  # which `icdgen` makes importable
 
     def sender(node: str, **values: int) -> Sender:
@@ -126,7 +128,7 @@ def expected() -> list[str]:
     ]
 
 
-def test_c_counts_what_it_sends(expected, tmp_path):
+def test_c_counts_the_messages_that_it_sends(expected, tmp_path):
     folder = c.generate(ICD, tmp_path)
     (tmp_path / "send.c").write_text(C)
     options = ("-std=c99", *c.WARNINGS, *c.SANITIZERS, f"-I{folder}")
@@ -135,7 +137,7 @@ def test_c_counts_what_it_sends(expected, tmp_path):
     assert (done.returncode, done.stdout.split()) == (0, expected), done.stderr
 
 
-def test_rust_counts_what_it_sends(expected, tmp_path):
+def test_rust_counts_the_messages_that_it_sends(expected, tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
     (tmp_path / "send.rs").write_text(RUST)
     program = tools.program(

@@ -1,5 +1,8 @@
-"""The devices of examples/devices: generated code reads random frames as the libraries
-of others do, or as a data sheet says.
+"""Generated code decodes the devices of examples/devices as their libraries or data
+sheets do.
+
+Random frames are compared with the library of the protocol. If there is none, the
+layout of the data sheet is programmed here.
 """
 
 from __future__ import annotations
@@ -55,10 +58,8 @@ def devices() -> Icd:
 def testee(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Testee]:
-    """What answers for all devices, built at once with the strictest flags of the
-    conformance run.
-    """
-    found = Testee(
+    """The testee of all devices, built with the strictest flags of the conformance run."""
+    built = Testee(
         build(
             all_languages()[request.param],
             devices(),
@@ -66,14 +67,12 @@ def testee(
         ),
         timeout=300,
     )
-    yield found
-    found.close()
+    yield built
+    built.close()
 
 
 def decoded(testee: Testee, node: str, kind: str, id: int, data: bytes) -> Values:
-    """The raw values of a frame, which is what encoding gives again but for reserved
-    bits.
-    """
+    """Return the raw values of a frame."""
     request = {
         "op": "decode",
         "node": node,
@@ -87,22 +86,22 @@ def decoded(testee: Testee, node: str, kind: str, id: int, data: bytes) -> Value
 
 
 @pytest.mark.parametrize("name", DEVICES)
-def test_the_icd_is_without_findings_and_laid_out(name: str) -> None:
+def test_the_icd_is_without_findings_and_formatted(name: str) -> None:
     assert load([DEVICES[name]]).findings == []
     text = DEVICES[name].read_text("utf-8")
     assert format_text(text, DEVICES[name].name) == text
 
 
 def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Definition]:
-    """The messages of one length each of an ICD, with the library's reading of them."""
-    found = []
+    """Return the fixed-length messages of an ICD, with the library's decoder of each."""
+    messages = []
     for message in devices().node(node).messages:
         fields = [
-            plain(one.source)
-            for one in places_in(message.layout)
-            if not one.is_read_only
+            plain(place.source)
+            for place in places_in(message.layout)
+            if not place.is_read_only
         ]
-        scaled = {one["name"] for one in fields if "formula" in one}
+        scaled = {field["name"] for field in fields if "formula" in field}
 
         def read(data: bytes, name: str = message.name) -> Values:
             return reads(name, data)
@@ -125,7 +124,7 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
 
         if not message.layout.parts:
             id = message.ids[0]
-            found.append(
+            messages.append(
                 Definition(
                     message.name,
                     id,
@@ -136,10 +135,10 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
                     physical=physical,
                 )
             )
-    return found
+    return messages
 
 
-def agreed(
+def assert_agreement(
     node: str, testee: Testee, reads: Callable[[str, bytes], Values]
 ) -> Agreement:
     agreement = Agreement()
@@ -177,25 +176,26 @@ def mavlink_values(name: str, data: bytes) -> Values:
     from pymavlink.dialects.v20 import common
 
     message = next(
-        one
-        for one in common.mavlink_map.values()
-        if one.msgname == name.partition(",")[0]
+        kind
+        for kind in common.mavlink_map.values()
+        if kind.msgname == name.partition(",")[0]
     )
-    found = mavlink_reads(common, message, data)
+    values = mavlink_reads(common, message, data)
     if name == "GPS_RAW_INT":
         return {
             key: value / FACTORS[key] if key in FACTORS else value
-            for key, value in found.items()
+            for key, value in values.items()
         }  # type: ignore[operator]
     if name == "COMMAND_LONG":
-        found["param"] = [found[f"param{number}"] for number in range(1, 8)]
-    return found | {
-        key: found[f"param{number}"] for key, number in PARAMETERS.get(name, {}).items()
+        values["param"] = [values[f"param{number}"] for number in range(1, 8)]
+    return values | {
+        key: values[f"param{number}"]
+        for key, number in PARAMETERS.get(name, {}).items()
     }
 
 
 def test_mavlink_is_read_as_by_pymavlink(testee: Testee) -> None:
-    agreement = agreed("mavlink", testee, mavlink_values)
+    agreement = assert_agreement("mavlink", testee, mavlink_values)
     assert agreement.messages == 10 and agreement.values > 2500
 
 
@@ -203,12 +203,16 @@ def test_the_commands_of_mavlink_have_the_numbers_of_pymavlink() -> None:
     from pymavlink.dialects.v20 import common
 
     commands = [
-        one for one in devices().node("mavlink").messages if one.name in PARAMETERS
+        command
+        for command in devices().node("mavlink").messages
+        if command.name in PARAMETERS
     ]
     assert len(commands) == len(PARAMETERS) == 4
-    for one in commands:
-        number = next(field.const for field in one.fields if field.name == "command")
-        assert number == getattr(common, f"MAV_CMD_{one.name.partition(', ')[2]}")
+    for command in commands:
+        number = next(
+            field.const for field in command.fields if field.name == "command"
+        )
+        assert number == getattr(common, f"MAV_CMD_{command.name.partition(', ')[2]}")
 
 
 def test_mavlink_frames_end_before_their_zeros(testee: Testee) -> None:
@@ -225,27 +229,31 @@ def test_mavlink_frames_end_before_their_zeros(testee: Testee) -> None:
 def ubx_message(name: str, data: bytes) -> Values:
     import pyubx2
 
-    message = next(one for one in devices().node("ublox").messages if one.name == name)
+    message = next(
+        candidate
+        for candidate in devices().node("ublox").messages
+        if candidate.name == name
+    )
     key = message.ids[0].to_bytes(2, "big")
     mode = pyubx2.GET if message.kind == "telemetry" else pyubx2.SET
-    found = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
-    if found.identity != name:
-        raise NotSupported(found.identity)
+    decoded = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
+    if decoded.identity != name:
+        raise NotSupported(decoded.identity)
     return {
-        key: value for key, value in found.__dict__.items() if not key.startswith("_")
+        key: value for key, value in decoded.__dict__.items() if not key.startswith("_")
     }
 
 
 def ubx_values(name: str, data: bytes) -> Values:
-    found = ubx_message(name, data)
+    values = ubx_message(name, data)
     if name == "MON-HW":
-        found["VP"] = [_number(found[f"VP_{number:02}"]) for number in range(1, 18)]
-        found |= {
+        values["VP"] = [_number(values[f"VP_{number:02}"]) for number in range(1, 18)]
+        values |= {
             key: _number(value)
-            for key, value in found.items()
+            for key, value in values.items()
             if isinstance(value, bytes)
         }
-    if name == "NAV-HPPOSLLH":  # it gives coarse and fine parts together
+    if name == "NAV-HPPOSLLH":  # pyubx2 combines coarse and fine parts
         places = {
             "lon": (8, "i", 1e7),
             "lat": (12, "i", 1e7),
@@ -260,8 +268,8 @@ def ubx_values(name: str, data: bytes) -> Values:
         }
         for key, (at, form, per) in places.items():
             (raw,) = struct.unpack_from(f"<{form}", data, at)
-            found[key] = raw / per if per else raw
-    return found
+            values[key] = raw / per if per else raw
+    return values
 
 
 def _number(value: object) -> object:
@@ -269,7 +277,7 @@ def _number(value: object) -> object:
 
 
 def test_ubx_is_read_as_by_pyubx2(testee: Testee) -> None:
-    agreement = agreed("ublox", testee, ubx_values)
+    agreement = assert_agreement("ublox", testee, ubx_values)
     assert agreement.messages == 22 and agreement.values > 7000
 
 
@@ -291,16 +299,17 @@ def test_positions_of_high_precision_are_derived_as_by_pyubx2(testee: Testee) ->
             assert round(_double(ours[name]), digits) == round(theirs[key], digits)  # type: ignore[call-overload]
 
 
-def test_the_time_of_a_receiver_is_derived_from_weeks_and_what_is_more(
+def test_the_time_of_a_receiver_is_derived_from_weeks_and_seconds(
     testee: Testee,
 ) -> None:
+    # iTOW in ms, fTOW in ns, week, leap seconds, valid flags, accuracy.
     data = struct.pack("<IihbBI", 302400000, -250000000, 2300, 18, 7, 20)
     ours = decoded(testee, "ublox", "telemetry", 0x0120, data)
     assert _double(ours["GPS Time"]) == 2300 * 604800 + 302400 - 0.25
 
 
 def _double(bits: object) -> float:
-    """The number of the bits that are a raw value."""
+    """Return the number whose bits are a raw value."""
     value: float = struct.unpack(">d", bytes.fromhex(str(bits)))[0]
     return value
 
@@ -310,12 +319,15 @@ def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(
     testee: Testee, count: int
 ) -> None:
     chance = random.Random(count)
+    # `numSvs` is the sixth byte, and each satellite has 12 bytes.
     data = chance.randbytes(5) + bytes([count]) + chance.randbytes(2 + 12 * count)
     theirs, ours = (
         ubx_message("NAV-SAT", data),
         decoded(testee, "ublox", "telemetry", 0x0135, data),
     )
-    names = [one.name for one in scalars_in(devices().node("ublox").structs[0].layout)]
+    names = [
+        scalar.name for scalar in scalars_in(devices().node("ublox").structs[0].layout)
+    ]
     assert len(names) == 26 and {
         key: ours[key] for key in ("iTOW", "version", "numSvs")
     } == {key: theirs[key] for key in ("iTOW", "version", "numSvs")}
@@ -325,7 +337,7 @@ def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(
             read = {name: theirs[f"{name}_{index + 1:02}"] for name in names}
             assert mine == read | {"prRes": round(float(str(read["prRes"])) * 10)}
         else:
-            assert set(mine.values()) == {0}  # it is not in the frame
+            assert set(mine.values()) == {0}  # not in the frame
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 30])
@@ -355,10 +367,10 @@ def test_the_keys_of_a_ubx_configuration_are_the_bytes_that_pyubx2_makes_of_them
 ) -> None:
     import pyubx2
 
-    made = pyubx2.UBXMessage.config_set(
+    message = pyubx2.UBXMessage.config_set(
         5, 1, [("CFG_RATE_MEAS", 250), ("CFG_NAVSPG_DYNMODEL", 4)]
     )
-    ours = decoded(testee, "ublox", "telecommand", 0x068A, made.payload)
+    ours = decoded(testee, "ublox", "telecommand", 0x068A, message.payload)
     assert [ours[key] for key in ("ram", "bbr", "flash", "action")] == [
         True,
         False,
@@ -372,7 +384,7 @@ def test_the_keys_of_a_ubx_configuration_are_the_bytes_that_pyubx2_makes_of_them
 # BME280, by the layout of its registers in the data sheet
 
 
-def test_the_bme280_is_read_as_its_data_sheet_says(testee: Testee) -> None:
+def test_the_bme280_is_decoded_as_in_its_data_sheet(testee: Testee) -> None:
     chance = random.Random(1)
     for _ in range(FRAMES):
         b = chance.randbytes(8)
@@ -404,11 +416,12 @@ def test_the_bme280_is_read_as_its_data_sheet_says(testee: Testee) -> None:
         }
 
 
-def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(
+def test_a_bme280_with_fixed_coefficients_has_a_polynomial_of_temperature(
     tmp_path: Path,
 ) -> None:
-    """That of docs/guides/example-devices.md, at the example that the data sheet of the
-    sensor before it gives: 25.08 degrees.
+    """The polynomial of docs/guides/example-devices.md gives 25.08 degrees.
+
+    This is the example in the data sheet of the preceding sensor.
     """
     formula = re.search(
         r"^formula: (.*)$",
@@ -417,18 +430,20 @@ def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(
     )
     assert formula
     tree = yaml.safe_load(DEVICES["bme280"].read_text("utf-8"))
-    field = next(one for one in tree["messages"] if one["name"] == "Measurement")[
-        "fields"
-    ][1]
+    field = next(
+        message for message in tree["messages"] if message["name"] == "Measurement"
+    )["fields"][1]
     field |= {"formula": formula[1], "unit": "C"}
     (tmp_path / "bme280.yaml").write_text(json.dumps(tree), "utf-8")
     loaded = load([tmp_path / "bme280.yaml"])
     assert loaded.findings == []
-    found = next(
-        one for one in loaded.icd.node("bme280").messages if one.name == "Measurement"
+    field = next(
+        message
+        for message in loaded.icd.node("bme280").messages
+        if message.name == "Measurement"
     ).fields[1]
-    assert found.name == "Temperature"
-    physical = codec.physical_double(found, 519888)
+    assert field.name == "Temperature"
+    physical = codec.physical_double(field, 519888)
     assert physical is not None and round(physical, 2) == 25.08
 
 
@@ -458,7 +473,7 @@ PARTS = {
 
 
 def test_the_p31u_is_read_as_its_bytes_were_laid_out(testee: Testee) -> None:
-    chance, whole, expected = random.Random(1), b"", {}
+    chance, frame, expected = random.Random(1), b"", {}
     for number, (part, form, names) in PARTS.items():
         data = chance.randbytes(struct.calcsize(form))
         values = {
@@ -466,8 +481,8 @@ def test_the_p31u_is_read_as_its_bytes_were_laid_out(testee: Testee) -> None:
             for name, value in zip(names, struct.unpack(form, data), strict=True)
         }
         assert decoded(testee, "p31u", "telemetry", 0x0800 | number, data) == values
-        whole, expected = whole + data, expected | values
-    assert decoded(testee, "p31u", "telemetry", 0x0800, whole) == expected
+        frame, expected = frame + data, expected | values
+    assert decoded(testee, "p31u", "telemetry", 0x0800, frame) == expected
     nominal = bytes.fromhex("0fa0 0fa0 0fa0 1f40 0000 012c 0000 012c 0064 0000")
     power = decoded(testee, "p31u", "telemetry", 0x0801, nominal)
     assert (
@@ -477,7 +492,7 @@ def test_the_p31u_is_read_as_its_bytes_were_laid_out(testee: Testee) -> None:
     ) == (4000, 8000, 300)
 
 
-def test_telecommands_of_the_p31u_are_the_bytes_that_it_takes(testee: Testee) -> None:
+def test_telecommands_of_the_p31u_have_the_bytes_of_its_manual(testee: Testee) -> None:
     on = decoded(testee, "p31u", "telecommand", 0x0900, b"\x41")
     assert {name for name, value in on.items() if value} == {
         "Battery Heater",

@@ -1,4 +1,4 @@
-"""Messages of u-blox receivers as pyubx2 has them, by the direction in which they go."""
+"""Messages of u-blox receivers as pyubx2 defines them, by direction."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tests.devices.definition import (
     NotSupported,
     formula,
     node,
-    open_end,
-    open_structs,
-    twice,
+    repeated_names,
+    variable_length_field,
+    variable_length_structs,
 )
 
-# bytes of a payload, where only its length says how many elements there are
+# Largest payload in bytes of a message whose length determines the number of elements.
 LONGEST = 1024
 
 VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
@@ -46,8 +46,9 @@ VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
     ("set", "TIM-VCOCAL-V0"): ("TIM-VCOCAL", {"type": 0}),
     ("poll", "CFG-TP5-TPX"): ("CFG-TP5", {}),
 }
-"""Layouts that share an id: whose id it is, and the constants that tell them; without
-any, lengths do or it is the general one.
+"""Layouts that share an id: the message that has the id, and the constants that
+distinguish the layout. A layout without constants is distinguished by its length, or is
+the general layout.
 """
 
 TYPES = {
@@ -61,23 +62,23 @@ TYPES = {
     "A": "bytes",
 }
 
-KNOWN = (*TYPES, "CH", "UPMP")
-"""How the names of types begin."""
+TYPE_PREFIXES = (*TYPES, "CH", "UPMP")
+"""Prefixes of the names of types."""
 
 CAUSES = {
-    ("get", "CFG-VALGET"): "values whose types a table of keys tells",
-    ("set", "CFG-VALSET"): "values whose types a table of keys tells",
+    ("get", "CFG-VALGET"): "types of values that a table of keys determines",
+    ("set", "CFG-VALSET"): "types of values that a table of keys determines",
 }
-"""What the library does by code of its own."""
+"""Messages that the library decodes with special code."""
 
 PLUS = {("set", "ESF-MEAS-TTAG"): 1}
-"""So many elements more than the counter says: one payload of the library, in which a
-flag adds them, is two messages.
+"""Number of elements in addition to the counter. In a payload of the library a flag adds
+them; this is two messages of an ICD.
 """
 
 
 def tables() -> Iterator[Definitions]:
-    """What is received, what is sent, and what asks for data."""
+    """Yield the received messages, the sent messages, and the polls."""
     import pyubx2
 
     sets = (
@@ -91,13 +92,14 @@ def tables() -> Iterator[Definitions]:
             key: payloads[VARIANTS[way, key][0]] for way, key in PLUS if way == name
         }
         messages = [
-            _definition(name, key, kind, mode, one) for key, one in layouts.items()
+            _definition(name, key, kind, mode, payload)
+            for key, payload in layouts.items()
         ]
         yield Definitions(node(f"ubx_{name}", f"u-blox {name}", id_bits=16), messages)
 
 
 def _key(direction: str, name: str) -> tuple[bytes | None, dict[str, int]]:
-    """Class and number of a message, and the constants that its frames have."""
+    """Return class and number of a message, and the constants of its frames."""
     import pyubx2
 
     ids = {name: key for key, name in pyubx2.UBX_MSGIDS.items()}
@@ -125,14 +127,17 @@ def _definition(
             [],
             unread="layouts without an id, which the library never reads",
         )
-    if any(isinstance(what, str) and what[0] not in KNOWN for what in payload.values()):
+    if any(
+        isinstance(what, str) and what[0] not in TYPE_PREFIXES
+        for what in payload.values()
+    ):
         return Definition(
             name,
             0,
             kind,
             0,
             [],
-            unread="a dummy of the library's tests, of types that it does not know",
+            unread="a dummy of the library's tests, with unknown types",
         )
     if (direction, name) in CAUSES:
         return Definition(name, 0, kind, 0, [], cause=CAUSES[direction, name])
@@ -143,19 +148,20 @@ def _definition(
     except NotSupported as error:
         return Definition(name, 0, kind, 0, [], cause=str(error))
     high = {
-        one["name"][3:] for one in fields if one["name"].startswith("_HP")
+        field["name"][3:] for field in fields if field["name"].startswith("_HP")
     }  # the library adds the second to the first
-    for one in fields:
-        if one["name"] in constants:
-            one["const"] = constants[one["name"]]
-    of_struct = {one["name"]: one["fields"] for one in structs}
-    _tell_apart(fields)
+    for field in fields:
+        if field["name"] in constants:
+            field["const"] = constants[field["name"]]
+    of_struct = {struct["name"]: struct["fields"] for struct in structs}
+    _make_names_unique(fields)
     for parts in of_struct.values():
-        _tell_apart(parts)
+        _make_names_unique(parts)
     scaled = {
-        one["name"]
-        for one in (*fields, *(part for one in structs for part in one["fields"]))
-        if "formula" in one
+        part["name"]
+        for parts in (fields, *of_struct.values())
+        for part in parts
+        if "formula" in part
     }
 
     def read(data: bytes) -> dict[str, object]:
@@ -165,15 +171,17 @@ def _definition(
             with contextlib.redirect_stdout(
                 io.StringIO()
             ):  # one of its functions prints
-                found = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
-                other = data and found._get_dict(payload=data) is not payload
+                message = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
+                is_other_layout = (
+                    data and message._get_dict(payload=data) is not payload
+                )
         except (pyubx2.UBXTypeError, pyubx2.UBXMessageError, KeyError) as error:
             raise NotSupported("another layout under the same id") from error
-        if other:
+        if is_other_layout:
             raise NotSupported("another layout under the same id")
         values = {
             k: v
-            for k, v in found.__dict__.items()
+            for k, v in message.__dict__.items()
             if not k.startswith("_") and k not in high
         }
         for end in fields:
@@ -190,51 +198,58 @@ def _definition(
     )  # fmt: skip
 
 
-def _tell_apart(fields: list[dict]) -> None:
-    """Gives fields of the same name names of their own."""
-    double = twice(fields)
-    for one in fields:
-        if one["name"] in double:
-            one["name"] = f"{one['name']} at {one['at']}"
-        one["name"] = one["name"].lstrip("_")
+def _make_names_unique(fields: list[dict]) -> None:
+    """Give fields of the same name different names."""
+    repeated = repeated_names(fields)
+    for field in fields:
+        if field["name"] in repeated:
+            field["name"] = f"{field['name']} at {field['at']}"
+        field["name"] = field["name"].lstrip("_")
 
 
 def _of_structs(
     values: dict[str, object], end: str, parts: list[dict]
 ) -> dict[str, object]:
-    """With the fields of structs by their whole names: the library numbers attributes,
-    the outer number before the inner.
+    """Return the values with the fields of structs by their full names.
+
+    The library numbers attributes, the outer number before the inner.
     """
-    known, number = dict(values), 0
-    inner = [re.fullmatch(r"(.*?)((?:_\d\d+)*)", one["name"]) for one in parts]
-    names = {one[0]: one for one in inner if one}
+    remaining, number = dict(values), 0
+    inner = [re.fullmatch(r"(.*?)((?:_\d\d+)*)", part["name"]) for part in parts]
+    names = {match[0]: match for match in inner if match}
     while True:
         numbered = {
-            name: f"{one[1]}_{number + 1:02d}{one[2]}" for name, one in names.items()
+            name: f"{match[1]}_{number + 1:02d}{match[2]}"
+            for name, match in names.items()
         }
-        found = {
-            name: known.pop(whole) for name, whole in numbered.items() if whole in known
+        element = {
+            name: remaining.pop(attribute)
+            for name, attribute in numbered.items()
+            if attribute in remaining
         }
-        if not found:
-            return known
-        known |= {f"{end}[{number}].{name}": value for name, value in found.items()}
+        if not element:
+            return remaining
+        remaining |= {
+            f"{end}[{number}].{name}": value for name, value in element.items()
+        }
         number += 1
 
 
 def _gathered(values: dict[str, object], end: dict) -> dict[str, object]:
-    """With what is open at the end as one value: the library has an attribute of each
-    element, or one number of all bytes.
+    """Return the values with a variable-length field as one value.
+
+    The library has an attribute for each element, or one number of all bytes.
     """
-    name, known = end["name"], dict(values)
+    name, gathered = end["name"], dict(values)
     if "size" in end and end["type"] == "text":
-        return known | {name: str(known.get(name, "")).encode()}
-    if name in known:
-        number, count = int(str(known[name])), int(str(known[end["count"]]))
-        return known | {name: list(number.to_bytes(count, "little"))}
+        return gathered | {name: str(gathered.get(name, "")).encode()}
+    if name in gathered:
+        number, count = int(str(gathered[name])), int(str(gathered[end["count"]]))
+        return gathered | {name: list(number.to_bytes(count, "little"))}
     elements = []
-    while f"{name}_{len(elements) + 1:02d}" in known:
-        elements.append(known.pop(f"{name}_{len(elements) + 1:02d}"))
-    return known | {name: elements}
+    while f"{name}_{len(elements) + 1:02d}" in gathered:
+        elements.append(gathered.pop(f"{name}_{len(elements) + 1:02d}"))
+    return gathered | {name: elements}
 
 
 def _fields(
@@ -246,17 +261,17 @@ def _fields(
     owner: str,
     plus: int = 0,
 ) -> int:
-    """Appends the fields of a payload, and the struct of an open group; where those of
-    every frame end. Raises `NotSupported`.
+    """Append the fields of a payload, and the struct of a variable-length group.
 
-    ``plus``: so many elements more than its counter says.
+    Return the bit at which the fields of fixed length end. ``plus`` is the number of
+    elements in addition to the counter. Raises `NotSupported`.
     """
-    for name, what in payload.items():
+    for name, type_or_group in payload.items():
         factor = "1"
         is_group = (
-            isinstance(what, tuple)
-            and isinstance(what[1], dict)
-            and not isinstance(what[0], int)
+            isinstance(type_or_group, tuple)
+            and isinstance(type_or_group[1], dict)
+            and not isinstance(type_or_group[0], int)
         )
         if (
             fields
@@ -264,8 +279,8 @@ def _fields(
             and not (is_group and "rest" not in fields[-1].values())
         ):
             raise NotSupported("more behind a counted group")
-        if isinstance(what, tuple) and isinstance(what[1], dict):
-            count, inner = what
+        if isinstance(type_or_group, tuple) and isinstance(type_or_group[1], dict):
+            count, inner = type_or_group
             if isinstance(count, int):
                 for number in range(count):
                     at = _fields(
@@ -291,18 +306,26 @@ def _fields(
                 bit += width
             at += 8 * int(count[1:])
             continue
-        if what in ("CH", "UPMP"):
-            text = what == "CH"
-            counter = "rest" if text else "numBytesUserData"
+        if type_or_group in ("CH", "UPMP"):
+            is_text = type_or_group == "CH"
+            counter = "rest" if is_text else "numBytesUserData"
             fields.append(
-                open_end(
-                    name + before, at, 8, "text" if text else "uint", counter, LONGEST
+                variable_length_field(
+                    name + before,
+                    at,
+                    8,
+                    "text" if is_text else "uint",
+                    counter,
+                    LONGEST,
                 )
             )
             continue
-        if isinstance(what, tuple):
-            what, factor = what[0], format(Decimal(str(what[1])))
-        at = _single(name + before, what, factor, fields, at)
+        if isinstance(type_or_group, tuple):
+            type_or_group, factor = (
+                type_or_group[0],
+                format(Decimal(str(type_or_group[1]))),
+            )
+        at = _single(name + before, type_or_group, factor, fields, at)
     return at
 
 
@@ -316,19 +339,18 @@ def _group(
     owner: str,
     plus: int,
 ) -> dict:
-    """A group that a field counts, or up to the end: an array of numbers or texts, else
-    of structs.
+    """Return a group that a field counts or that goes up to the end of the frame.
 
-    Raises `NotSupported`.
+    It is an array of numbers or texts, else of structs. Raises `NotSupported`.
     """
     parts: list[dict] = []
     bits = _fields(inner, parts, 0, "", structs, owner)
-    counter = next((one for one in fields if one["name"] == count), None)
+    counter = next((field for field in fields if field["name"] == count), None)
     most = LONGEST * 8 // bits
     most = most if counter is None else min(most, (1 << counter["bits"]) - 1 + plus)
-    told: str | dict = (
-        "rest" if count == "None" else {"field": count, "plus": plus} if plus else count
-    )
+    counted_by: str | dict = "rest" if count == "None" else count
+    if plus and count != "None":
+        counted_by = {"field": count, "plus": plus}
     if (
         len(inner) == 1
         and "formula" not in parts[0]
@@ -340,18 +362,23 @@ def _group(
                 "bits": bits,
                 "name": parts[0]["name"],
                 "type": "text",
-                "count": told,
+                "count": counted_by,
                 "up_to": most,
             }
         if parts[0]["type"] == "bytes":
             raise NotSupported("an array of bytes")
-        return open_end(parts[0]["name"], at, bits, parts[0]["type"], told, most)
-    end, struct = open_structs(owner, group, at, parts, bits, told, most)
+        return variable_length_field(
+            parts[0]["name"], at, bits, parts[0]["type"], counted_by, most
+        )
+    end, struct = variable_length_structs(
+        owner, group, at, parts, bits, counted_by, most
+    )
     structs.append(struct)
     return end
 
 
 def _single(name: str, what: str, factor: str, fields: list[dict], at: int) -> int:
+    # Names of types are a letter and a number of bytes: `U004`.
     type_, bits = TYPES[what[0]], 8 * int(what[1:])
     if bits > 64:
         type_ = "bytes"

@@ -1,5 +1,5 @@
-"""Packets that XTCE defines, as `icdgen import` reads it; space-packet-parser judges,
-which reads telemetry.
+"""Telemetry packets that XTCE files define, as `icdgen import` reads them, compared
+with space-packet-parser.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from tests.conftest import ROOT
 from tests.devices.definition import Definition, Definitions, NotSupported, Values
 
 OWN = ROOT / "tests" / "definitions" / "files"
-# In the environment: a folder with files of others, such as the tests of
+# Environment variable: a folder with further files, such as the tests of
 # space-packet-parser.
 OTHERS = "XTCE_FILES"
 
 
 def packets() -> Iterator[Definitions]:
-    """A node for each file of ours, and of the folder that the environment names."""
+    """Yield a node for each file of the tests and of the folder in the environment."""
     folders = [OWN, *map(Path, filter(None, [os.environ.get(OTHERS)]))]
     reader = xtce.Xtce()
     for path in (path for folder in folders for path in sorted(folder.rglob("*.xml"))):
@@ -35,40 +35,39 @@ def packets() -> Iterator[Definitions]:
             continue
         (tree,) = read.trees.values()
         open_ = "".join(
-            one.message
-            for one in read.definitions.import_findings
-            if one.code == xtce_parts.OPEN
+            finding.message
+            for finding in read.definitions.import_findings
+            if finding.code == xtce_parts.OPEN
         )
-        for one in tree[
-            "messages"
-        ]:  # of random sizes the library reads something else than all that is there
-            if f"message `{one['name']}`" in open_:
-                one["fields"] = [part for part in one["fields"] if "size" not in part]
+        # With random sizes the library does not decode all bytes of a frame.
+        for message in tree["messages"]:
+            if f"message `{message['name']}`" in open_:
+                fields = message["fields"]
+                message["fields"] = [part for part in fields if "size" not in part]
         missing = [
-            one.message
-            for one in read.definitions.import_findings
-            if one.severity == "error"
+            finding.message
+            for finding in read.definitions.import_findings
+            if finding.severity == "error"
         ]
-        # a message that ends in bytes for fields which are not imported counts as one
-        # that is missing
+        # A message whose last fields are imported as bytes counts as missing.
         tree["messages"] = [
-            one
-            for one in tree["messages"]
-            if not any(_is_cut(one, text) for text in missing)
+            message
+            for message in tree["messages"]
+            if not any(_is_cut(message, text) for text in missing)
         ]
         try:
             yield _definitions(path, tree, missing)
         except NotImplementedError:
-            continue  # of what the library does not know, such as arrays
+            continue  # not supported by the library, such as arrays
 
 
 def _is_cut(message: dict, finding: str) -> bool:
-    """Whether a finding says that only bytes are held of the end of a message."""
+    """Return whether a finding reports that the end of a message is imported as bytes."""
     return finding.startswith(f"message `{message['name']}`: from ")
 
 
 class _Any(dict):
-    """Labels; every other value has one, too."""
+    """Labels; values without a label get one."""
 
     def __missing__(self, value: object) -> str:
         return f"value {value}"
@@ -77,64 +76,70 @@ class _Any(dict):
 def _definitions(path: Path, tree: dict, missing: list[str]) -> Definitions:
     from space_packet_parser.xtce.definitions import XtcePacketDefinition
 
-    judge = XtcePacketDefinition.from_xtce(path)
-    for (
-        type_
-    ) in judge.parameter_types.values():  # of which it would refuse random values
+    reference = XtcePacketDefinition.from_xtce(path)
+    # Without these changes the library would reject random values.
+    for type_ in reference.parameter_types.values():
         if hasattr(type_, "enumeration"):
             type_.enumeration = _Any(type_.enumeration)
         if hasattr(type_.encoding, "leading_length_size"):
             type_.encoding.encoding = "latin-1"
         if hasattr(getattr(type_.encoding, "default_calibrator", None), "extrapolate"):
             type_.encoding.default_calibrator.extrapolate = True
-    tree["messages"] = [one for one in tree["messages"] if one["kind"] == "telemetry"]
+    tree["messages"] = [
+        message for message in tree["messages"] if message["kind"] == "telemetry"
+    ]
     used = {
-        one.get("enum")
+        field.get("enum")
         for message in tree["messages"]
-        for one in message.get("fields", ())
+        for field in message.get("fields", ())
     }
-    tree["enums"] = [one for one in tree.get("enums", ()) if one["name"] in used]
-    messages = [_definition(judge, one, tree) for one in tree["messages"]]
+    tree["enums"] = [enum for enum in tree.get("enums", ()) if enum["name"] in used]
+    messages = [_definition(reference, message, tree) for message in tree["messages"]]
     messages += [
-        Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[1])
-        for said in missing
+        Definition(finding, 0, "telemetry", 0, [], cause=finding.split(": ", 1)[1])
+        for finding in missing
     ]
     return Definitions(tree["node"], messages, tree)
 
 
-def _definition(judge: Any, held: dict, tree: dict) -> Definition:
+def _definition(reference: Any, message: dict, tree: dict) -> Definition:
     orders = {"byte_order": "big", "bit_order": "msb0"}
-    fields = [{**orders, **one} for one in held.get("fields", ())]
-    read = _reader(judge, held, "protocol" in tree)
+    fields = [{**orders, **field} for field in message.get("fields", ())]
+    read = _reader(reference, message, "protocol" in tree)
     return Definition(
-        held["name"], held["id"], "telemetry", held["length"], fields,
+        message["name"], message["id"], "telemetry", message["length"], fields,
         raw=lambda data: read(data, True), physical=lambda data: read(data, False),
     )  # fmt: skip
 
 
-def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], Values]:
-    """The library's reading of a frame, in the packet that it wants, from the outermost
-    container on; of a parameter that stands there more than once it keeps only the last
-    value.
+def _reader(
+    reference: Any, message: dict, is_packet: bool
+) -> Callable[[bytes, bool], Values]:
+    """Return the library's decoder of a frame, which it needs in a complete packet.
+
+    It starts with the outermost container. The library keeps only the last value of a
+    parameter that occurs more than once; such parameters are left out.
     """
     from space_packet_parser.exceptions import UnrecognizedPacketTypeError
 
-    root = judge.containers[held["name"]]
+    root = reference.containers[message["name"]]
     while root.base_container_name:
-        root = judge.containers[root.base_container_name]
-    parts = {one["name"]: one for one in held.get("fields", ())}
-    parts = {name: one for name, one in parts.items() if f"{name} 2" not in parts}
+        root = reference.containers[root.base_container_name]
+    parts = {field["name"]: field for field in message.get("fields", ())}
+    parts = {name: field for name, field in parts.items() if f"{name} 2" not in parts}
 
     def read(data: bytes, raw: bool) -> Values:
         head = (
-            struct.pack(">HHH", held["id"], 0xC000, len(data) - 1 & 0xFFFF)
+            struct.pack(">HHH", message["id"], 0xC000, len(data) - 1 & 0xFFFF)
             if is_packet
             else b""
         )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of bits behind the last field
             try:
-                found = judge.parse_bytes(head + data, root_container_name=root.name)
+                packet = reference.parse_bytes(
+                    head + data, root_container_name=root.name
+                )
             except (
                 UnrecognizedPacketTypeError,
                 ValueError,
@@ -142,12 +147,12 @@ def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], 
                 raise NotSupported(str(error)) from None
         if raw:
             return {
-                name: _raw(found[name].raw_value) for name in parts if name in found
+                name: _raw(packet[name].raw_value) for name in parts if name in packet
             }
         return {
-            name: float(found[name])
+            name: float(packet[name])
             for name, part in parts.items()
-            if name in found and "formula" in part
+            if name in packet and "formula" in part
         }
 
     return read
@@ -156,10 +161,6 @@ def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], 
 def _raw(value: Any) -> object:
     if isinstance(value, str):
         return value.encode("latin-1")
-    return (
-        bytes(value)
-        if isinstance(value, bytes)
-        else float(value)
-        if isinstance(value, float)
-        else int(value)
-    )
+    if isinstance(value, bytes):
+        return bytes(value)
+    return float(value) if isinstance(value, float) else int(value)

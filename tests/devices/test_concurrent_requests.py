@@ -1,5 +1,7 @@
-"""Two requests at once on a framed link, one of them lost: C and Rust as
-docs/reference/wire-framing.md shows them.
+"""The clients of C and Rust complete two concurrent requests on a framed link, also if
+a response is lost.
+
+The programs contain the examples of docs/reference/wire-framing.md.
 """
 
 from __future__ import annotations
@@ -121,7 +123,7 @@ fn answer(bias: i32) -> Vec<u8> {
     line[..size].to_vec()
 }
 
-fn told(event: NodeEvent<'_, receiver::Node>) {
+fn report(event: NodeEvent<'_, receiver::Node>) {
     match (*event, event.message::<NavigationClock>()) {
         (Event::Timeout { id, .. }, _) => println!("timeout {id}"),
         (Event::Sent { id, .. }, _) => println!("sent {id}"),
@@ -142,10 +144,10 @@ fn main() -> Result<(), Error> {
         };
     }
     output!();
-    client.tick(now + receiver::LINK.client.reply_timeout_ms, told);
+    client.tick(now + receiver::LINK.client.reply_timeout_ms, report);
     output!();
-    client.received(2000, &answer(5), told);
-    client.received(2001, &answer(6), told);
+    client.received(2000, &answer(5), report);
+    client.received(2001, &answer(6), report);
     assert_eq!(client.deadline(), None);
     client.request::<NavigationClock>(9000)?;
     client.request::<NavigationClock>(9000)?;
@@ -153,7 +155,7 @@ fn main() -> Result<(), Error> {
     assert_eq!(client.request::<receiver::EndOfEpoch>(9000), Err(Error::Unsupported));
     output!();
     while let Some(deadline) = client.deadline() {
-        client.tick(deadline, told);
+        client.tick(deadline, report);
         output!();
     }
     Ok(())
@@ -161,19 +163,19 @@ fn main() -> Result<(), Error> {
 """
 
 
-def shown(language: str, first: str, last: str) -> str:
-    """The lines of an example, from one to another."""
-    found = re.search(rf"```{language}\n(.*?)```", SHOWN, re.S)
-    assert found
-    lines = found[1].splitlines()
+def example_lines(language: str, first: str, last: str) -> str:
+    """Return the lines of an example of the document, from ``first`` to ``last``."""
+    block = re.search(rf"```{language}\n(.*?)```", SHOWN, re.S)
+    assert block
+    lines = block[1].splitlines()
     begin = next(number for number, line in enumerate(lines) if first in line)
     end = next(number for number, line in enumerate(lines) if last in line)
     return "\n".join(lines[begin : end + 1])
 
 
-def test_c_asks_and_is_answered(tmp_path):
+def test_c_client_completes_concurrent_requests(tmp_path):
     folder = c.generate(ICD, tmp_path)
-    body = C_BEGIN + shown(
+    body = C_BEGIN + example_lines(
         "c", "receiver_client_t receiver", "receiver_send_set_message_rate"
     )
     (tmp_path / "ask.c").write_text(C % body)
@@ -183,10 +185,10 @@ def test_c_asks_and_is_answered(tmp_path):
     assert (done.returncode, done.stdout.splitlines()) == (0, EXPECTED), done.stderr
 
 
-def test_rust_asks_and_is_answered(tmp_path):
+def test_rust_client_completes_concurrent_requests(tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
     (tmp_path / "ask.rs").write_text(
-        RUST % shown("rust", "let mut client", "client.send(")
+        RUST % example_lines("rust", "let mut client", "client.send(")
     )
     program = tools.program(
         tmp_path / "ask.rs", tools.library(crate, *USED), tmp_path / "ask"
