@@ -1,3 +1,3 @@
-"""XTCE that is generated: the schema of the standard, what is read back of it, and what
-other programs decode with it.
+"""Generated XTCE files conform to the schema, can be imported again, and are decoded
+alike by other programs.
 """

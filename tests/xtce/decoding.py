@@ -1,5 +1,5 @@
-"""Random frames decoded by space-packet-parser, as the file that is generated tells it,
-and by the reference codec.
+"""Compares how space-packet-parser, with the generated file, and the reference codec
+decode random frames.
 """
 
 from __future__ import annotations
@@ -21,25 +21,26 @@ from tests.xtce.readback import SPACE
 def differences(
     icd: Icd, node: Node, file: Path, frames: int, seed: int
 ) -> Iterator[tuple[int, str]]:
-    """Of each frame how many values were compared, and what is not alike of them;
-    nothing if all is.
+    """Yield for each frame the number of compared values, and the first difference or
+    an empty text.
     """
     from space_packet_parser.xtce.definitions import XtcePacketDefinition
 
-    judge, chance = XtcePacketDefinition.from_xtce(file), random.Random(seed)
-    for type_ in judge.parameter_types.values():
+    library, chance = XtcePacketDefinition.from_xtce(file), random.Random(seed)
+    # Random frames have values without a label, which the library would reject.
+    for type_ in library.parameter_types.values():
         if hasattr(type_, "enumeration"):
             type_.enumeration = _Any(type_.enumeration)
     names = {
-        one.get("name"): alias(one)
-        for one in ElementTree.parse(file).iterfind(f".//{SPACE}Parameter")
+        parameter.get("name"): alias(parameter)
+        for parameter in ElementTree.parse(file).iterfind(f".//{SPACE}Parameter")
     }
-    width = (
-        next(
-            one for one in judge.parameters.values() if one.name == "Id"
-        ).parameter_type.encoding.size_in_bits
-        // 8
+    (id_type,) = (
+        parameter.parameter_type
+        for parameter in library.parameters.values()
+        if parameter.name == "Id"
     )
+    width = id_type.encoding.size_in_bits // 8
     for message in icd.messages_of(node):
         if message.telemetry_id is None:
             continue
@@ -47,29 +48,32 @@ def differences(
         for _ in range(frames):
             frame = chance.randbytes(message.length)
             fixed = {
-                one: one.const
-                for one in frame_fields(message.layout, declared.orders)
-                if one.const is not None
+                field: field.const
+                for field in frame_fields(message.layout, declared.orders)
+                if field.const is not None
             }
+            # Random bytes would violate the constants of the message.
             frame = codec.frame_of(frame, fixed)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 data = message.telemetry_id.to_bytes(width, "big") + frame
-                found = judge.parse_bytes(data, root_container_name="TelemetryFrame")
-            theirs = {names[name]: value for name, value in found.items()}
+                packet = library.parse_bytes(data, root_container_name="TelemetryFrame")
+            theirs = {names[name]: value for name, value in packet.items()}
             yield _compare(declared, message, frame, theirs)
 
 
 class _Any(dict):
-    """Labels; every other value has one, too."""
+    """Labels; values without a label get one, because the library rejects unknown
+    values.
+    """
 
     def __missing__(self, value: object) -> str:
         return f"value {value}"
 
 
 def alias(parameter: ElementTree.Element) -> str:
-    found = parameter.find(f"{SPACE}AliasSet/{SPACE}Alias")
-    return parameter.get("name", "") if found is None else found.get("alias", "")
+    element = parameter.find(f"{SPACE}AliasSet/{SPACE}Alias")
+    return parameter.get("name", "") if element is None else element.get("alias", "")
 
 
 def _compare(

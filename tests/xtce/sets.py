@@ -1,5 +1,7 @@
-"""ICDs of which XTCE is made and read back: the shipped ones, those of other devices
-and links, the documented, and odd ones.
+"""ICDs from which XTCE is generated and imported again.
+
+The sets are the shipped ICDs, devices, links, the examples of the documents, and odd
+ICDs.
 """
 
 from __future__ import annotations
@@ -13,17 +15,17 @@ from tests.conftest import ROOT
 
 
 def sets(folder: Path) -> dict[str, list[Path]]:
-    """Sets of ICDs by name; those that are made are written to the folder."""
-    found = {
+    """Return sets of ICDs by name; generated ICDs are written to the folder."""
+    icds = {
         "shipped": sorted((ROOT / "icd").glob("*.yaml")),
         "devices": sorted((ROOT / "examples" / "devices").rglob("*.yaml")),
         "links": sorted((ROOT / "examples" / "links").glob("*.yaml")),
         "fine": sorted((ROOT / "tests" / "icd" / "fine").glob("*.yaml")),
     }
     (inner := folder / "odd").mkdir()
-    found["odd"] = sorted(odd.write(inner).glob("*.yaml"))
+    icds["odd"] = sorted(odd.write(inner).glob("*.yaml"))
     (inner := folder / "hostile").mkdir()
-    found["hostile"] = [
+    icds["hostile"] = [
         path for path in of_c.write(inner) if path.stem in ("hostile", "silent")
     ]
     for number, text in enumerate(
@@ -33,6 +35,7 @@ def sets(folder: Path) -> dict[str, list[Path]]:
     ):
         path = folder / f"example{number}.yaml"
         path.write_text(text, encoding="utf-8")
+        # An example that includes other ICDs is not complete by itself.
         if "include:" not in text:
-            found[f"example {number}"] = [path]
-    return found
+            icds[f"example {number}"] = [path]
+    return icds

@@ -1,9 +1,9 @@
-"""``YAMCS_LIB=FOLDER python -m tests.xtce.shapes [FRAMES]``: Yamcs judges what `icdgen
-import` makes of the shapes of public files.
+"""``YAMCS_LIB=FOLDER python -m tests.xtce.shapes [FRAMES]`` compares the import of
+public XTCE files with Yamcs.
 
-Random packets of telemetry are decoded by Yamcs from the files of XTCE, and by the
-reference codec from the imported ICD; commands are encoded by both. The folder has the
-jars of Yamcs, as for `tests.xtce.yamcs`.
+Yamcs decodes random packets of telemetry from the XTCE files, and the reference codec
+from the imported ICD; both encode the commands. The folder has the jars of Yamcs, as
+for `tests.xtce.yamcs`.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ DATABASES = {  # by the outermost container of telemetry
     "Packet": [SHAPES / "aggregate.xml"],
     "ccsds": sorted((SHAPES / "pus").glob("*.xml")),
 }
-_FREE = 2  # what `Shapes.java` gives arguments that are free
+_FREE = 2  # value that `Shapes.java` gives to arguments that are not fixed
 
 
 def main(arguments: list[str]) -> int:
-    frames, found = int(arguments[0]) if arguments else 20, []
+    frames, differences = int(arguments[0]) if arguments else 20, []
     with tempfile.TemporaryDirectory() as folder:
         jars = f"{os.environ['YAMCS_LIB']}/*"
         subprocess.run(["javac", "-cp", jars, "-d", folder, PROGRAM], check=True)
@@ -45,9 +45,13 @@ def main(arguments: list[str]) -> int:
             print(
                 f"{root:<12} {values:6} values {len(unlike):4} differences", flush=True
             )
-            print("".join(f"    {one}\n" for one in unlike[:20]), end="", flush=True)
-            found += unlike
-    return 1 if found else 0
+            print(
+                "".join(f"    {difference}\n" for difference in unlike[:20]),
+                end="",
+                flush=True,
+            )
+            differences += unlike
+    return 1 if differences else 0
 
 
 def _imported(files: list[Path], folder: Path) -> Icd:
@@ -63,44 +67,52 @@ def _imported(files: list[Path], folder: Path) -> Icd:
 def _compared(
     icd: Icd, root: str, files: list[Path], classes: list[str], frames: int
 ) -> tuple[int, list[str]]:
-    """How many values are alike, and what is not."""
+    """Return the number of compared values, and the differences."""
     (node,) = icd.nodes
-    chance, asked = random.Random(1), []
-    telemetry = [one for one in icd.messages_of(node) if one.telemetry_id is not None]
+    chance, packets_sent = random.Random(1), []
+    telemetry = [
+        message for message in icd.messages_of(node) if message.telemetry_id is not None
+    ]
     for message in telemetry:
         fixed = {
-            one: one.const
-            for one in frame_fields(message.layout, node.orders)
-            if one.const is not None
+            field: field.const
+            for field in frame_fields(message.layout, node.orders)
+            if field.const is not None
         }
         for count in range(frames):
             frame = codec.frame_of(chance.randbytes(message.length), fixed)
             head = struct.pack(
                 ">HHH", message.telemetry_id, 0xC000 | count, len(frame) - 1
             )
-            asked.append((message, frame, head + frame))
-    text = "".join(f"{packet.hex()}\n" for _, _, packet in asked)
+            packets_sent.append((message, frame, head + frame))
+    text = "".join(f"{packet.hex()}\n" for _, _, packet in packets_sent)
     command = ["java", "-cp", ":".join(classes), "Shapes", root, *map(str, files)]
-    said = subprocess.run(
+    printed_lines = subprocess.run(
         command, input=text, capture_output=True, text=True, check=True
     ).stdout.splitlines()
-    commands = (one.split("\t") for one in said if one.startswith("command"))
+    commands = (
+        line.split("\t") for line in printed_lines if line.startswith("command")
+    )
     packets = {name: bytes.fromhex(data) for _, name, data in commands}
-    printed = [one.split("\t")[1:] for one in said if one.startswith("telemetry")]
-    values, unlike = 0, []
-    for (message, frame, _), parameters in zip(asked, printed, strict=True):
-        theirs = dict(one.split("=", 1) for one in parameters)
+    printed = [
+        line.split("\t")[1:] for line in printed_lines if line.startswith("telemetry")
+    ]
+    values, differences = 0, []
+    for (message, frame, _), parameters in zip(packets_sent, printed, strict=True):
+        theirs = dict(parameter.split("=", 1) for parameter in parameters)
         raw = codec.decode(node, message, frame)
         for field in message.fields:
             values += 1
             if not _is_same(field, raw[field.name], theirs.get(field.name, "")):
-                unlike.append(
+                differences.append(
                     f"{message.name}: {field.name} is {raw[field.name]}, theirs {theirs.get(field.name)}"
                 )
-    for message in (one for one in icd.messages_of(node) if one not in telemetry):
+    for message in icd.messages_of(node):
+        if message in telemetry:
+            continue
         given = {
-            one.name: _FREE if one.const is None else one.const
-            for one in message.fields
+            field.name: _FREE if field.const is None else field.const
+            for field in message.fields
         }
         values += 1
         ours, packet = (
@@ -111,20 +123,17 @@ def _compared(
             packet[6:],
             struct.unpack(">H", packet[:2])[0] & 0x7FF,
         ):
-            unlike.append(f"{message.name} is {ours.hex()}, theirs {packet.hex()}")
-    return values, unlike
+            differences.append(f"{message.name} is {ours.hex()}, theirs {packet.hex()}")
+    return values, differences
 
 
 def _is_same(field: NodePlace, ours: object, theirs: str) -> bool:
-    if (
-        field.type == "float"
-    ):  # of 32 bits, printed with as many digits as tell it from others
+    if field.type == "float":
+        # 32 bits, printed with as many digits as make it unique
         value = codec.float_value(field, int(ours))
-        return (
-            theirs == "NaN"
-            if value != value
-            else struct.pack(">f", float(theirs)) == struct.pack(">f", value)
-        )
+        if value != value:
+            return theirs == "NaN"
+        return struct.pack(">f", float(theirs)) == struct.pack(">f", value)
     return theirs.isdecimal() and int(theirs) == int(ours)
 
 

@@ -1,7 +1,7 @@
-"""`icdgen --lang xtce`: files that keep to the standard, mean what the ICD means, and
-are decoded so by another program.
+"""Files of `icdgen --lang xtce` conform to the standard, have the meaning of the ICD,
+and are decoded accordingly by another program.
 
-`python -m tests.xtce` compares more of them.
+`python -m tests.xtce` compares more ICDs.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from space_packet_parser.xtce.validation import validate_xtce
 from icdgen.loading import load
 from tests.conftest import ROOT
 from tests.xtce.decoding import differences
-from tests.xtce.readback import SPACE, Compared, compare, write
+from tests.xtce.readback import SPACE, Comparison, compare, write
 from tests.xtce.sets import sets
 
-OTHERS = ("devices", "links", "fine", "odd", "hostile")
+FURTHER_SETS = ("devices", "links", "fine", "odd", "hostile")
 SHIPPED = sorted((ROOT / "icd").glob("*.yaml"))
 
 
 @pytest.fixture(scope="module")
-def others(tmp_path_factory):
-    found = sets(tmp_path_factory.mktemp("icds"))
+def further_icds(tmp_path_factory):
+    icds_by_set = sets(tmp_path_factory.mktemp("icds"))
     return [
         paths
-        for name, paths in found.items()
-        if name in OTHERS or "derived:" in paths[0].read_text("utf-8")
+        for name, paths in icds_by_set.items()
+        if name in FURTHER_SETS or "derived:" in paths[0].read_text("utf-8")
     ]
 
 
@@ -37,39 +37,41 @@ def shipped():
     return load(SHIPPED, check=False).icd
 
 
-def test_all_shipped_messages_come_back_as_they_are(tmp_path):
-    found = Compared()
-    compare(SHIPPED, tmp_path, found)
-    assert (found.nodes, found.differences, found.notes) == (5, [], [])
+def test_shipped_messages_are_the_same_after_export_and_import(tmp_path):
+    comparison = Comparison()
+    compare(SHIPPED, tmp_path, comparison)
+    assert (comparison.nodes, comparison.differences, comparison.notes) == (5, [], [])
     assert (
-        found.messages > 171 and found.fields > 1251
-    )  # those of included nodes are in each file
+        comparison.messages > 171 and comparison.fields > 1251
+    )  # messages of included nodes are in each file
 
 
-def test_everything_else_comes_back_but_for_what_has_a_name(others, tmp_path):
-    found = Compared()
-    for number, icds in enumerate(others):
+def test_further_messages_are_the_same_except_for_the_parts_in_the_notes(
+    further_icds, tmp_path
+):
+    comparison = Comparison()
+    for number, icds in enumerate(further_icds):
         (out := tmp_path / f"{number}").mkdir()
-        compare(icds, out, found)
-    assert found.differences == [] and found.nodes > 25
-    assert any("has no fixed size" in note for note in found.notes)
-    assert any("no word for the order of its bits" in note for note in found.notes)
+        compare(icds, out, comparison)
+    assert comparison.differences == [] and comparison.nodes > 25
+    assert any("has no fixed size" in note for note in comparison.notes)
+    assert any("no word for the order of its bits" in note for note in comparison.notes)
     assert any(
         "`Longitude` is left out: it is derived by `Lon + Lon HP`" in note
-        for note in found.notes
+        for note in comparison.notes
     )
 
 
-def test_files_are_those_of_the_standard(shipped, others, tmp_path):
+def test_files_conform_to_the_schema_of_the_standard(shipped, further_icds, tmp_path):
     write(shipped, tmp_path)
-    for number, icds in enumerate(others):
+    for number, icds in enumerate(further_icds):
         (out := tmp_path / f"{number}").mkdir()
         write(load(icds, check=False).icd, out)
     for file in tmp_path.rglob("*.xml"):
-        found = validate_xtce(
+        result = validate_xtce(
             file, level="schema", raise_on_error=False, print_results=False
         )
-        assert found.valid, (file, [one.message for one in found.errors][:3])
+        assert result.valid, (file, [error.message for error in result.errors][:3])
 
 
 def test_another_program_decodes_frames_as_the_reference_does(shipped, tmp_path):
@@ -83,7 +85,7 @@ def test_another_program_decodes_frames_as_the_reference_does(shipped, tmp_path)
     assert values > 2000
 
 
-def test_a_wrong_place_is_noticed_by_both(shipped, tmp_path):
+def test_a_wrong_byte_order_in_the_file_is_detected(shipped, tmp_path):
     file = write(shipped, tmp_path)["cubemag"]
     text = file.read_text("utf-8")
     wrong = re.sub(
@@ -99,7 +101,7 @@ def test_a_wrong_place_is_noticed_by_both(shipped, tmp_path):
     )
 
 
-def test_texts_of_an_icd_are_only_texts(tmp_path):
+def test_markup_in_texts_of_an_icd_is_escaped(tmp_path):
     name = 'a "b" <c/> & {{ 7*7 }} ]]> --> \\x07 é'
     field = f'{{at: 0, bits: 8, name: "{name}", identifier: f, type: uint, summary: "{name}"}}'.replace(
         '"b"', '\\"b\\"'
@@ -110,14 +112,14 @@ def test_texts_of_an_icd_are_only_texts(tmp_path):
     )
     loaded = load([tmp_path / "odd.yaml"], check=False)
     root = ElementTree.parse(write(loaded.icd, tmp_path)["odd"]).getroot()
-    aliases = [one.get("alias") for one in root.iter(f"{SPACE}Alias")]
-    said = 'a "b" <c/> & {{ 7*7 }} ]]> --> é'
-    assert aliases == ["<&>", said] and [
-        one.text for one in root.iter(f"{SPACE}LongDescription")
-    ] == [said]
+    aliases = [element.get("alias") for element in root.iter(f"{SPACE}Alias")]
+    printable = 'a "b" <c/> & {{ 7*7 }} ]]> --> é'
+    assert aliases == ["<&>", printable] and [
+        element.text for element in root.iter(f"{SPACE}LongDescription")
+    ] == [printable]
 
 
-def test_what_a_command_lacks_keeps_it_out_and_is_said(tmp_path):
+def test_a_telecommand_that_xtce_cannot_represent_is_left_out_with_a_note(tmp_path):
     (tmp_path / "radio.yaml").write_text(
         "icdgen: 1\nnode: {name: radio, title: Radio, byte_order: little, bit_order: lsb0}\nmessages:\n"
         "  - {name: Write, id: 1, kind: telecommand, length: 0, fields: ["
@@ -127,11 +129,11 @@ def test_what_a_command_lacks_keeps_it_out_and_is_said(tmp_path):
     loaded = load([tmp_path / "radio.yaml"])
     assert loaded.ok
     root = ElementTree.parse(write(loaded.icd, tmp_path)["radio"]).getroot()
-    assert [one.get("name") for one in root.iter(f"{SPACE}MetaCommand")] == [
+    assert [element.get("name") for element in root.iter(f"{SPACE}MetaCommand")] == [
         "TelecommandFrame",
         "Reset",
     ]
-    assert [one.text for one in root.iter(f"{SPACE}Note")] == [
+    assert [element.text for element in root.iter(f"{SPACE}Note")] == [
         "telecommand `Write`: `Data`, which has no fixed size, is left out",
         "telecommand `Write` is left out",
     ]

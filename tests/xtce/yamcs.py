@@ -1,9 +1,8 @@
-"""``YAMCS_LIB=FOLDER python -m tests.xtce.yamcs [FRAMES]``: random frames decoded by
-Yamcs from the generated files.
+"""``YAMCS_LIB=FOLDER python -m tests.xtce.yamcs [FRAMES]`` compares how Yamcs decodes
+random frames with the generated files.
 
-The folder has the jars of Yamcs, from Maven or of the package `fprime-yamcs-bundle`;
-`java` and `javac` must be there. All values are compared with those of the reference
-codec.
+The folder has the jars of Yamcs, from Maven or from the package `fprime-yamcs-bundle`;
+`java` and `javac` must be installed. All values are compared with the reference codec.
 """
 
 from __future__ import annotations
@@ -25,48 +24,56 @@ from icdgen.icd.places import NodePlace, raw_fields_in
 from icdgen.loading import load
 from icdgen.vectors import patterns
 from tests.xtce.decoding import alias
-from tests.xtce.meaning import has_open_end, is_ordered, line
+from tests.xtce.meaning import has_variable_length, is_ordered, line
 from tests.xtce.readback import SPACE, write
 from tests.xtce.sets import sets
 
 PROGRAM = Path(__file__).parent / "Decode.java"
-MOST = 6  # elements of an open end
+MOST = 6  # elements of a variable-length array
 Values = dict[str, tuple[str, str]]  # raw and engineering, as Yamcs prints them
 
 
 def main(arguments: list[str]) -> int:
-    frames, found = int(arguments[0]) if arguments else 5, []
+    frames, all_differences = int(arguments[0]) if arguments else 5, []
     with tempfile.TemporaryDirectory() as folder:
         jars = f"{os.environ['YAMCS_LIB']}/*"
         subprocess.run(["javac", "-cp", jars, "-d", folder, PROGRAM], check=True)
         for number, (name, icds) in enumerate(sets(Path(folder)).items()):
             icd = load(icds, check=False).icd
             (out := Path(folder, f"out{number}")).mkdir()
-            values, unlike = 0, []
+            values, differences = 0, []
             for node, file in write(icd, out).items():
                 for count, text in _compared(
                     icd, icd.node(node), file, [jars, folder], frames
                 ):
                     values += count
-                    unlike += [f"{node}: {text}"] if text else []
+                    differences += [f"{node}: {text}"] if text else []
             print(
-                f"{name:<12} {values:7} values {len(unlike):4} differences", flush=True
+                f"{name:<12} {values:7} values {len(differences):4} differences",
+                flush=True,
             )
             print(
-                "".join(f"    {one}\n" for one in sorted(set(unlike))[:20]),
+                "".join(
+                    f"    {difference}\n"
+                    for difference in sorted(set(differences))[:20]
+                ),
                 end="",
                 flush=True,
             )
-            found += unlike
-    return 1 if found else 0
+            all_differences += differences
+    return 1 if all_differences else 0
 
 
 def _compared(
     icd: Icd, node: Node, file: Path, classes: list[str], frames: int
 ) -> list[tuple[int, str]]:
-    """Of each frame how many values are alike, and what is not."""
-    chance, asked = random.Random(1), []
-    messages = [one for one in icd.messages_of(node) if one.telemetry_id is not None]
+    """Return for each frame the number of equal values, and the first difference or an
+    empty text.
+    """
+    chance, samples = random.Random(1), []
+    messages = [
+        message for message in icd.messages_of(node) if message.telemetry_id is not None
+    ]
     if not messages:
         return []
     head, width = _head(file)
@@ -76,22 +83,24 @@ def _compared(
             fields = frame_fields(message.layout, owner.orders)
             frame = chance.randbytes(message.length)
             frame = codec.frame_of(
-                frame, {one: one.const for one in fields if one.const is not None}
+                frame,
+                {field: field.const for field in fields if field.const is not None},
             )
             if message.layout.parts and not message.layout.has_gaps:
                 (part,) = message.layout.parts
-                has_more = has_open_end(message) and not part.is_rest
+                has_more = has_variable_length(message) and not part.is_rest
                 more = (
                     chance.randint(0, min(MOST, part.high - part.low))
                     if has_more
                     else 0
                 )
+                # The frame ends after as many elements as its counter states.
                 frame = patterns.cut(message, owner, frame, part.fewest + more)
             elif message.layout.parts:
                 frame = codec.encode(
                     owner, message, codec.initial_values(owner, message)
                 )
-            asked.append(
+            samples.append(
                 (
                     message,
                     frame,
@@ -100,16 +109,16 @@ def _compared(
             )
     root = ElementTree.parse(file).getroot()
     names = {
-        one.get("name", ""): line(alias(one))
-        for one in root.iterfind(f".//{SPACE}Parameter")
+        parameter.get("name", ""): line(alias(parameter))
+        for parameter in root.iterfind(f".//{SPACE}Parameter")
     }
     containers = {
-        line(alias(one)): f"{one.get('name')}_"
-        for one in root.iterfind(f".//{SPACE}SequenceContainer")
+        line(alias(container)): f"{container.get('name')}_"
+        for container in root.iterfind(f".//{SPACE}SequenceContainer")
     }
-    text = "".join(f"{data.hex()}\n" for _, _, data in asked)
+    text = "".join(f"{data.hex()}\n" for _, _, data in samples)
     command = ["java", "-cp", ":".join(classes), "Decode", file]
-    said = subprocess.run(
+    output = subprocess.run(
         command, input=text, capture_output=True, text=True, check=True
     ).stdout.splitlines()
     return [
@@ -119,16 +128,18 @@ def _compared(
             frame,
             _read(printed, names, containers[line(message.name)]),
         )
-        for (message, frame, _), printed in zip(asked, said, strict=True)
+        for (message, frame, _), printed in zip(samples, output, strict=True)
     ]
 
 
 def _head(file: Path) -> tuple[int, int]:
-    """Bits behind the id in the header, and bytes of that."""
+    """Return the number of bits behind the id in the header, and the size of both in
+    bytes.
+    """
     entries = ElementTree.parse(file).iterfind(
         f".//{SPACE}SequenceContainer[@name='TelemetryFrame']/{SPACE}EntryList/*"
     )
-    names = [one.get("parameterRef") for one in entries]
+    names = [entry.get("parameterRef") for entry in entries]
     if "Apid" in names:
         return 32, 6
     encoding = ElementTree.parse(file).find(
@@ -138,9 +149,12 @@ def _head(file: Path) -> tuple[int, int]:
     return 0, int(encoding.get("sizeInBits", "8")) // 8
 
 
-def _read(said: str, names: dict[str, str], container: str) -> Values:
-    """The parameters of a container: a frame may be of others, too, that share its id."""
-    parts = (one.partition("=") for one in said.split("\t") if one)
+def _read(output: str, names: dict[str, str], container: str) -> Values:
+    """Return the parameters of a container from a line of output.
+
+    Yamcs also prints parameters of other containers that share the id.
+    """
+    parts = (parameter.partition("=") for parameter in output.split("\t") if parameter)
     return {
         names[name]: _pair(value)
         for name, _, value in parts
@@ -157,7 +171,7 @@ def _unlike(
     node: Node, message: Message, frame: bytes, theirs: Values
 ) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
-    end = 8 * (len(frame) if has_open_end(message) else message.layout.length)
+    end = 8 * (len(frame) if has_variable_length(message) else message.layout.length)
     for field in message.fields:
         is_left_out = (
             field.is_count
@@ -171,7 +185,7 @@ def _unlike(
             or (
                 field.is_read_only
                 and not all(
-                    is_ordered(one, node) for one in raw_fields_in(message.layout)
+                    is_ordered(other, node) for other in raw_fields_in(message.layout)
                 )
             )
         ):
@@ -188,12 +202,12 @@ def _unlike(
             continue
         if name not in theirs:
             return count, f"{message.name}: {field.name} is missing"
-        said = (
+        printed = (
             theirs[name]
             if index is None
-            else tuple(_element(one, index) for one in theirs[name])
+            else tuple(_element(text, index) for text in theirs[name])
         )
-        if text := _one(field, int(raw[field.name]), *said):
+        if text := _difference(field, int(raw[field.name]), *printed):
             return count, f"{message.name}: {text}"
         count += 1
     return count, ""
@@ -203,39 +217,42 @@ def _element(text: str, index: int) -> str:
     return text.strip("[]").split(", ")[index]
 
 
-def _one(field: NodePlace, raw: int, theirs: str, physical: str) -> str:
+def _difference(field: NodePlace, raw: int, theirs: str, physical: str) -> str:
     if field.type == "float":
         ours = codec.float_value(field, raw)
-        same = _close(ours, float(theirs), 1e-6 if field.bits == 32 else 1e-12)
+        is_same = _is_close(ours, float(theirs), 1e-6 if field.bits == 32 else 1e-12)
     else:
         ours = raw
-        known = {"true": "1", "false": "0"}.get(theirs, theirs)
-        is_number = known.lstrip("-").isdecimal()
-        same = is_number and (int(known) == raw or int(known) & (1 << 64) - 1 == raw)
-    if not same:
+        # Yamcs prints Boolean parameters as words.
+        number = {"true": "1", "false": "0"}.get(theirs, theirs)
+        is_number = number.lstrip("-").isdecimal()
+        is_same = is_number and (
+            int(number) == raw or int(number) & (1 << 64) - 1 == raw
+        )
+    if not is_same:
         return f"{field.name} is {ours}, theirs {theirs}"
     if field.has_formula:
         exact = codec.physical_double(field, raw)
         if (
             exact is not None
             and exact == exact
-            and not _close(exact, float(physical), 1e-9)
+            and not _is_close(exact, float(physical), 1e-9)
         ):
             return f"{field.name} is {exact}, theirs {physical} of {theirs}"
     return ""
 
 
-def _close(one: float, other: float, part: float) -> bool:
+def _is_close(ours: float, theirs: float, part: float) -> bool:
     return (
-        one == other
-        or one != one
-        or math.isclose(one, other, rel_tol=part, abs_tol=1e-12)
-        or _single(one) == other
+        ours == theirs
+        or ours != ours
+        or math.isclose(ours, theirs, rel_tol=part, abs_tol=1e-12)
+        or _single(ours) == theirs
     )
 
 
 def _single(value: float) -> float:
-    """As a float of 32 bits."""
+    """Return a value rounded to a float of 32 bits."""
     try:
         return float(struct.unpack("f", struct.pack("f", value))[0])
     except OverflowError:
