@@ -1,3 +1,5 @@
+"""Streams of bytes for the tests of the protocol runtime."""
+
 from __future__ import annotations
 
 from itertools import pairwise
@@ -9,13 +11,12 @@ quick = settings(
     max_examples=60, deadline=None, suppress_health_check=list(HealthCheck)
 )
 
-# Bytes of which most mean something, so that streams are full of starts, ends and
-# escapes.
+# Mostly bytes with a meaning, so that streams are full of starts, ends and escapes.
 MARKERS = st.sampled_from([0x1F, 0x1F, 0x1F, 0x7F, 0xFF, 0x00, 0x80, 0x92])
 NOISE = st.lists(MARKERS, max_size=12).map(bytes) | st.binary(max_size=12)
 
 
 def cut(data: bytes, places: list[int]) -> list[bytes]:
-    """The pieces of a stream that is cut at these places."""
+    """Return the pieces of a stream that is cut at these positions."""
     edges = [0, *sorted(min(place, len(data)) for place in places), len(data)]
     return [data[a:b] for a, b in pairwise(edges)]

@@ -1,3 +1,5 @@
+"""The protocol of the CubeACP node, as facts and as a link of the runtime."""
+
 from __future__ import annotations
 
 import pytest
@@ -16,12 +18,12 @@ def icd() -> Icd:
 
 
 @pytest.fixture(scope="session")
-def known(icd) -> Facts:
-    """The protocol of the node that has all of it."""
+def acp_facts(icd) -> Facts:
+    """The facts of the node that has every section of the protocol."""
     return facts.of(icd, icd.node("cubeacp"))
 
 
 @pytest.fixture(scope="session")
 def link(icd) -> Link:
-    """The link of that node."""
+    """The link of the same node."""
     return links.link(icd, "cubeacp")

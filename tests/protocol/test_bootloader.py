@@ -1,7 +1,7 @@
-"""A program reaches a bootloader over a framed link, whatever is lost on the way, and a
-device that fails ends the upload with the reason.
+"""A program is uploaded to a bootloader over a framed link in spite of lost messages.
 
-The bootloader is that of ``examples/links/bootloader.yaml``.
+A device that fails ends the upload with the reason. The bootloader is that of
+``examples/links/bootloader.yaml``.
 """
 
 from __future__ import annotations

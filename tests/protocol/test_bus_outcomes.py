@@ -1,5 +1,5 @@
-"""Outcomes on a UART or CAN that loses, delays and reorders: a client reports of a
-request only what the node said about it.
+"""A client on a UART or CAN that loses, delays and reorders reports only outcomes that
+the node sent for the request.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Node:
         self._joiner = CanJoiner(link, None, 1) if bus == "can" else None
 
     def responses(self, client: Client) -> list[object]:
-        """What the node sends after what the client has to send."""
+        """Return what the node sends in response to the output of the client."""
         sent: list[int] = []
         if self._decoder:
             events = self._decoder.feed(client.output())
@@ -73,7 +73,7 @@ class Node:
 
 
 def wrong_outcomes(link: Link, bus: str, delay: int, runs: int) -> list[str]:
-    """The outcomes that a response to another request caused, of so many runs."""
+    """Return the outcomes that a response to another request caused, in ``runs`` runs."""
     wrong = []
     for run in range(runs):
         source = Random(run)

@@ -1,5 +1,7 @@
-"""Messages and CAN packets: whole again in any order, from several senders, and told
-when they are not.
+"""Messages are split into CAN packets and joined again, in any order and from several
+senders.
+
+Incomplete messages are reported.
 """
 
 from __future__ import annotations
@@ -33,21 +35,21 @@ def messages(events):
     return [event.message.data for event in events if event.event == "message"]
 
 
-def test_the_identifier_has_its_parts_where_the_icd_says(link):
+def test_the_identifier_has_its_parts_at_the_positions_in_the_icd(link):
     (packet,) = can_split(link, CanMessage("request", 146, 0x42, 1))
     assert packet == CanPacket(0x04 << 24 | 146 << 16 | 0x42 << 8 | 1, b"")
     (event,) = CanJoiner(link).feed(0, packet)
     assert event.message == CanMessage("request", 146, 0x42, 1)
 
 
-def test_an_address_that_does_not_fit_is_refused(link):
+def test_an_address_out_of_range_is_rejected(link):
     with pytest.raises(RangeError, match="source"):
         can_split(link, CanMessage("request", 146, 256, 1))
 
 
-def test_eight_bytes_fit_one_packet_nine_need_two(link):
-    (one,) = sent(link, bytes(8))
-    assert one.id >> 24 == 1
+def test_eight_bytes_fit_into_one_packet_and_nine_into_two(link):
+    (packet,) = sent(link, bytes(8))
+    assert packet.id >> 24 == 1
     first, second = sent(link, bytes(range(1, 10)))
     assert (first.id >> 24, first.data.hex(), second.data.hex()) == (
         7,
@@ -75,21 +77,21 @@ def test_the_order_of_packets_does_not_matter(link, data, order):
 
 
 @quick
-@given(data=contents, twice=st.sets(st.integers(0, 18)))
-def test_repeated_packets_change_nothing_and_are_told(link, data, twice):
+@given(data=contents, repeated=st.sets(st.integers(0, 18)))
+def test_repeated_packets_change_nothing_and_are_reported(link, data, repeated):
     packets = [
         p
         for number, p in enumerate(sent(link, data))
-        for _ in range(1 + (number in twice))
+        for _ in range(1 + (number in repeated))
     ]
     events, _ = joined(link, packets)
     assert messages(events) == [data]
-    assert sum(e.event == "duplicate" for e in events) == len(twice)
+    assert sum(e.event == "duplicate" for e in events) == len(repeated)
 
 
 @quick
 @given(st.data())
-def test_messages_of_several_senders_arrive_whatever_the_order(link, data):
+def test_messages_of_several_senders_arrive_in_any_order(link, data):
     lengths = {id: command.length for id, command in link.commands.items()}
     sent = []
     for kind, sizes in (("telecommand", lengths), ("reply", link.frames)):
@@ -107,12 +109,12 @@ def test_messages_of_several_senders_arrive_whatever_the_order(link, data):
 
 @st.composite
 def traffic(draw, link):
-    """Packets with their times: mixed, lost, doubled, late, and now and then nonsense."""
-    known = [id for id, length in link.frames.items() if 8 < length < 40][:2]
+    """Packets with their times: mixed, lost, repeated, late, and sometimes invalid."""
+    long_ids = [id for id, length in link.frames.items() if 8 < length < 40][:2]
     rows = []
     for _ in range(draw(st.integers(1, 4))):
-        id = draw(st.sampled_from([*known, 7, 250]))
-        size = link.frames[id] if id in known else draw(st.integers(9, 30))
+        id = draw(st.sampled_from([*long_ids, 7, 250]))
+        size = link.frames[id] if id in long_ids else draw(st.integers(9, 30))
         kind = draw(st.sampled_from(["reply", "telecommand"]))
         source, data = draw(st.sampled_from([NODE, OTHER])), draw(contents)[:size]
         rows += can_split(link, CanMessage(kind, id, source, OBC, data))
@@ -175,19 +177,21 @@ def test_a_message_that_is_sent_again_arrives(link, lost, data):
 
 @quick
 @given(
-    begun=st.integers(1, 18),
-    alike=st.integers(0, 18),
+    sent_before=st.integers(1, 18),
+    equal_packets=st.integers(0, 18),
     data=contents,
 )
 def test_another_message_in_place_of_an_unfinished_one_is_never_mixed_with_it(
-    link, begun, alike, data
+    link, sent_before, equal_packets, data
 ):
     old = sent(link, data)
-    new = data[: alike * 7] + bytes(byte ^ 0xFF for byte in data[alike * 7 :])
-    assert messages(joined(link, old[:begun] + sent(link, new))[0]) == [new]
+    new = data[: equal_packets * 7] + bytes(
+        byte ^ 0xFF for byte in data[equal_packets * 7 :]
+    )
+    assert messages(joined(link, old[:sent_before] + sent(link, new))[0]) == [new]
 
 
-def test_there_is_room_for_so_many_senders_and_no_more(link):
+def test_the_number_of_senders_is_limited(link):
     packets = [sent(link, bytes(127), source)[0] for source in range(200)]
     events, joiner = joined(link, packets, senders=2)
     assert [(e.event, e.source) for e in events] == [
@@ -196,17 +200,17 @@ def test_there_is_room_for_so_many_senders_and_no_more(link):
     assert len(joiner._open) == 2
 
 
-def test_messages_for_others_are_not_ours(link):
+def test_messages_for_other_addresses_are_ignored(link):
     assert joined(link, sent(link, bytes(127)), address=9)[0] == []
 
 
-def test_a_count_beyond_the_longest_message_is_refused(link):
+def test_a_count_beyond_the_longest_message_is_rejected(link):
     unknown = next(i for i in range(128) if i not in link.commands)
     events, joiner = joined(link, sent(link, bytes(1792), id=unknown)[:1])
     assert [e.event for e in events] == ["malformed"]
     assert not joiner._open
 
 
-def test_a_node_without_can_is_refused(link):
+def test_a_node_without_can_is_rejected(link):
     with pytest.raises(UnsupportedError, match="can"):
         CanJoiner(link._replace(can=None))

@@ -1,4 +1,4 @@
-"""The client on a bus: whatever happens, each request ends."""
+"""On each bus, every request of a client ends with exactly one outcome."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_the_next_telecommand_waits_for_the_acknowledge(link):
     client.start(3, Request("telecommand", 31, b"\1"))
 
 
-def test_what_the_node_does_not_have_is_refused_before_it_is_sent(link):
+def test_a_request_that_the_node_does_not_support_is_rejected_before_it_is_sent(link):
     client = talking(link)
     with pytest.raises(UnknownIdError):
         client.start(0, Request("telecommand", 0))
@@ -56,7 +56,7 @@ def test_what_the_node_does_not_have_is_refused_before_it_is_sent(link):
     assert (client.output(), client.deadline) == (b"", None)
 
 
-def test_a_telecommand_without_acknowledge_is_not_sent_twice_unless_it_may_be(link):
+def test_a_telecommand_without_acknowledge_is_repeated_only_if_this_is_allowed(link):
     for repeat, attempts in ((False, 1), (True, 3)):
         client, events, sent = talking(link), [], b""
         client.start(0, Request("telecommand", 31, b"\1", repeat))
@@ -67,7 +67,7 @@ def test_a_telecommand_without_acknowledge_is_not_sent_twice_unless_it_may_be(li
         assert sent == attempts * line(link, 31, 1)
 
 
-def test_a_setting_may_always_be_sent_again(link):
+def test_a_setting_is_always_repeated(link):
     client = talking(link)
     client.start(0, Request("telecommand", 3, b"\1"))
     assert client.output() == line(link, 3, 1)
@@ -102,21 +102,21 @@ def test_on_can_a_frame_is_split_and_joined(link):
 
 @st.composite
 def requests(draw, link):
-    """A request, now and then one that the node does not have."""
+    """A request, sometimes one that the node does not support."""
     if draw(st.booleans()):
         return Request("telemetry", draw(st.sampled_from([*TELEMETRY, 5])))
     id = draw(st.sampled_from([*TELECOMMANDS, 200]))
-    known = id in link.commands and draw(st.integers(0, 9))
-    length = link.commands[id].length if known else 3
+    is_supported = id in link.commands and draw(st.integers(0, 9))
+    length = link.commands[id].length if is_supported else 3
     data = draw(st.binary(min_size=length, max_size=length))
     return Request("telecommand", id, data, draw(st.booleans()))
 
 
 @st.composite
 def frames(draw, link):
-    """Id and data of a frame, whose length is wrong now and then."""
+    """Id and data of a frame, whose length is sometimes wrong."""
     id = draw(st.sampled_from(TELEMETRY))
-    if id == 240:  # tells what became of a telecommand
+    if id == 240:  # the result of a telecommand
         about = draw(st.sampled_from(TELECOMMANDS)), draw(st.integers(0, 1))
         return id, bytes((*about, draw(st.integers(0, 5)), 9))
     length = link.frames[id] + (not draw(st.integers(0, 7)))
@@ -125,7 +125,7 @@ def frames(draw, link):
 
 @st.composite
 def received(draw, link, bus):
-    """What the client receives: an answer, part of one, or noise."""
+    """Bytes that the client receives: a response, a part of one, or noise."""
     id, frame = draw(frames(link))
     if bus == "i2c":
         checked = i2c_write(link, id, frame, True)[1:]
@@ -140,19 +140,24 @@ def received(draw, link, bus):
         message = CanMessage(kind, id, source, OURS, frame)
         return draw(st.sampled_from(can_split(link, message)))
     acknowledge = bytes((about, draw(st.sampled_from([0, 0, 1, 4, 77]))))
-    whole = line(link, *draw(st.sampled_from([acknowledge, bytes((id,)) + frame])))
-    place = draw(st.integers(0, len(whole)))
-    pieces = [whole, whole, whole[:place], whole[place:]]
+    complete = line(link, *draw(st.sampled_from([acknowledge, bytes((id,)) + frame])))
+    place = draw(st.integers(0, len(complete)))
+    pieces = [complete, complete, complete[:place], complete[place:]]
     return draw(st.sampled_from(pieces)) + draw(NOISE)
 
 
 @given(st.data(), st.sampled_from(["uart", "i2c", "can"]), st.booleans())
 @settings(max_examples=300)
 def test_every_request_has_exactly_one_outcome(link, data, bus, checked):
-    client, now, asked, ended = talking(link, bus, crc=checked, address=OURS), 0, [], []
+    client, now, requested, ended = (
+        talking(link, bus, crc=checked, address=OURS),
+        0,
+        [],
+        [],
+    )
     receive = {"uart": client.received, "i2c": client.transferred, "can": client.packet}
 
-    def told(events):
+    def check(events):
         for take in (client.output, client.packets, client.transfers):
             take()
         for event in events:
@@ -161,19 +166,21 @@ def test_every_request_has_exactly_one_outcome(link, data, bus, checked):
                 assert event.attempts <= 1 + QUICK.retries
                 if isinstance(event, Done) and event.type:
                     assert len(event.data) == link.frames[event.id]
-        assert ended == asked[: len(ended)]
-        assert len(asked) - len(ended) == (client.deadline is not None) == client.busy
+        assert ended == requested[: len(ended)]
+        assert (
+            len(requested) - len(ended) == (client.deadline is not None) == client.busy
+        )
 
     for action in data.draw(st.lists(st.sampled_from("srrtc"), max_size=25)):
         now += data.draw(st.sampled_from([0, 1, 5, 10, 49, 60, 100, 150]))
         if action == "r":
-            told(receive[bus](now, data.draw(received(link, bus))))
+            check(receive[bus](now, data.draw(received(link, bus))))
         elif action == "t":
-            told(client.tick(now))
+            check(client.tick(now))
         elif action == "c":
             client.cancel()
-            del asked[len(ended) :]
-            told([])
+            del requested[len(ended) :]
+            check([])
         else:
             request, is_busy = data.draw(requests(link)), client.busy
             try:
@@ -183,9 +190,9 @@ def test_every_request_has_exactly_one_outcome(link, data, bus, checked):
             except BusyError:
                 assert is_busy
                 continue
-            asked.append(request.id)
-            told([])
+            requested.append(request.id)
+            check([])
     for _ in range(100):
         if client.busy:
-            told(client.tick(client.deadline))
-    assert asked == ended
+            check(client.tick(client.deadline))
+    assert requested == ended

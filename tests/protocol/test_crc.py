@@ -1,4 +1,4 @@
-"""Checksums of the runtime: those of the catalogues, and of their parameters."""
+"""Checksums of the runtime have the values of the catalogues and of their parameters."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_checksums_of_other_kinds_are_computed_by_name(link, kind, data, half):
     assert checksum(other, "other", data) == expected
 
 
-def test_a_checksum_that_the_icd_does_not_have_is_refused(link):
+def test_a_checksum_that_the_icd_does_not_have_is_rejected(link):
     with pytest.raises(UnsupportedError, match="crc32"):
         checksum(link, "crc32", b"")
 

@@ -1,5 +1,7 @@
-"""A fact of the protocol is declared once: everything else is made from that, and is
-what it is made from.
+"""A fact of the protocol is declared once.
+
+The schema and the constants of the runtimes are generated from the declaration and must
+be up to date.
 """
 
 from __future__ import annotations
@@ -24,14 +26,14 @@ from scripts.protocol_facts import ROOT, out_of_date
 FACTS = [(path, fact) for part, path in SECTIONS.items() for fact in facts_of(part)]
 
 
-def twice(known):
-    return known["pages"] * 2
+def twice_the_pages(values):
+    return values["pages"] * 2
 
 
 @dataclass(frozen=True, kw_only=True)
 class Book:
     pages: int = number("pages", "how many pages it has", 1, 9)
-    sheets: int = octets("paper.sheets", "sheets of paper", default=twice)
+    sheets: int = octets("paper.sheets", "sheets of paper", default=twice_the_pages)
     lent: int = time("lent_ms", "how long it is lent", 5)
     back: bool = flag(
         "order", "whether it is read from the back", False, ("front", "back")
@@ -41,18 +43,18 @@ class Book:
     )
 
 
-def test_schema_and_runtimes_are_what_is_declared():
+def test_schema_and_runtimes_are_generated_from_the_declarations():
     late = [str(path.relative_to(ROOT)) for path in out_of_date()]
     assert late == [], "run `python -m scripts.protocol_facts`"
 
 
-def test_what_an_icd_leaves_out_has_the_declared_default():
+def test_a_fact_that_an_icd_omits_has_the_declared_default():
     assert read_part(Book, {"pages": 3}) == Book(
         pages=3, sheets=6, lent=5, back=False, bound=False
     )
 
 
-def test_what_an_icd_says_is_read_in_the_unit_of_the_fact():
+def test_a_value_of_an_icd_is_read_in_the_unit_of_the_fact():
     given = {
         "pages": 3,
         "paper": {"sheets": 4},
@@ -70,14 +72,16 @@ def test_without_a_key_that_has_no_default_the_part_is_not_described():
 
 
 def test_a_part_has_its_facts_in_the_order_in_which_they_are_declared():
-    assert [fact.name for fact in facts_of(Book)] == [one.name for one in fields(Book)]
+    assert [fact.name for fact in facts_of(Book)] == [
+        field.name for field in fields(Book)
+    ]
 
 
 @pytest.mark.parametrize(
     ("path", "fact"),
     [(path, fact) for path, fact in FACTS if fact.key and fact.most is not None],
 )
-def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
+def test_the_schema_has_the_limits_of_each_fact(path, fact):
     section = schema.protocol_schema()
     for key in f"{path}.{fact.key}".split("."):
         section = (
@@ -90,7 +94,7 @@ def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
     assert (section["minimum"], section["maximum"]) == (fact.least, fact.most)
 
 
-def test_every_fact_says_what_it_means_and_what_fits():
+def test_every_fact_has_a_description_and_a_range_that_its_type_can_hold():
     for path, fact in FACTS:
         assert fact.about and not fact.about.endswith("."), (path, fact.name)
         assert (fact.most or 0) <= fact.holds, (path, fact.name)

@@ -1,5 +1,5 @@
-"""The links that docs/guides/example-links.md shows: each is checked, generated and
-run, and is that of the file beside it.
+"""The links in docs/guides/example-links.md pass `icdgen check`, work in generated
+code, and equal the files in examples/links.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tests.conftest import ROOT
 from tests.python import packages
 
 SHOWN = documents.text("guides/example-links")
-EXAMPLES = {found["name"]: found["yaml"] for found in re.finditer(
+EXAMPLES = {match["name"]: match["yaml"] for match in re.finditer(
     r"\*\*(?P<name>[^*]+)\*\*[^`]*?(?:`[^`]+`[^`]*?)*```yaml\n(?P<yaml>icdgen: 1\n.*?)```\n", SHOWN, re.S
 )}  # fmt: skip
 FILES = {
@@ -29,26 +29,26 @@ FILES = {
 CUBEADCS = "The link of a CubeADCS"
 
 
-def test_all_that_are_asked_for_are_shown():
+def test_the_page_shows_all_expected_links():
     assert list(EXAMPLES) == [*FILES, CUBEADCS]
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_an_example_is_that_of_its_file(name):
     shown = yaml.safe_load(EXAMPLES[name])
-    whole = yaml.safe_load(
+    shipped = yaml.safe_load(
         (ROOT / "examples" / "links" / f"{FILES[name]}.yaml").read_text(
             encoding="utf-8"
         )
     )
     for name, checksum in shown["protocol"]["link"].get("checksums", {}).items():
         # The shown messages are only some, and so are the seeds.
-        seeds = whole["protocol"]["link"]["checksums"][name].get("seeds", {})
+        seeds = shipped["protocol"]["link"]["checksums"][name].get("seeds", {})
         assert checksum.get("seeds", {}).items() <= seeds.items()
         checksum.pop("seeds", None)
-        whole["protocol"]["link"]["checksums"][name].pop("seeds", None)
-    assert (shown["node"], shown["protocol"]) == (whole["node"], whole["protocol"])
-    assert all(message in whole["messages"] for message in shown["messages"])
+        shipped["protocol"]["link"]["checksums"][name].pop("seeds", None)
+    assert (shown["node"], shown["protocol"]) == (shipped["node"], shipped["protocol"])
+    assert all(message in shipped["messages"] for message in shown["messages"])
 
 
 def test_the_link_of_the_cubeadcs_is_that_of_its_icd():
@@ -79,9 +79,9 @@ def test_an_example_is_checked_generated_and_run(name, tmp_path):
     link, wire = package.module(node).LINK, package.module("wire")
     module = package.module(node)
     kinds = [
-        one
-        for one in (getattr(module, name) for name in module.__all__)
-        if hasattr(one, "from_bytes") and hasattr(one, "NAME")
+        kind
+        for kind in (getattr(module, name) for name in module.__all__)
+        if hasattr(kind, "from_bytes") and hasattr(kind, "NAME")
     ]
     assert {kind.NAME for kind in kinds} == {
         message.name for message in loaded.icd.nodes[0].messages
@@ -94,17 +94,19 @@ def test_an_example_is_checked_generated_and_run(name, tmp_path):
             assert kind.from_bytes(event.message[1:]) == sent
             continue
         direction = (
-            "telemetry" if kind in known(link.TELEMETRY, kind) else "telecommand"
+            "telemetry"
+            if kind in messages_with_id_of(link.TELEMETRY, kind)
+            else "telecommand"
         )
         decoder = wire.StreamDecoder(link, direction)
         line = wire.stream_encode(link, sent, direction=direction)
-        found = [one for byte in line for one in decoder.feed(bytes([byte]))]
-        assert [event.of(kind) for event in found] == [sent]
+        events = [event for byte in line for event in decoder.feed(bytes([byte]))]
+        assert [event.of(kind) for event in events] == [sent]
         assert (decoder.discarded, decoder.pending) == (0, 0)
 
 
-def known(table, kind):
-    """The messages that a direction has under the id of one."""
+def messages_with_id_of(table, kind):
+    """Return the messages that a direction has under the id of ``kind``."""
     return table.of(kind.IDS[-1]) if kind.IDS[-1] in table else ()
 
 
@@ -114,6 +116,6 @@ def test_the_documented_procedure_is_that_of_the_bootloader():
     )
     assert shown
     path = ROOT / "examples" / "links" / "bootloader.yaml"
-    whole = yaml.safe_load(path.read_text(encoding="utf-8"))
+    shipped = yaml.safe_load(path.read_text(encoding="utf-8"))
     procedures = yaml.safe_load(shown[1])["protocol"]["procedures"]
-    assert procedures == whole["protocol"]["procedures"]
+    assert procedures == shipped["protocol"]["procedures"]

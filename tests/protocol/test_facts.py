@@ -1,5 +1,5 @@
-"""What the protocol layer is made from: the facts of the ICD, each assumption with its
-reason.
+"""The runtime is generated from the facts of the protocol in the ICD; each assumption
+states its reason.
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ from icdgen.protocol.reading import assumptions_of
 from tests import links
 
 
-def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
-    assert known.framing and known.can and known.checksum and known.mask
+def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, acp_facts):
+    assert acp_facts.framing and acp_facts.can and acp_facts.checksum and acp_facts.mask
     bootloader = facts.of(icd, icd.node("bootloader"))
-    assert bootloader.framing and asdict(bootloader.framing) == asdict(known.framing)
+    assert bootloader.framing and asdict(bootloader.framing) == asdict(
+        acp_facts.framing
+    )
     assert bootloader.checksum is None and bootloader.mask is None
 
 
@@ -63,20 +65,20 @@ def test_without_telemetry_an_acknowledge_is_no_reply(tmp_path):
     assert uart_kind(link, bytes([7, 0])) == "acknowledge"
 
 
-def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):
-    assert max(m.length for m in known.telemetry.values()) == 504
-    assert known.longest_data == 504
-    assert known.longest == 506
+def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(acp_facts):
+    assert max(m.length for m in acp_facts.telemetry.values()) == 504
+    assert acp_facts.longest_data == 504
+    assert acp_facts.longest == 506
 
 
-def test_every_assumption_says_what_is_held_and_why(known):
-    held = {(a.section, a.key): a for a in known.assumptions}
-    assert held["link.buses.can.segments", "fill"].value == 0
-    assert held["log_mask", "frame_order"].value == "rising bits"
-    (field,) = held["link.packets.telecommand", "trailer"].value
+def test_every_assumption_has_a_value_and_a_reason(acp_facts):
+    assumptions = {(a.section, a.key): a for a in acp_facts.assumptions}
+    assert assumptions["link.buses.can.segments", "fill"].value == 0
+    assert assumptions["log_mask", "frame_order"].value == "rising bits"
+    (field,) = assumptions["link.packets.telecommand", "trailer"].value
     assert field["covers"] == {"from": "data", "to": "data"}
-    assert held["message Reset", "acknowledge"].value == "reset"
-    assert all(a.why and a.value is not None for a in known.assumptions)
+    assert assumptions["message Reset", "acknowledge"].value == "reset"
+    assert all(a.why and a.value is not None for a in acp_facts.assumptions)
 
 
 def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
@@ -94,7 +96,7 @@ def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
 
 
 def procedure(icd, node, name):
-    """The procedure of a node; None if the node has no such procedure."""
+    """Return the procedure of a node; None if the node has no such procedure."""
     procedures = facts.of(icd, icd.node(node)).procedures
     return next((each for each in procedures if each.name == name), None)
 
@@ -126,7 +128,7 @@ def test_inputs_have_the_values_that_the_manual_supports(icd):
     )
 
 
-def test_times_are_milliseconds_and_constants_are_those_of_the_steps(icd, known):
+def test_times_are_milliseconds_and_constants_are_those_of_the_steps(icd, acp_facts):
     upload = procedure(icd, "bootloader", "upload")
     polls = [step for step in upload.steps if isinstance(step, Poll)]
     assert [(poll.interval, poll.timeout) for poll in polls] == [(50, 8000), (50, 5000)]
@@ -137,41 +139,41 @@ def test_times_are_milliseconds_and_constants_are_those_of_the_steps(icd, known)
         if isinstance(step, Send) and step.message.name == "Initiate Download Burst"
     )
     assert burst.puts[0].value == Value(20, False)
-    assert known.boot_ms == 5000
+    assert acp_facts.boot_ms == 5000
 
 
-def test_a_response_on_each_bus_repeats_the_id_of_its_telecommand(known):
-    """The places are those of Table 40 and of the acknowledges in section 5."""
+def test_a_response_on_each_bus_repeats_the_id_of_its_telecommand(acp_facts):
+    """The positions are given in Table 40 and in the acknowledges of section 5."""
     data = {
         "uart": bytes([17, 0]),
         "i2c": bytes([17, 1, 0, 0]),  # of the telemetry that is polled
         "can": bytes([17]),
     }
-    for bus, exchanges in known.bus_exchanges.items():
+    for bus, exchanges in acp_facts.bus_exchanges.items():
         assert exchanges.command
         for response in exchanges.command.responses:
             (echo,) = response.echoes
             assert data[bus][echo.place.at] == 17
-    assert known.bus_exchanges.keys() == data.keys()
+    assert acp_facts.bus_exchanges.keys() == data.keys()
 
 
 def test_a_wrong_checksum_is_the_only_refusal_after_which_a_telecommand_is_sent_again(
-    known,
+    acp_facts,
 ):
     for bus in ("uart", "i2c"):
-        command = known.bus_exchanges[bus].command
+        command = acp_facts.bus_exchanges[bus].command
         assert command
         (response,) = command.responses
         assert (response.verdict, dict(response.meanings)) == (
             "nak",
-            {0: "ack", known.reasons["checksum"]: "again"},
+            {0: "ack", acp_facts.reasons["checksum"]: "again"},
         )
 
 
-def test_only_i2c_polls_for_the_response(known):
-    polls = {bus: each.command.poll for bus, each in known.bus_exchanges.items()}
+def test_only_i2c_polls_for_the_response(acp_facts):
+    polls = {bus: each.command.poll for bus, each in acp_facts.bus_exchanges.items()}
     assert (polls["uart"], polls["can"]) == (None, None)
-    assert polls["i2c"].telemetry == known.polled.telemetry_id
+    assert polls["i2c"].telemetry == acp_facts.polled.telemetry_id
 
 
 @pytest.mark.parametrize(
@@ -185,7 +187,7 @@ def test_only_i2c_polls_for_the_response(known):
     ],
 )
 def test_an_assumption_is_named_after_the_message_of_its_step(step, name):
-    section = {"steps": [{**step, "assumptions": {"bits": "Nothing is said."}}]}
+    section = {"steps": [{**step, "assumptions": {"bits": "Not stated."}}]}
     (assumption,) = assumptions_of(section, ("procedures", "list"))
     assert assumption.section == f"procedures.list.{name}"
 
@@ -220,9 +222,9 @@ def test_several_values_of_a_status_can_confirm_and_a_refusal_needs_no_detail(tm
     (tmp_path / "demo.yaml").write_text(WITHOUT_DETAIL)
     loaded = load([tmp_path])
     assert loaded.findings == []
-    known = facts.of(loaded.icd, loaded.icd.node("demo"))
-    assert known.reasons == {"length": 2}
-    (response,) = known.bus_exchanges["i2c"].command.responses
+    demo_facts = facts.of(loaded.icd, loaded.icd.node("demo"))
+    assert demo_facts.reasons == {"length": 2}
+    (response,) = demo_facts.bus_exchanges["i2c"].command.responses
     assert response.meanings == ((0, "ack"), (1, "ack"))
     assert response.reasons == ((0, "Fine"), (1, "Slow"), (2, "Length"))
     assert response.detail is None
@@ -230,7 +232,7 @@ def test_several_values_of_a_status_can_confirm_and_a_refusal_needs_no_detail(tm
     client.start(0, Request("telecommand", 7))
     assert client.transfers()
     assert client.transferred(1, b"") == []
-    assert client.tick(1 + known.client.poll_interval) == [] and client.transfers()
+    assert client.tick(1 + demo_facts.client.poll_interval) == [] and client.transfers()
     outcome = b"\x07\x01\x01"
     (done,) = client.transferred(30, outcome)
     assert isinstance(done, Done) and (done.id, done.data) == (7, outcome)

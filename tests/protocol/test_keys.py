@@ -1,5 +1,7 @@
-"""No key of the protocol section is passed over: it makes a difference on the wire, to
-the port or the pages, or a finding.
+"""No key of the protocol section is ignored.
+
+Another value changes the wire, the port, the simulator or the documentation, or is an
+error.
 """
 
 from __future__ import annotations
@@ -19,8 +21,8 @@ BY_NAME = {str(key): key for key in walk.all_keys()}
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
-    return walk.walked(tmp_path_factory.mktemp("walk"), whole=False)
+def outcomes_by_key(tmp_path_factory):
+    return walk.effects_of_keys(tmp_path_factory.mktemp("walk"), with_vectors=False)
 
 
 @pytest.fixture(scope="module")
@@ -35,31 +37,38 @@ def test_the_table_has_the_keys_of_the_format():
         "finding",
         "port",
         "simulator",
-        "told",
+        "documented",
         "only",
     }
 
 
-def test_each_key_makes_a_difference_or_a_finding(found):
-    """Here of the facts that vectors are made of: each key costs a check of the ICDs.
+def test_each_key_makes_a_difference_or_a_finding(outcomes_by_key):
+    """Only the facts are compared, because a comparison of all vectors takes minutes.
 
-    The walk by hand compares all vectors.
+    `python -m tests.protocol.walk` compares the vectors.
     """
-    heeded = {key for key, what in found.items() if what & {walk.WIRE, walk.FINDING}}
-    assert heeded >= {key for key, what in TABLE.items() if what in ("wire", "finding")}
-    assert "only" not in {TABLE[key] for key in heeded}
+    effective = {
+        key for key, what in outcomes_by_key.items() if what & {walk.WIRE, walk.FINDING}
+    }
+    assert effective >= {
+        key for key, what in TABLE.items() if what in ("wire", "finding")
+    }
+    assert "only" not in {TABLE[key] for key in effective}
 
 
 @pytest.mark.parametrize(
-    "key", [key for key, what in TABLE.items() if what in ("port", "simulator", "told")]
+    "key",
+    [key for key, what in TABLE.items() if what in ("port", "simulator", "documented")],
 )
-def test_what_else_the_section_says_is_told_by_the_site_and_the_diff(key, sources):
+def test_keys_without_an_effect_on_the_wire_are_shown_by_the_site_and_the_diff(
+    key, sources
+):
     source, place = next(
-        (one, it)
-        for one in sources
-        for it in walk.places(one.section, BY_NAME[key].path)
+        (source, place)
+        for source in sources
+        for place in walk.places(source.section, BY_NAME[key].path)
     )
-    changed = source.load(source.at(place, source.others(BY_NAME[key], place)[0]))
+    changed = source.load(source.at(place, source.other_values(BY_NAME[key], place)[0]))
     assert page(changed) != page(source.icd)
     before, after = (
         next(node for node in icd.nodes if node.protocol)
@@ -69,7 +78,7 @@ def test_what_else_the_section_says_is_told_by_the_site_and_the_diff(key, source
 
 
 def page(icd):
-    """The first page on how a node talks."""
+    """Return the first page about the protocol of a node."""
     render = Renderer.of_backend(backends.get("html"))
     return next(
         text

@@ -1,4 +1,6 @@
-"""Logs, packed times, hole maps, the index file, and checksums on I2C."""
+"""Logs, packed times, packet maps, the index file and checksums on I2C are encoded and
+decoded.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,7 @@ def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(link):
     lost=st.integers(0, 100),
     places=st.lists(st.integers(0, 400), max_size=10),
 )
-def test_a_log_is_read_in_pieces_of_any_size_and_what_is_cut_off_is_counted(
+def test_a_log_is_read_in_pieces_of_any_size_and_truncated_bytes_are_counted(
     link, bits, count, lost, places
 ):
     chosen = mask(*bits)
@@ -59,10 +61,10 @@ def test_a_log_is_read_in_pieces_of_any_size_and_what_is_cut_off_is_counted(
         assert (reader.mask, entries, reader.truncated) == (None, [], len(part))
     else:
         assert reader.mask == chosen
-        whole, left = divmod(len(part) - 10, size)
-        assert reader.truncated == left
-        found = [(e.seconds, e.milliseconds, [f.data for f in e.frames]) for e in entries]  # fmt: skip
-        assert found == rows[:whole]
+        entry_count, remaining_bytes = divmod(len(part) - 10, size)
+        assert reader.truncated == remaining_bytes
+        decoded = [(e.seconds, e.milliseconds, [f.data for f in e.frames]) for e in entries]  # fmt: skip
+        assert decoded == rows[:entry_count]
 
 
 def test_an_unsolicited_log_has_id_mask_and_frames(link):
@@ -93,10 +95,10 @@ def test_a_time_is_valid_if_the_calendar_has_it(link, value):
     time = dos_time_unpack(link, value)
     try:
         datetime(*time)
-        there = True
+        is_in_calendar = True
     except ValueError:
-        there = False
-    assert time.is_valid == there
+        is_in_calendar = False
+    assert time.is_valid == is_in_calendar
 
 
 @pytest.mark.parametrize(
@@ -137,7 +139,7 @@ def test_the_index_file_comes_back(link, rows):
     assert read_index(link, data + bytes(36)) == (entries, 36)
 
 
-def test_a_number_that_does_not_fit_the_index_file_is_refused(link):
+def test_a_number_that_does_not_fit_the_index_file_is_rejected(link):
     with pytest.raises(RangeError, match="type"):
         write_index(link, [IndexEntry(256, 0, 0, 0, 0, bytes(25))])
 
@@ -147,7 +149,7 @@ def test_a_telecommand_without_parameters_has_a_checksum_too(link):
     assert i2c_write(link, 63, b"", False).hex() == "3f"
 
 
-def test_the_checksum_covers_the_id_where_the_icd_says_so(link):
+def test_the_checksum_covers_the_id_if_the_icd_requires_it(link):
     for covers_id, data in ((False, b"\x01"), (True, b"\x1f\x01")):
         form = link.checksum._replace(covers_id=covers_id)
         written = i2c_write(link._replace(checksum=form), 31, b"\x01", crc=True)
@@ -156,7 +158,7 @@ def test_the_checksum_covers_the_id_where_the_icd_says_so(link):
 
 @quick
 @given(frame=st.binary(min_size=6, max_size=6), bit=st.integers(0, 47))
-def test_a_reply_with_a_wrong_bit_is_refused(link, frame, bit):
+def test_a_reply_with_a_wrong_bit_is_rejected(link, frame, bit):
     read = i2c_write(link, 146, frame, True)[1:]
     assert len(read) == i2c_read_length(link, 146, crc=True)
     assert i2c_reply(link, 146, read, True) == i2c_reply(link, 146, frame) == frame
@@ -168,7 +170,7 @@ def test_a_reply_with_a_wrong_bit_is_refused(link, frame, bit):
     assert (caught.value.expected, caught.value.actual) == (links.crc(link.checksums["crc8"].crc, wrong[:6]), read[6])  # fmt: skip
 
 
-def test_a_reply_of_another_length_or_id_is_refused(link):
+def test_a_reply_of_another_length_or_id_is_rejected(link):
     with pytest.raises(LengthError):
         i2c_reply(link, 146, bytes(6), crc=True)
     with pytest.raises(UnknownIdError):

@@ -1,5 +1,5 @@
-"""Outcomes on a line that loses, delays and reorders: a client reports of a request only
-what the device said about it.
+"""A client on a line that loses, delays and reorders reports only outcomes that the
+device sent for the request.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ EVENTS = 0x83  # the telemetry that telecommand 4 requests
 
 
 class Line(NamedTuple):
-    """What a line does: probabilities, and delays in milliseconds."""
+    """Properties of a line: probabilities, and delays in milliseconds."""
 
     loss: float
     delay: int  # longest delay of a response
@@ -47,29 +47,29 @@ def link():
 
 
 def wrong_outcomes(link, line: Line, runs: int, in_flight: int) -> list[str]:
-    """The outcomes that a response to another request caused, of so many runs."""
+    """Return the outcomes that a response to another request caused, in ``runs`` runs."""
     wrong, settings = [], link.settings._replace(in_flight=in_flight, progress_for=1)
     for run in range(runs):
         source = Random(run)
         client = Client(link, settings=settings)
         device = StreamDecoder(link, "telecommand")
         arrivals: list[tuple[float, int, int, bytes]] = []
-        now, left, outcomes, count = 0.0, 12, 0, 0
-        while left or client.busy:
-            if left and source.random() < 0.5:
+        now, remaining, outcomes, count = 0.0, 12, 0, 0
+        while remaining or client.busy:
+            if remaining and source.random() < 0.5:
                 id = source.choice([*TELECOMMANDS])
                 repeat = source.random() < 0.5
                 client.start(now, Request("telecommand", id, TELECOMMANDS[id], repeat))
-                left -= 1
-            known = {slot.handle: slot.attempts for slot in client._slots}
+                remaining -= 1
+            attempts = {slot.handle: slot.attempts for slot in client._slots}
             while data := client.output():
                 # The request whose number of attempts has grown is the one that was sent.
                 (handle,) = (
                     slot.handle
                     for slot in client._slots
-                    if slot.attempts > known[slot.handle]
+                    if slot.attempts > attempts[slot.handle]
                 )
-                known = {slot.handle: slot.attempts for slot in client._slots}
+                attempts = {slot.handle: slot.attempts for slot in client._slots}
                 (received,) = device.feed(data)
                 if source.random() > line.loss:
                     count += 1
@@ -96,7 +96,7 @@ def wrong_outcomes(link, line: Line, runs: int, in_flight: int) -> list[str]:
 
 
 def _response(source: Random, id: int) -> bytes:
-    """Id and data of a response of the device."""
+    """Return id and data of a response of the device."""
     kind = source.choice([ACK, ACK, ACK, NAK, BUSY])
     if kind == ACK:
         return bytes([EVENTS, 0, 7]) if id == 0x04 else bytes([ACK, id])
@@ -105,7 +105,7 @@ def _response(source: Random, id: int) -> bytes:
 
 @pytest.mark.parametrize("in_flight", [1, 3])
 def test_no_response_is_taken_for_that_of_another_request(link, in_flight):
-    """Delays stay within the late time; the timeouts of the ICD are 200 ms, 3 s for
+    """Delays stay within the late time; the timeouts of the ICD are 200 ms, and 3 s for
     Save.
     """
     line = Line(loss=0.2, delay=390)

@@ -1,4 +1,4 @@
-"""Single steps of procedures, with tables that no ICD has."""
+"""Each step of a procedure works alone and in combinations that no ICD uses."""
 
 from __future__ import annotations
 
@@ -59,7 +59,9 @@ BLOCKS = Blocks(
 SIZE = (Input("size", most=100, is_optional=True),)
 
 
-def of(link, *steps, inputs=(), values=None, data=b"", block=None, **more) -> Procedure:
+def procedure_with(
+    link, *steps, inputs=(), values=None, data=b"", block=None, **more
+) -> Procedure:
     """Return a procedure with these steps."""
     form = ProcedureForm(inputs, (), 12, 1000, 100, steps)._replace(**more)
     changed = link._replace(procedures={"tested": form})
@@ -75,13 +77,13 @@ def packet(number, data="0000"):
 
 
 def test_a_procedure_without_steps_is_done_at_once(link):
-    procedure = of(link)
+    procedure = procedure_with(link)
     assert procedure.next(0) is None
     assert (procedure.result, procedure.deadline) == ("done", None)
 
 
 def test_a_request_is_returned_once(link):
-    procedure = of(link, Get(128))
+    procedure = procedure_with(link, Get(128))
     assert procedure.next(0).id == 128
     assert procedure.next(0) is None and procedure.deadline is None
     procedure.event(1, done())
@@ -89,10 +91,10 @@ def test_a_request_is_returned_once(link):
     assert procedure.result == "done"
 
 
-def test_a_value_is_masked_to_its_field_and_leaves_other_bits_as_they_are(link):
+def test_a_value_is_masked_to_its_field_and_does_not_change_other_bits(link):
     nibble = NumberPlace(0, 1, 4, 4, True)
     puts = (Put(nibble, Value(FIRST_INPUT, True)), Put(SECOND, Value(7, False)))
-    procedure = of(
+    procedure = procedure_with(
         link, Send(1, b"\x0f\xff\xff", puts), inputs=SIZE, values={"size": 5}
     )
     assert procedure.next(0).data == b"\x5f\x07\xff"
@@ -109,7 +111,7 @@ def test_a_value_is_masked_to_its_field_and_leaves_other_bits_as_they_are(link):
     ],
 )
 def test_the_outcome_of_a_telecommand_decides(link, outcome, result):
-    procedure = of(link, Send(1, b""))
+    procedure = procedure_with(link, Send(1, b""))
     procedure.next(0)
     procedure.event(0, outcome)
     procedure.next(0)
@@ -117,7 +119,7 @@ def test_the_outcome_of_a_telecommand_decides(link, outcome, result):
 
 
 def test_a_time_out_can_count_as_done(link):
-    procedure = of(link, Send(1, b"", ignores_timeout=True), Get(128))
+    procedure = procedure_with(link, Send(1, b"", ignores_timeout=True), Get(128))
     procedure.next(0)
     procedure.event(0, Timeout(0, 1))
     assert procedure.next(0).id == 128
@@ -127,12 +129,12 @@ def test_a_time_out_can_count_as_done(link):
 
 def test_a_damaged_refusal_repeats_the_request_only_if_it_may_be_repeated(link):
     damaged = Refused(0, 1, 200, may_be_damaged=True)
-    procedure = of(link, Send(1, b"", repeats=True))
+    procedure = procedure_with(link, Send(1, b"", repeats=True))
     for _ in range(1 + link.settings.retries):
         assert procedure.next(0).id == 1
         procedure.event(0, damaged)
     assert procedure.result == "timeout"
-    procedure = of(link, Send(1, b""))
+    procedure = procedure_with(link, Send(1, b""))
     procedure.next(0)
     procedure.event(0, damaged)
     assert procedure.result == "timeout"
@@ -140,7 +142,7 @@ def test_a_damaged_refusal_repeats_the_request_only_if_it_may_be_repeated(link):
 
 def test_a_refusal_on_a_framed_link_is_never_damaged(link):
     framed = link._replace(stream=object())
-    procedure = of(framed, Send(1, b"", repeats=True))
+    procedure = procedure_with(framed, Send(1, b"", repeats=True))
     procedure.next(0)
     procedure.event(0, Refused(0, 1, 200))
     assert procedure.result == "refused"
@@ -148,7 +150,7 @@ def test_a_refusal_on_a_framed_link_is_never_damaged(link):
 
 def test_telemetry_that_arrives_before_its_acknowledge_is_used(link):
     take = (Take(SECOND, OTHER),)
-    procedure = of(link, Get(128, take), outputs=(Output("number", OTHER),))
+    procedure = procedure_with(link, Get(128, take), outputs=(Output("number", OTHER),))
     procedure.next(0)
     procedure.event(0, Reply(1, b"\x01\x02", None, 128))
     assert procedure.output("number") is None
@@ -158,7 +160,7 @@ def test_telemetry_that_arrives_before_its_acknowledge_is_used(link):
 
 
 def test_short_telemetry_reads_as_zeros(link):
-    procedure = of(
+    procedure = procedure_with(
         link, Get(128, (Take(SECOND, OTHER),)), outputs=(Output("number", OTHER),)
     )
     procedure.next(0)
@@ -175,12 +177,12 @@ def test_a_poll_fails_rather_than_succeeds_and_ends_after_its_time(link):
     )
     poll = Poll(128, takes, *tests, 50, 120)
     for frame, result in (("0101", "failed"), ("0100", "done")):
-        procedure = of(link, poll)
+        procedure = procedure_with(link, poll)
         procedure.next(0)
         procedure.event(1, done(frame))
         procedure.next(1)
         assert procedure.result == result
-    procedure, now, times = of(link, poll), 0, []
+    procedure, now, times = procedure_with(link, poll), 0, []
     while not procedure.result:
         if procedure.next(now):
             times.append(now)
@@ -190,12 +192,12 @@ def test_a_poll_fails_rather_than_succeeds_and_ends_after_its_time(link):
 
 
 def test_the_limits_of_requests_and_of_time_end_a_procedure(link):
-    procedure = of(link, Get(128), Jump(0), requests=3)
+    procedure = procedure_with(link, Get(128), Jump(0), requests=3)
     for _ in range(3):
         assert procedure.next(0)
         procedure.event(0, done())
     assert procedure.next(0) is None and procedure.result == "limit"
-    procedure = of(link, Get(128), Jump(0), time=100)
+    procedure = procedure_with(link, Get(128), Jump(0), time=100)
     assert procedure.next(50)
     procedure.event(150, done())
     assert procedure.next(150) and not procedure.result
@@ -207,7 +209,9 @@ def test_packets_count_only_from_the_first_round_of_their_block(link):
     steps = (
         NextBlock(6), Send(1, b""), NextRound(5), receive, Jump(2), Jump(0),
     )  # fmt: skip
-    procedure = of(link, *steps, inputs=SIZE, values={"size": 8}, blocks=BLOCKS)
+    procedure = procedure_with(
+        link, *steps, inputs=SIZE, values={"size": 8}, blocks=BLOCKS
+    )
     assert procedure.next(0).id == 1
     procedure.event(0, packet(0, "eeee"))  # of another transfer
     procedure.event(1, done())
@@ -236,7 +240,9 @@ def test_a_packet_does_not_change_when_a_poll_asks_again(link):
     takes, until = (Take(BYTE, OTHER),), (Condition(OTHER, Value(1, False)),)
     poll, receive = Poll(128, takes, until, (), 50, 1000), Receive(241, BYTE, 1, 100)
     steps = NextBlock(6), NextRound(5), poll, receive, Jump(1), Jump(0)
-    procedure = of(link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS)
+    procedure = procedure_with(
+        link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS
+    )
     procedure.next(0)
     procedure.event(0, done("00"))
     assert procedure.next(0) is None and procedure.deadline == 50
@@ -250,7 +256,9 @@ def test_a_packet_does_not_change_when_a_poll_asks_again(link):
 def test_missing_packets_end_with_the_rounds(link):
     receive = Receive(241, BYTE, 1, 100)
     steps = NextBlock(5), NextRound(4), receive, Jump(1), Jump(0)
-    procedure = of(link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS)
+    procedure = procedure_with(
+        link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS
+    )
     procedure.next(0)
     procedure.event(0, packet(0))
     for now in (100, 200):
@@ -262,7 +270,9 @@ def test_missing_packets_end_with_the_rounds(link):
 def test_on_a_bus_of_requests_each_missing_packet_is_requested_once(link):
     receive = Receive(241, BYTE, 1, 100, ("can",))
     steps = NextBlock(5), NextRound(4), receive, Jump(1), Jump(0)
-    procedure = of(link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS)
+    procedure = procedure_with(
+        link, *steps, inputs=SIZE, values={"size": 4}, blocks=BLOCKS
+    )
     procedure.bus = "can"
     for outcome in (Timeout(0, 1), done("01" + "0203"), done("00" + "0001")):
         request = procedure.next(0)
@@ -281,7 +291,9 @@ def test_a_sent_packet_is_missing_until_it_is_done(link):
     inputs = (Input("image", is_bytes=True, most=10),)
     blocks = BLOCKS._replace(sends=True, total=None)
     data = bytes(range(0x10, 0x17))
-    procedure = of(link, *steps, inputs=inputs, data=data, block=3, blocks=blocks)
+    procedure = procedure_with(
+        link, *steps, inputs=inputs, data=data, block=3, blocks=blocks
+    )
     sent = []
     while request := procedure.next(0):
         sent.append(request.data.hex(" ", 2))
@@ -296,7 +308,9 @@ def test_a_map_has_the_packets_that_arrived_before_each_of_its_messages(link):
     blocks = BLOCKS._replace(size=20, map=form)
     receive = Receive(241, BYTE, 1, 100)
     steps = NextBlock(6), NextRound(5), SendMap(), receive, Jump(1), Jump(0)
-    procedure = of(link, *steps, inputs=SIZE, values={"size": 20}, blocks=blocks)
+    procedure = procedure_with(
+        link, *steps, inputs=SIZE, values={"size": 20}, blocks=blocks
+    )
     first = procedure.next(0)
     assert (first.id, first.data) == (120, b"\x00\x00")
     procedure.event(0, packet(9))
@@ -309,38 +323,40 @@ def test_a_step_can_depend_on_a_flag(link):
     flag = (Input("all", most=1),)
     steps = SkipUnless(Condition(FIRST_INPUT, Value(1, False)), 2), Get(128)
     for value, request in ((0, None), (1, 128)):
-        procedure = of(link, *steps, inputs=flag, values={"all": value})
-        asked = procedure.next(0)
-        assert (asked.id if asked else None) == request
+        procedure = procedure_with(link, *steps, inputs=flag, values={"all": value})
+        sent = procedure.next(0)
+        assert (sent.id if sent else None) == request
 
 
-def test_inputs_out_of_range_are_refused_before_the_start(link):
+def test_inputs_out_of_range_are_rejected_before_the_start(link):
     numbers = (Input("one", most=3), Input("two", most=255, values=(4, 5)))
     for values in ({"one": 4, "two": 4}, {"one": -1, "two": 4}, {"one": 3, "two": 3}):
         with pytest.raises(RangeError):
-            of(link, inputs=numbers, values=values)
+            procedure_with(link, inputs=numbers, values=values)
     with pytest.raises(RangeError, match="one"):
-        of(link, inputs=numbers, values={"two": 4})
-    of(link, inputs=numbers, values={"one": 3, "two": 5})
+        procedure_with(link, inputs=numbers, values={"two": 4})
+    procedure_with(link, inputs=numbers, values={"one": 3, "two": 5})
     data = (Input("image", is_bytes=True, most=10),)
     with pytest.raises(TooLongError):
-        of(link, inputs=data, data=bytes(11))
+        procedure_with(link, inputs=data, data=bytes(11))
     for block in (0, -1):
         with pytest.raises(RangeError, match="1 to 4"):
-            of(link, inputs=SIZE, blocks=BLOCKS, block=block)
-    assert of(link, inputs=SIZE, blocks=BLOCKS, block=5).block_bytes == 4
+            procedure_with(link, inputs=SIZE, blocks=BLOCKS, block=block)
+    assert procedure_with(link, inputs=SIZE, blocks=BLOCKS, block=5).block_bytes == 4
 
 
-def test_what_the_icd_does_not_describe_is_unsupported(link):
+def test_a_procedure_that_the_icd_does_not_describe_is_unsupported(link):
     with pytest.raises(UnsupportedError, match="none"):
         Procedure(link, "none")
     with pytest.raises(UnsupportedError, match="number"):
-        of(link).output("number")
+        procedure_with(link).output("number")
     with pytest.raises(UnsupportedError, match="entries"):
-        _ = of(link).entries
+        _ = procedure_with(link).entries
 
 
 def test_the_length_of_a_block_is_that_of_the_request_without_another_step(link):
     steps = NextBlock(2), Send(1, b"\0", (Put(BYTE, Value(BLOCK_LENGTH, True)),))
-    procedure = of(link, *steps, inputs=SIZE, values={"size": 3}, blocks=BLOCKS)
+    procedure = procedure_with(
+        link, *steps, inputs=SIZE, values={"size": 3}, blocks=BLOCKS
+    )
     assert procedure.next(0).data == b"\x03"

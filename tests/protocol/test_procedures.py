@@ -1,7 +1,7 @@
-"""Files arrive byte for byte, whatever is lost on the way, and what cannot succeed ends
-and says why.
+"""Files and programs are transferred byte for byte in spite of lost messages, and a
+procedure that cannot succeed ends with the reason.
 
-The device is the one that `icdgen.procedures` makes from the steps of the ICD.
+The device is the one that `icdgen.procedures` derives from the steps of the ICD.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ def boot_facts(icd):
 
 @pytest.fixture(scope="module")
 def loader():
-    """Facts and link of a bootloader on a framed link, which is not described by roles."""
+    """Facts and link of a bootloader on a framed link, which has no roles."""
     icd = load([ROOT / "examples" / "links" / "bootloader.yaml"]).icd
-    known = facts.of(icd, icd.node("loader"))
-    return known, link_of(icd, known)
+    loader_facts = facts.of(icd, icd.node("loader"))
+    return loader_facts, link_of(icd, loader_facts)
 
 
 def download(size=None, **more) -> dict:
@@ -53,8 +53,8 @@ def download(size=None, **more) -> dict:
     return {"name": "download", "inputs": inputs, **more}
 
 
-def device_with(known, content: bytes, bus="uart", loss=0.0) -> RecordedDevice:
-    device = RecordedDevice(known, bus, Random(f"{bus} {loss}"), loss)
+def device_with(node_facts, content: bytes, bus="uart", loss=0.0) -> RecordedDevice:
+    device = RecordedDevice(node_facts, bus, Random(f"{bus} {loss}"), loss)
     kind = device.counterpart.runs["download"].effect.kind
     device.device.objects.put(kind, FILE, content)
     return device
@@ -62,26 +62,26 @@ def device_with(known, content: bytes, bus="uart", loss=0.0) -> RecordedDevice:
 
 @pytest.mark.parametrize("loss", LOSSES)
 @pytest.mark.parametrize("bus", ["uart", "i2c", "can"])
-def test_a_downloaded_file_is_the_file(link, known, bus, loss):
+def test_a_downloaded_file_is_the_file(link, acp_facts, bus, loss):
     content = Random(loss).randbytes(50_001)
-    device = device_with(known, content, bus, loss)
+    device = device_with(acp_facts, content, bus, loss)
     _, procedure = record(link, download(len(content), bus=bus), device.respond)
     assert (procedure.result, procedure.data) == ("done", content)
     assert [offset for offset, _ in procedure.blocks] == [0, 20480, 40960]
 
 
 @pytest.mark.parametrize("size", [0, 1, 20, 20480, 20481])
-def test_a_file_of_unknown_size_ends_where_it_ends(link, known, size):
+def test_a_file_of_unknown_size_is_downloaded_to_its_end(link, acp_facts, size):
     content = Random(size).randbytes(size)
-    device = device_with(known, content, loss=0.1)
+    device = device_with(acp_facts, content, loss=0.1)
     _, procedure = record(link, download(), device.respond)
     assert (procedure.result, procedure.data) == ("done", content)
 
 
 @pytest.mark.parametrize("block", [1, 7, 20, 21, 4000])
-def test_a_file_arrives_in_blocks_of_any_size(link, known, block):
+def test_a_file_arrives_in_blocks_of_any_size(link, acp_facts, block):
     content = Random(block).randbytes(60 if block < 20 else 5001)
-    device = device_with(known, content, loss=0.1)
+    device = device_with(acp_facts, content, loss=0.1)
     request = download(len(content), block=block)
     _, procedure = record(link, request, device.respond)
     assert (procedure.result, procedure.data) == ("done", content)
@@ -100,8 +100,8 @@ def test_an_uploaded_program_is_the_program(boot, boot_facts, loss):
 @pytest.mark.parametrize("loss", LOSSES)
 @pytest.mark.parametrize("size", [0, 1, 128, 1024, 1025, 5000])
 def test_a_program_reaches_a_device_with_other_steps(loader, size, loss):
-    known, link = loader
-    device = RecordedDevice(known, "uart", Random(f"{size} {loss}"), loss)
+    loader_facts, link = loader
+    device = RecordedDevice(loader_facts, "uart", Random(f"{size} {loss}"), loss)
     data = Random(size).randbytes(size)
     for _ in range(2):  # the second one replaces the first one
         data = data[::-1]
@@ -112,8 +112,8 @@ def test_a_program_reaches_a_device_with_other_steps(loader, size, loss):
 
 
 @pytest.mark.parametrize("loss", LOSSES)
-def test_no_file_is_missed_in_the_list_and_none_is_there_twice(link, known, loss):
-    device = RecordedDevice(known, "uart", Random(str(loss)), loss)
+def test_every_file_is_listed_exactly_once(link, acp_facts, loss):
+    device = RecordedDevice(acp_facts, "uart", Random(str(loss)), loss)
     entries = [
         bytes([2, number, *Random(number).randbytes(10)]) for number in range(30)
     ]
@@ -122,23 +122,23 @@ def test_no_file_is_missed_in_the_list_and_none_is_there_twice(link, known, loss
     assert (procedure.result, procedure.frames) == ("done", entries)
 
 
-def test_a_node_that_loses_everything_is_given_up(link, known):
-    device = device_with(known, bytes(100), loss=1.0)
+def test_a_procedure_ends_if_the_node_loses_everything(link, acp_facts):
+    device = device_with(acp_facts, bytes(100), loss=1.0)
     _, procedure = record(link, download(100), device.respond)
     assert procedure.result == "timeout"
 
 
-def test_a_node_that_loses_every_packet_is_given_up(link, known):
-    device = device_with(known, bytes(100))
+def test_a_procedure_ends_if_the_node_loses_every_packet(link, acp_facts):
+    device = device_with(acp_facts, bytes(100))
     device.packet_loss = 1.0
     _, procedure = record(link, download(100), device.respond)
     assert procedure.result == "rounds"
 
 
-def test_packets_that_do_not_belong_to_the_block_change_nothing(link, known):
+def test_packets_that_do_not_belong_to_the_block_change_nothing(link, acp_facts):
     content = bytes(range(100))
-    device = device_with(known, content)
-    id = known.unsolicited[119]
+    device = device_with(acp_facts, content)
+    id = acp_facts.unsolicited[119]
     strange = {
         "event": "arrived",
         "id": id,
@@ -152,7 +152,7 @@ def test_packets_that_do_not_belong_to_the_block_change_nothing(link, known):
     assert (procedure.result, procedure.data) == ("done", content)
 
 
-def test_an_upload_through_a_node_that_takes_none_does_not_begin(link):
+def test_an_upload_to_a_node_without_uploads_does_not_begin(link):
     with pytest.raises(UnsupportedError, match="upload"):
         Procedure(link, "upload", {"destination": 3}, bytes(100))
 
@@ -179,7 +179,7 @@ def test_only_programs_that_can_be_copied_are_copied(boot, program):
 
 
 def result_of(procedure, *frames: str) -> str | None:
-    """How a procedure ends when these are the frames of its progress."""
+    """Return how a procedure ends if these are the frames of its progress."""
     procedure.next(0)
     for data in ("", *frames):
         procedure.event(0, Done(0, 1, bytes.fromhex(data)))
@@ -187,7 +187,7 @@ def result_of(procedure, *frames: str) -> str | None:
     return procedure.result
 
 
-def test_a_copy_is_done_when_the_node_says_so_and_failed_when_it_says_that(boot):
+def test_a_copy_is_done_or_failed_when_the_node_reports_it(boot):
     def copy():
         return Procedure(boot, "program_copy", {"program": 3})
 
@@ -226,13 +226,13 @@ RESULTS = (
 
 @given(st.data(), st.sampled_from(KINDS))
 @settings(max_examples=150)
-def test_whatever_happens_it_ends_once_nothing_is_answered(boot, data, request):
-    """Each request has an outcome; a frame holds anything, and time goes on by leaps."""
+def test_every_procedure_ends_once_the_device_is_silent(boot, data, request):
+    """Each request has an outcome, frames have any content, and time advances in leaps."""
     procedure, now, pending = procedure_of(boot, request), 0, None
     for step in range(MOST_STEPS):
-        asked = procedure.next(now)
-        assert not (asked and pending), "a request before the outcome of another"
-        pending = asked or pending
+        sent = procedure.next(now)
+        assert not (sent and pending), "a request before the outcome of another"
+        pending = sent or pending
         if procedure.result:
             break
         is_silent = step >= 40

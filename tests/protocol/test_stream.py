@@ -1,5 +1,5 @@
-"""What the decoder finds in a stream does not depend on how it was cut, and whole
-messages after noise are found.
+"""The decoder of a stream finds complete messages after noise, and its events do not
+depend on how the stream is cut into pieces.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ FOLDERS = [ROOT / "examples" / "links", LINKS]
 @cache
 def links() -> dict[str, Link]:
     icd = icd_of(FOLDERS)
-    found = {node.name: link_of(icd, facts.of(icd, node)) for node in icd.nodes}
-    return {name: link for name, link in found.items() if link.stream}
+    links_by_node = {node.name: link_of(icd, facts.of(icd, node)) for node in icd.nodes}
+    return {name: link for name, link in links_by_node.items() if link.stream}
 
 
 STREAMS = sorted(
@@ -35,9 +35,10 @@ STREAMS = sorted(
 def encoded(
     link: Link, draw: st.DrawFn, count: int = 3
 ) -> tuple[bytes, list[tuple[int, bytes]]]:
-    """Messages in a row, on the line and as they must come out.
+    """Return messages in a row: the bytes on the line, and the messages that must be
+    decoded.
 
-    A packet that does not tell its message comes out as a whole.
+    A packet that does not identify its message is decoded as a packet.
     """
     line, sent = b"", []
     plain = link._replace(stream=link.stream._replace(delimited_by="datagram"))
@@ -65,30 +66,28 @@ def test_events_do_not_depend_on_how_the_stream_was_cut(name, data):
     line, _ = encoded(link, data.draw, 2)
     line = data.draw(st.binary(max_size=20)) + line
     cut = data.draw(st.integers(0, len(line)))
-    whole, cuts = StreamDecoder(link), StreamDecoder(link)
-    assert cuts.feed(line[:cut]) + cuts.feed(line[cut:]) == whole.feed(line)
-    assert (cuts.discarded, cuts.pending) == (whole.discarded, whole.pending)
+    uncut, cuts = StreamDecoder(link), StreamDecoder(link)
+    assert cuts.feed(line[:cut]) + cuts.feed(line[cut:]) == uncut.feed(line)
+    assert (cuts.discarded, cuts.pending) == (uncut.discarded, uncut.pending)
 
 
 @pytest.mark.parametrize("name", STREAMS)
 @given(data=st.data())
-def test_messages_come_out_as_they_were_put_in(name, data):
+def test_encoded_messages_are_decoded_unchanged(name, data):
     link = links()[name]
     line, sent = encoded(link, data.draw)
     decoder = StreamDecoder(link)
-    found = [event for event in decoder.feed(line) if event.event != "gap"]
+    events = [event for event in decoder.feed(line) if event.event != "gap"]
     assert [
         (event.id, event.data.ljust(len(data), b"\0"))
-        for event, (_, data) in zip(found, sent, strict=True)
+        for event, (_, data) in zip(events, sent, strict=True)
     ] == sent
     assert (decoder.discarded, decoder.pending) == (0, 0)
 
 
 @pytest.mark.parametrize("name", STREAMS)
 @given(noise=st.binary(max_size=60), data=st.data())
-def test_every_byte_is_accounted_for_and_no_more_than_a_message_is_held(
-    name, noise, data
-):
+def test_every_byte_is_counted_and_at_most_one_message_is_buffered(name, noise, data):
     link = links()[name]
     decoder = StreamDecoder(link)
     line, _ = encoded(link, data.draw, 1)
@@ -100,14 +99,14 @@ def test_every_byte_is_accounted_for_and_no_more_than_a_message_is_held(
 
 @pytest.mark.parametrize("name", ["receiver", "positioner", "autopilot"])
 @given(noise=st.binary(max_size=40), data=st.data())
-def test_a_message_after_noise_is_found_once_a_longest_one_has_passed(
+def test_a_message_after_noise_is_found_within_the_length_of_a_longest_message(
     name, noise, data
 ):
     link = links()[name]
     line, sent = encoded(link, data.draw, 1)
     decoder = StreamDecoder(link)
-    found = decoder.feed(noise + line + bytes(link.longest))
-    assert sent[0][0] in [event.id for event in found if event.event == "message"]
+    events = decoder.feed(noise + line + bytes(link.longest))
+    assert sent[0][0] in [event.id for event in events if event.event == "message"]
 
 
 SEEDED = """

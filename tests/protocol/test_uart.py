@@ -1,4 +1,4 @@
-"""Messages in a stream of bytes: found whole, whatever comes before, between and within
+"""UART messages are found completely, whatever bytes precede, separate or interrupt
 them.
 """
 
@@ -31,7 +31,7 @@ noises = st.lists(NOISE, max_size=8).map(b"".join)
 streams = st.lists(lines | NOISE, max_size=8).map(b"".join)
 
 
-def of_form(link, form):
+def with_framing(link, form):
     return link._replace(framing=link.framing._replace(**form))
 
 
@@ -40,27 +40,27 @@ def decode(link, *chunks, limit=None):
     return [event for chunk in chunks for event in decoder.feed(chunk)], decoder
 
 
-def found(link, stream):
+def decoded_messages(link, stream):
     return [e.message for e in decode(link, stream)[0] if e.event == "message"]
 
 
 def test_the_id_that_is_the_escape_byte_is_escaped(link):
     assert uart_encode(link, bytes([31, 0])).hex() == "1f7f1f1f001fff"
-    assert found(link, bytes.fromhex("1f7f1f1f001fff")) == [bytes([31, 0])]
+    assert decoded_messages(link, bytes.fromhex("1f7f1f1f001fff")) == [bytes([31, 0])]
 
 
 def test_an_end_within_the_data_is_data(link):
     message = bytes.fromhex("901f1fff")
     assert uart_encode(link, message).hex() == "1f7f901f1f1f1fff1fff"
-    assert found(link, uart_encode(link, message)) == [message]
+    assert decoded_messages(link, uart_encode(link, message)) == [message]
 
 
-@given(all=st.lists(messages, max_size=5), form=forms)
-def test_what_is_encoded_is_decoded(link, all, form):
-    link = of_form(link, form)
-    stream = b"".join(uart_encode(link, one) for one in all)
+@given(sent=st.lists(messages, max_size=5), form=forms)
+def test_encoded_messages_are_decoded_unchanged(link, sent, form):
+    link = with_framing(link, form)
+    stream = b"".join(uart_encode(link, message) for message in sent)
     events, decoder = decode(link, stream)
-    assert [e.message for e in events] == all
+    assert [e.message for e in events] == sent
     assert decoder.discarded == decoder.pending == 0
 
 
@@ -72,11 +72,11 @@ def test_what_is_encoded_is_decoded(link, all, form):
 )
 @example(stream=b"\x1f\x7f\x1f\x1f\x1f\xff", places=[1, 3], limit=1, form={})
 def test_events_do_not_depend_on_how_a_stream_is_cut(link, stream, places, limit, form):
-    link = of_form(link, form)
-    whole, first = decode(link, stream, limit=limit)
+    link = with_framing(link, form)
+    uncut, first = decode(link, stream, limit=limit)
     for pieces in (cut(stream, places), cut(stream, list(range(len(stream))))):
         events, decoder = decode(link, *pieces, limit=limit)
-        assert events == whole
+        assert events == uncut
         assert (decoder.discarded, decoder.pending) == (first.discarded, first.pending)
 
 
@@ -85,7 +85,9 @@ def test_events_do_not_depend_on_how_a_stream_is_cut(link, stream, places, limit
     noise=noises.filter(lambda noise: bytes([ESCAPE, START]) not in noise),
     message=messages,
 )
-def test_noise_costs_nothing_but_the_noise(link, noise, message):
+def test_a_message_after_noise_is_decoded_and_the_noise_is_counted(
+    link, noise, message
+):
     events, decoder = decode(link, noise + uart_encode(link, message))
     assert [e.message for e in events] == [message]
     assert decoder.discarded == len(noise)
@@ -93,14 +95,16 @@ def test_noise_costs_nothing_but_the_noise(link, noise, message):
 
 @quick
 @given(stream=streams, message=messages)
-def test_a_message_after_an_end_is_found_whatever_was_before_it(link, stream, message):
+def test_a_message_after_an_end_is_found_after_any_bytes(link, stream, message):
     line = uart_encode(link, message)
-    assert found(link, stream + bytes([0, ESCAPE, END]) + line)[-1] == message
+    assert (
+        decoded_messages(link, stream + bytes([0, ESCAPE, END]) + line)[-1] == message
+    )
 
 
 @quick
 @given(stream=streams, limit=st.integers(1, 30))
-def test_no_more_is_kept_than_the_longest_message(link, stream, limit):
+def test_at_most_the_longest_message_is_buffered(link, stream, limit):
     decoder = UartDecoder(link, limit)
     delivered = 0
     for number, byte in enumerate(stream, 1):
@@ -112,7 +116,7 @@ def test_no_more_is_kept_than_the_longest_message(link, stream, limit):
         assert decoder.discarded + decoder.pending + delivered == number
 
 
-def test_what_goes_wrong_is_told(link):
+def test_errors_in_the_stream_are_reported(link):
     start, end = bytes([ESCAPE, START]), bytes([ESCAPE, END])
 
     def kinds(stream, limit=None):
@@ -129,7 +133,7 @@ def test_what_goes_wrong_is_told(link):
     assert kinds(start + b"\x90\x1f") == []
 
 
-def test_messages_are_told_apart(link):
+def test_the_kind_of_a_message_is_recognized(link):
     assert uart_kind(link, bytes([31, 0])) == "acknowledge"
     assert uart_kind(link, bytes([119, 0])) == "acknowledge"
     assert uart_kind(link, bytes([119]) + bytes(22)) == "packet"
@@ -140,10 +144,12 @@ def test_messages_are_told_apart(link):
     assert uart_kind(link, bytes([255])) == "other"
 
 
-def test_other_devices_escape_otherwise(link):
+def test_another_device_can_have_other_escape_bytes(link):
     form = {"escape": 0xDB, "start": 0xC0, "end": 0xC1, "escaped": 0xDD}
-    other = of_form(link, {**form, "escapes_id": False, "ignores_other": True})
+    other = with_framing(link, {**form, "escapes_id": False, "ignores_other": True})
     line = uart_encode(other, bytes([0xDB, 0xDB, 1]))
     assert line.hex() == "dbc0dbdbdd01dbc1"
-    assert found(other, line) == [bytes([0xDB, 0xDB, 1])]
-    assert found(other, bytes.fromhex("dbc090db0001dbc1")) == [bytes([0x90, 1])]
+    assert decoded_messages(other, line) == [bytes([0xDB, 0xDB, 1])]
+    assert decoded_messages(other, bytes.fromhex("dbc090db0001dbc1")) == [
+        bytes([0x90, 1])
+    ]

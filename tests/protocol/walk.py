@@ -1,8 +1,8 @@
-"""Every key of the protocol section, changed: what of it is heeded, and how.
+"""Changes every key of the protocol section and reports the effect.
 
-`outcomes` changes a key of an ICD to each of a few other values that the format allows,
-and tells what that makes of the golden vectors or of the findings. `python -m
-tests.protocol.walk` does so with all keys, and writes `keys/table.yaml`.
+`outcomes` gives a key of an ICD each of a few other values that the format allows, and
+compares the golden vectors and the findings. `python -m tests.protocol.walk` does this
+for all keys, and writes `keys/table.yaml`.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from icdgen.vectors import protocol as vectors
 from tests.conftest import ROOT
 
 WIRE, FINDING, NOTHING = "wire", "finding", "nothing"
-BESIDES = (
+COMMON_KEYS = (
     "source",
     "assumptions",
     "summary",
-)  # of every section: where it stands, why it is assumed, prose
+)  # keys of every section: reference to the manual, reasons of assumptions, prose
 STEP = "#/$defs/step"
 NESTED = "[**]"
 Path_ = tuple[str | int, ...]
@@ -40,17 +40,19 @@ Path_ = tuple[str | int, ...]
 KEYS = ROOT / "tests" / "protocol" / "keys"
 TABLE = KEYS / "table.yaml"
 _HEAD = """\
-# What each key of the protocol section makes a difference to; `python -m tests.protocol.walk` writes wire and finding.
+# Effect of each key of the protocol section; `python -m tests.protocol.walk` writes wire and finding.
 #
-# wire: another value makes other golden vectors      port: the port is opened or used with it
-# finding: another value is refused                   simulator: the simulated device does it
-# only: there is one value                            told: nothing is done by it; the site and the diff tell
+# wire: another value changes the golden vectors      port: the port is opened or used with it
+# finding: another value is an error                  simulator: the simulated device uses it
+# only: there is one value                            documented: it is only shown by the site and the diff
 """
 
 
 class Key(NamedTuple):
-    """A key of the format: its path, `[]` for an entry of a list, `[**]` for an entry of
-    a list of steps or a step in it, and `*` for any name, and what it can be.
+    """A key of the format: its path and its schema.
+
+    In the path, `[]` is an entry of a list, `[**]` an entry of a list of steps or a
+    step within it, and `*` any name.
     """
 
     path: tuple[str, ...]
@@ -61,13 +63,14 @@ class Key(NamedTuple):
 
 
 def all_keys() -> list[Key]:
-    """All keys of the protocol section that hold a value, by the JSON Schema."""
+    """Return all keys of the protocol section that have a value, by the JSON Schema."""
     return list(_keys(schema.protocol_schema(), ()))
 
 
 def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:
     form = (
-        schema._follow(form) | {key: one for key, one in form.items() if key != "$ref"}
+        schema._follow(form)
+        | {key: value for key, value in form.items() if key != "$ref"}
         if "$ref" in form
         else form
     )
@@ -75,9 +78,9 @@ def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:
     # A response is a mapping, or the name of its message.
     is_mapping = kinds == "object" or "message" in form.get("properties", ())
     if is_mapping:
-        for key, one in form.get("properties", {}).items():
-            if key not in BESIDES:
-                yield from _keys(one, (*path, key))
+        for key, inner in form.get("properties", {}).items():
+            if key not in COMMON_KEYS:
+                yield from _keys(inner, (*path, key))
         if isinstance(form.get("additionalProperties"), dict):
             yield from _keys(form["additionalProperties"], (*path, "*"))
     elif kinds == "array" and schema_of_entries(form).get("type") == "object":
@@ -89,26 +92,26 @@ def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:
 
 
 def schema_of_entries(form: dict[str, Any]) -> dict[str, Any]:
-    """What the entries of a list are."""
+    """Return the schema of the entries of a list."""
     entries = form["items"]
-    found: dict[str, Any] = schema._follow(entries) if "$ref" in entries else entries
-    return found
+    resolved: dict[str, Any] = schema._follow(entries) if "$ref" in entries else entries
+    return resolved
 
 
 def places(section: Any, path: tuple[str, ...], before: Path_ = ()) -> Iterator[Path_]:
-    """Where a key stands in the section of an ICD."""
+    """Yield the positions of a key in the section of an ICD."""
     if not path:
         yield before
     elif path[0] == "[]" and isinstance(section, list):
-        for index, one in enumerate(section):
-            yield from places(one, path[1:], (*before, index))
+        for index, entry in enumerate(section):
+            yield from places(entry, path[1:], (*before, index))
     elif path[0] == NESTED and isinstance(section, list):
-        for index, one in enumerate(section):
-            yield from places(one, path[1:], (*before, index))
-            yield from _places_in_step(one, path, (*before, index))
+        for index, entry in enumerate(section):
+            yield from places(entry, path[1:], (*before, index))
+            yield from _places_in_step(entry, path, (*before, index))
     elif path[0] == "*" and isinstance(section, dict):
-        for name, one in section.items():
-            yield from places(one, path[1:], (*before, name))
+        for name, entry in section.items():
+            yield from places(entry, path[1:], (*before, name))
     elif isinstance(section, dict) and path[0] in section:
         yield from places(section[path[0]], path[1:], (*before, path[0]))
 
@@ -116,7 +119,7 @@ def places(section: Any, path: tuple[str, ...], before: Path_ = ()) -> Iterator[
 def _places_in_step(
     step: dict[str, Any], path: tuple[str, ...], before: Path_
 ) -> Iterator[Path_]:
-    """Where a key stands in the steps of a step."""
+    """Yield the positions of a key in the steps of a step."""
     for key, value in step.items():
         if isinstance(value, dict):
             yield from _places_in_step(value, path, (*before, key))
@@ -125,9 +128,7 @@ def _places_in_step(
 
 
 class Source:
-    """A folder of ICDs, of which the first node that has a protocol section of its own
-    is changed.
-    """
+    """A folder of ICDs; the first node with a protocol section of its own is changed."""
 
     def __init__(self, files: list[Path], work: Path) -> None:
         self.work = work
@@ -140,23 +141,25 @@ class Source:
         )
         self.section = self.texts[self.changed]["protocol"]
         self.messages = {
-            one["name"]: one for one in self.texts[self.changed]["messages"]
+            message["name"]: message for message in self.texts[self.changed]["messages"]
         }
-        self.enums = [one["name"] for one in self.texts[self.changed].get("enums", ())]
+        self.enums = [
+            enum["name"] for enum in self.texts[self.changed].get("enums", ())
+        ]
         icd = self.load(self.section)
-        assert icd is not None, "it has findings as it is"
+        assert icd is not None, "the unchanged ICDs have findings"
         self.icd = icd
         self.facts = {node.name: facts.of(icd, node) for node in icd.nodes}
         self._cases: dict[str, list[str]] = {}
 
     def cases(self, node: str) -> list[str]:
-        """The vectors of a node as it is."""
+        """Return the vectors of a node of the unchanged ICDs."""
         if node not in self._cases:
             self._cases[node] = list(cases(self.icd, self.facts[node]))
         return self._cases[node]
 
     def load(self, section: dict[str, Any]) -> Icd | None:
-        """The ICDs with another section; None if there are findings."""
+        """Return the ICDs with another section; None if there are findings."""
         for name, content in self.texts.items():
             given = (
                 {**content, "protocol": section} if name == self.changed else content
@@ -169,7 +172,7 @@ class Source:
         return None if loaded.findings else loaded.icd
 
     def at(self, place: Path_, value: object) -> dict[str, Any]:
-        """The section with another value at a place."""
+        """Return the section with another value at a position."""
         section: dict[str, Any] = copy.deepcopy(self.section)
         *before, last = place
         inside: Any = section
@@ -179,26 +182,26 @@ class Source:
         return section
 
     def value(self, place: Path_) -> Any:
-        found: Any = self.section
+        inner: Any = self.section
         for step in place:
-            found = found[step]
-        return found
+            inner = inner[step]
+        return inner
 
-    def others(self, key: Key, place: Path_) -> list[Any]:
-        """Other values that the format allows for a key."""
+    def other_values(self, key: Key, place: Path_) -> list[Any]:
+        """Return other values that the format allows for a key."""
         value, form = self.value(place), key.form
         if "enum" in form:
-            return [one for one in form["enum"] if one != value]
+            return [other for other in form["enum"] if other != value]
         if isinstance(value, bool):
             return [not value]
         if isinstance(value, int):
             near = (value + 1, value * 2 or 16, value - 1)
             least, most = form.get("minimum", 0), form.get("maximum", 1 << 32)
-            return [one for one in near if least <= one <= most][:3]
+            return [number for number in near if least <= number <= most][:3]
         if isinstance(value, list):
             return self._other_lists(value, form)
         if isinstance(value, dict):
-            if all(isinstance(one, str) for one in value.values()):
+            if all(isinstance(entry, str) for entry in value.values()):
                 (first, repeated), *_ = value.items()
                 return [{first: repeated}, {first: "another"}]
             return [{name: number + 1 for name, number in value.items()}]
@@ -207,26 +210,26 @@ class Source:
     def _other_lists(self, value: list[Any], form: dict[str, Any]) -> list[Any]:
         choices = form.get("items", {}).get("enum", ())
         if choices:
-            return [[one for one in choices if one != first] for first in value] + [
-                list(choices)
-            ] * (value != list(choices))
-        if all(isinstance(one, int) for one in value):
+            return [
+                [entry for entry in choices if entry != first] for first in value
+            ] + [list(choices)] * (value != list(choices))
+        if all(isinstance(entry, int) for entry in value):
             return [[*value[:-1], value[-1] + 1], value[:-1] or [value[0] + 1]]
-        if all(one in self.messages for one in value):
+        if all(entry in self.messages for entry in value):
             return [[*value[:-1], name] for name in self.messages if name not in value][
                 :1
             ] + [value[::-1]] * (len(value) > 1)
         nodes = [content["node"]["name"] for content in self.texts.values()]
-        if all(one in nodes for one in value):
-            return [[one] for one in nodes if [one] != value]
+        if all(entry in nodes for entry in value):
+            return [[entry] for entry in nodes if [entry] != value]
         return [[*value, "another"]]
 
     def _other_texts(self, key: Key, place: Path_, value: str) -> list[Any]:
         if value in self.messages:
             alike = [
                 name
-                for name, one in self.messages.items()
-                if one["kind"] == self.messages[value]["kind"]
+                for name, candidate in self.messages.items()
+                if candidate["kind"] == self.messages[value]["kind"]
             ]
             return [name for name in (*alike, *self.messages) if name != value][:12]
         if value in self.enums:
@@ -235,17 +238,19 @@ class Source:
         if value in nodes and key.path[0] == "program_start":
             return [name for name in nodes if name != value]
         message = next(
-            (self.messages[one] for one in self._named(place) if one in self.messages),
+            (
+                self.messages[name]
+                for name in self._named(place)
+                if name in self.messages
+            ),
             None,
         )
         if message:
-            others = [
-                one["name"] for one in message.get("fields", ()) if one["name"] != value
-            ]
-            return others or [f"{value} other"]
+            names = [field["name"] for field in message.get("fields", ())]
+            return [name for name in names if name != value] or [f"{value} other"]
         types = [
-            one["name"]
-            for one in buses_of(self.section)
+            type_["name"]
+            for type_ in buses_of(self.section)
             .get("can", {})
             .get("message_types", {})
             .get("values", ())
@@ -264,79 +269,92 @@ class Source:
         return [f"{value} other"]
 
     def _named(self, place: Path_) -> Iterator[str]:
-        """The messages that stand beside a key, or beside the mapping that it is in."""
+        """Yield the messages that are named next to a key, or next to the mapping that
+        has it.
+        """
         for depth in (1, 2):
-            beside = self.value(place[:-depth])
-            if isinstance(beside, dict):
+            neighbours = self.value(place[:-depth])
+            if isinstance(neighbours, dict):
                 yield from (
-                    one
-                    for one in [beside.get("message"), *beside.get("names", ())]
-                    if isinstance(one, str)
+                    name
+                    for name in [
+                        neighbours.get("message"),
+                        *neighbours.get("names", ()),
+                    ]
+                    if isinstance(name, str)
                 )
 
 
-def told(thing: Any) -> Any:
-    """Facts as plain values; a message, which is not of the protocol section, by its
-    name.
-    """
+def plain(thing: Any) -> Any:
+    """Return facts as plain values. A message is represented by its name."""
     if isinstance(thing, Message | Node):
         return thing.name
     if is_dataclass(thing):
-        values = {one.name: told(getattr(thing, one.name)) for one in fields(thing)}
+        values = {
+            field.name: plain(getattr(thing, field.name)) for field in fields(thing)
+        }
         return {"": type(thing).__name__, **values}
     if isinstance(thing, dict):
-        return {key: told(one) for key, one in thing.items()}
-    return [told(one) for one in thing] if isinstance(thing, list | tuple) else thing
+        return {key: plain(value) for key, value in thing.items()}
+    if isinstance(thing, list | tuple):
+        return [plain(entry) for entry in thing]
+    return thing
 
 
-def outcome(source: Source, section: dict[str, Any], whole: bool) -> str:
-    """What a change makes of the vectors, or of the findings.
+def outcome(source: Source, section: dict[str, Any], with_vectors: bool) -> str:
+    """Return the effect of a change: other vectors, findings, or none.
 
-    Vectors are made of facts; not ``whole``: only these are compared.
+    Vectors are generated from the facts. Without ``with_vectors`` only the facts are
+    compared.
     """
     icd = source.load(section)
     if icd is None:
         return FINDING
-    others = {node.name: facts.of(icd, node) for node in icd.nodes}
+    changed_facts = {node.name: facts.of(icd, node) for node in icd.nodes}
     differ = [
         name
-        for name, known in others.items()
-        if told(known) != told(source.facts[name])
+        for name, node_facts in changed_facts.items()
+        if plain(node_facts) != plain(source.facts[name])
     ]
-    if not whole:
+    if not with_vectors:
         return WIRE if differ else NOTHING
     return (
-        WIRE if any(_differs(source, icd, others[name]) for name in differ) else NOTHING
+        WIRE
+        if any(_differs(source, icd, changed_facts[name]) for name in differ)
+        else NOTHING
     )
 
 
 def _differs(source: Source, changed: Icd, other: Facts) -> bool:
-    """Whether any golden vector of the node differs."""
-    found = zip_longest(source.cases(other.node.name), cases(changed, other))
-    return any(one != two for one, two in found)
+    """Return whether any golden vector of the node differs."""
+    pairs = zip_longest(source.cases(other.node.name), cases(changed, other))
+    return any(old != new for old, new in pairs)
 
 
-def cases(icd: Icd, known: Facts) -> Iterator[str]:
-    """The vectors of a node, one by one."""
-    for _, request in vectors._requests(icd, known):
-        asked = {"op": request["op"], "node": known.node.name, **request}
-        yield json.dumps([asked, reference.answer(icd, asked)])
+def cases(icd: Icd, node_facts: Facts) -> Iterator[str]:
+    """Yield the vectors of a node."""
+    for _, request in vectors._requests(icd, node_facts):
+        complete = {"op": request["op"], "node": node_facts.node.name, **request}
+        yield json.dumps([complete, reference.answer(icd, complete)])
 
 
-def outcomes(source: Source, key: Key, whole: bool) -> Iterator[tuple[Path_, Any, str]]:
-    """Each place and other value, and what became of it; not ``whole``: until something
-    did.
+def outcomes(
+    source: Source, key: Key, with_vectors: bool
+) -> Iterator[tuple[Path_, Any, str]]:
+    """Yield each position, other value and its effect.
+
+    Without ``with_vectors`` it stops at the first effect.
     """
     for place in places(source.section, key.path):
-        for other in source.others(key, place):
-            found = outcome(source, source.at(place, other), whole)
-            yield place, other, found
-            if not whole and found != NOTHING:
+        for other in source.other_values(key, place):
+            effect = outcome(source, source.at(place, other), with_vectors)
+            yield place, other, effect
+            if not with_vectors and effect != NOTHING:
                 return
 
 
 def sources(work: Path) -> Iterator[Source]:
-    """ICDs that have all keys between them."""
+    """Yield ICDs that together have all keys."""
     groups = [[KEYS / "board.yaml", KEYS / "app.yaml"], [KEYS / "link.yaml"]]
     groups += [[KEYS / f"{name}.yaml"] for name in ("packets", "frames")]
     groups += [
@@ -350,30 +368,30 @@ def sources(work: Path) -> Iterator[Source]:
         yield Source(files, folder)
 
 
-def walked(work: Path, whole: bool) -> dict[str, set[str]]:
-    """What came of the changes of each key, in any of the ICDs; nothing, where it does
-    not stand or has but one value.
+def effects_of_keys(work: Path, with_vectors: bool) -> dict[str, set[str]]:
+    """Return the effects of the changes of each key, in any of the ICDs.
 
-    Not ``whole``: a key that is heeded in one of the ICDs is not changed in others.
+    A key has no effects if no ICD has it, or if it has only one value. Without
+    ``with_vectors``, a key with an effect in one ICD is not changed in others.
     """
-    found: dict[str, set[str]] = {str(key): set() for key in all_keys()}
+    effects: dict[str, set[str]] = {str(key): set() for key in all_keys()}
     for source in sources(work):
         for key in all_keys():
-            if not whole and found[str(key)] - {NOTHING}:
+            if not with_vectors and effects[str(key)] - {NOTHING}:
                 continue
-            for _, _, what in outcomes(source, key, whole):
-                found[str(key)].add(what)
-    return found
+            for _, _, effect in outcomes(source, key, with_vectors):
+                effects[str(key)].add(effect)
+    return effects
 
 
 def main() -> None:
     with TemporaryDirectory() as folder:
-        found = walked(Path(folder), True)
+        effects = effects_of_keys(Path(folder), True)
     table = yaml.safe_load(TABLE.read_text(encoding="utf-8")) if TABLE.exists() else {}
     lines = []
-    for key, outcome_ in found.items():
-        heeded = [one for one in (WIRE, FINDING) if one in outcome_]
-        lines.append(f"{key}: {heeded[0] if heeded else table.get(key, NOTHING)}\n")
+    for key, outcome_ in effects.items():
+        measured = [kind for kind in (WIRE, FINDING) if kind in outcome_]
+        lines.append(f"{key}: {measured[0] if measured else table.get(key, NOTHING)}\n")
     TABLE.write_text(_HEAD + "".join(lines), encoding="utf-8")
 
 
