@@ -1,3 +1,3 @@
-"""Which output has which feature of the format: measured, and the page of the documents
-that is made of it.
+"""Measures which output supports which feature of the format, and writes the page of
+the documents about it.
 """

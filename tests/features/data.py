@@ -1,5 +1,5 @@
-"""The features of the format, as docs/reference/features/rows.yaml has them, and the
-ICDs on which they are tried.
+"""The features of the format in docs/reference/features/rows.yaml, and the ICDs on
+which they are tried.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ ROWS = documents.DOCS / "reference" / "features" / "rows.yaml"
 
 @dataclass(frozen=True)
 class Feature:
-    """``uses``: by the list in which it stands, the keys and values (regular
-    expressions) of what has the feature.
+    """A feature of the format.
 
-    ``alike``: keys of which another entry of the list must have the same values.
-    ``change`` and ``wrong``: by turns what is replaced in the example, and by what;
-    ``without``: by output, why it has it not.
+    ``uses``: for each list of an ICD (such as ``fields``), the keys and values, as
+    regular expressions, of an entry that uses the feature. ``alike``: keys for which
+    another entry of the list must have the same values. ``change`` and ``wrong``: pairs
+    of a text of the example and its replacement. ``without``: outputs that lack the
+    feature, with reasons.
     """
 
     name: str
@@ -38,20 +39,20 @@ class Feature:
 
     @property
     def example(self) -> str:
-        """The whole ICD that the documents show of it."""
-        found = [text for text in examples()[self.section] if self.change[0] in text]
-        if not found:
+        """The complete ICD by which the documents show the feature."""
+        matches = [text for text in examples()[self.section] if self.change[0] in text]
+        if not matches:
             raise ValueError(
                 f"no example under `{self.section}` has `{self.change[0]}`, the change of `{self.name}`"
             )
-        return found[0]
+        return matches[0]
 
     def changed(self) -> str:
-        """The example with the feature said otherwise."""
+        """Return the example with the feature used differently."""
         return self._replaced("change")
 
-    def spoilt(self) -> str:
-        """The example with the feature said wrongly."""
+    def with_error(self) -> str:
+        """Return the example with the feature used wrongly."""
         return self._replaced("wrong")
 
     def _replaced(self, key: str) -> str:
@@ -65,20 +66,22 @@ class Feature:
         return text
 
     def places(self, tree: object) -> list[object]:
-        """What a tree of an ICD says of the feature: the values at the keys, in order."""
+        """Return the values at the keys of the feature in an ICD, in the order of the
+        file.
+        """
         return list(_places(tree, self.uses, self.alike))
 
 
 def features() -> list[Feature]:
-    """In the order of the page."""
+    """Return the features in the order of the page."""
     data: dict[str, Any] = yaml.safe_load(ROWS.read_text("utf-8"))
     return [_feature(data["reasons"], **row) for row in data["features"]]
 
 
 def unmeasured() -> list[str]:
-    """Headings whose examples no line measures yet."""
-    found: list[str] = yaml.safe_load(ROWS.read_text("utf-8"))["unmeasured"]
-    return found
+    """Return headings whose examples are not measured yet."""
+    headings: list[str] = yaml.safe_load(ROWS.read_text("utf-8"))["unmeasured"]
+    return headings
 
 
 def _feature(
@@ -89,14 +92,20 @@ def _feature(
     alike: tuple[str, ...] = (),
     **row: Any,
 ) -> Feature:
-    why = {output: reasons[key] for output, key in (without or {}).items()}
+    reasons_by_output = {
+        output: reasons[key] for output, key in (without or {}).items()
+    }
     return Feature(
-        change=tuple(change), wrong=tuple(wrong), without=why, alike=tuple(alike), **row
+        change=tuple(change),
+        wrong=tuple(wrong),
+        without=reasons_by_output,
+        alike=tuple(alike),
+        **row,
     )
 
 
 def examples() -> dict[str, list[str]]:
-    """Complete ICDs of the documents, by the heading above each."""
+    """Return the complete ICDs of the documents, by the heading above each."""
     by_heading: dict[str, list[str]] = {}
     for page in _pages():
         for heading, texts in documents.icds_by_heading(
@@ -107,14 +116,15 @@ def examples() -> dict[str, list[str]]:
 
 
 def _pages() -> list[Path]:
-    """Pages whose examples show features; ``tests/protocol`` runs the examples of
-    complete links.
+    """Return the pages whose examples show features.
+
+    ``tests/protocol`` runs the examples of complete links.
     """
     return [page for page in documents.pages() if page.stem != "example-links"]
 
 
 def page_of(section: str) -> str:
-    """Page that shows the example of a section, relative to ``docs/reference``."""
+    """Return the page with the example of a section, relative to ``docs/reference``."""
     (page,) = (
         page
         for page in _pages()
@@ -128,33 +138,36 @@ def _places(
 ) -> Iterator[object]:
     if isinstance(tree, dict):
         for key, value in tree.items():
-            among = value if isinstance(value, list) else [value]
-            for one in among:
-                if (
-                    isinstance(one, dict)
-                    and key in uses
-                    and (has := _having(one, uses[key]))
-                    and _alike(one, among, alike)
-                ):
-                    yield has
-                yield from _places(one, uses, alike)
+            entries = value if isinstance(value, list) else [value]
+            for entry in entries:
+                if isinstance(entry, dict) and key in uses:
+                    values = _matching_values(entry, uses[key])
+                    if values and _has_counterpart(entry, entries, alike):
+                        yield values
+                yield from _places(entry, uses, alike)
     elif isinstance(tree, list):
-        for one in tree:
-            yield from _places(one, uses, alike)
+        for entry in tree:
+            yield from _places(entry, uses, alike)
 
 
-def _alike(entry: dict[str, object], among: list[Any], keys: tuple[str, ...]) -> bool:
-    """Whether another entry has the same values of the keys, if there are any."""
+def _has_counterpart(
+    entry: dict[str, object], entries: list[Any], keys: tuple[str, ...]
+) -> bool:
+    """Return whether another entry has the same values of ``keys``, or there are no
+    keys.
+    """
     return not keys or any(
-        one is not entry and all(one.get(key) == entry.get(key) for key in keys)
-        for one in among
+        other is not entry and all(other.get(key) == entry.get(key) for key in keys)
+        for other in entries
     )
 
 
-def _having(entry: dict[str, object], wanted: dict[str, str]) -> list[object]:
-    """The values of the keys, if every one of them is there and as wanted."""
+def _matching_values(
+    entry: dict[str, object], patterns: dict[str, str]
+) -> list[object]:
+    """Return the values of the keys; an empty list if one is absent or does not match."""
     values: list[object] = []
-    for key, pattern in wanted.items():
+    for key, pattern in patterns.items():
         hits = [
             entry[k]
             for k in entry

@@ -1,4 +1,4 @@
-"""What the simulator and the logs say of an ICD on a framed link."""
+"""Results of the simulator and of the logs for an ICD on a framed link."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ Frames = dict[str, list[bytes]]
 
 
 def recorded(icd: Icd, node: Node, frames: Frames) -> dict[Direction, bytes]:
-    """What is sent in each direction of these frames, one after the other."""
+    """Return the bytes that are sent in each direction for these frames, one after the
+    other.
+    """
     return {
         direction: b"".join(_sent_of(icd, node, frames, direction))
         for direction in DIRECTIONS
@@ -44,22 +46,21 @@ def _sent_of(
     icd: Icd, node: Node, frames: Frames, direction: Direction
 ) -> Iterator[bytes]:
     link = link_of(icd, facts.of(icd, node))
-    for id, those in getattr(ids_of(icd, node), direction).items():
-        for data in (
-            data for one in those for data in frames.get(one.message.name, ())
-        ):
-            with suppress(IcdError):
-                yield stream_encode(link, id, data, direction)
+    for id, variants in getattr(ids_of(icd, node), direction).items():
+        for variant in variants:
+            for data in frames.get(variant.message.name, ()):
+                with suppress(IcdError):
+                    yield stream_encode(link, id, data, direction)
 
 
 def log(
     icd: Icd, node: Node, sent: dict[Direction, bytes], folder: Path
 ) -> tuple[object, object]:
-    """Recordings as CSV and as Parquet, or why there is none."""
-    said = [
+    """Return recordings as CSV and as Parquet, or the error."""
+    logs = [
         _log(icd, node, direction, data, folder) for direction, data in sent.items()
     ]
-    return [csv for csv, _ in said], [arrow for _, arrow in said]
+    return [csv for csv, _ in logs], [arrow for _, arrow in logs]
 
 
 def _log(
@@ -73,8 +74,8 @@ def _log(
         opened = open_log(icd, node, file, direction, [])
         notes = opened.prepare(None, lambda _: None)
     except UserError as error:
-        said = str(error).replace(str(file), "")
-        return said, said
+        message = str(error).replace(str(file), "")
+        return message, message
     written = io.StringIO()
     text.to_csv(opened.names, opened.rows(None, lambda _: None), written)
     opened.to_parquet(file.with_suffix(".parquet"), None, lambda _: None)
@@ -86,34 +87,34 @@ def _log(
 def simulator(
     icd: Icd, node: Node, frames: Frames, words: dict[str, list[list[str]]]
 ) -> object:
-    """What it sends after its values were set, and after it was sent what was made for
-    the example.
+    """Return what the simulator sends after it received the telecommands of the
+    example, and after each change of its values.
     """
     line = FramedLine(
         Computer(icd, node, SimulationSettings(strict=True), DeviceStorage()),
         Faults(Random(0), [], 0),
         {},
     )
-    said: list[object] = []
+    results: list[object] = []
     for data in _sent_of(icd, node, frames, "telecommand"):
-        line.received(len(said), data)
-        said.append((_sent(line, len(said)), dict(line.computer.program.counts)))
+        line.received(len(results), data)
+        results.append((_sent(line, len(results)), dict(line.computer.program.counts)))
     for message in node.messages:
         for row in (
             words.get(message.name, ()) if message.telemetry_id is not None else ()
         ):
             try:
                 for name, value in (word.split("=", 1) for word in row):
-                    for own, one, given in fields_of(
+                    for own, field, given in fields_of(
                         icd, node, message.name, name, value
                     ):
                         line.computer.program.values.update(
-                            own, {one.name: raw_value_of(own, one, given)}
+                            own, {field.name: raw_value_of(own, field, given)}
                         )
             except (UserError, codec.CodecError) as error:
-                said.append(str(error))
-            said.append(_sent(line, len(said)))
-    return said
+                results.append(str(error))
+            results.append(_sent(line, len(results)))
+    return results
 
 
 def _sent(line: FramedLine, now: int) -> list[bytes]:

@@ -1,6 +1,4 @@
-"""A line and a log, for ICDs that have none: what the simulator and the logs need to
-know.
-"""
+"""A line and a log, for ICDs without a link: the simulator and the logs need them."""
 
 from __future__ import annotations
 
@@ -48,8 +46,9 @@ protocol:
 
 
 def framed_link(id_bits: int) -> dict[str, object]:
-    """The link of a node whose messages do not fit that line: with longer ids, or of
-    several lengths.
+    """Return the link of a node whose messages do not fit the line of `LINK`.
+
+    Its ids are longer, or its messages have different lengths.
     """
     header = [
         {"at": 0, "bits": 8, "role": "sync", "value": 0x55},

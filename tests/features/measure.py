@@ -1,4 +1,4 @@
-"""Measures which output has which feature."""
+"""Measures which output supports which feature."""
 
 from __future__ import annotations
 
@@ -17,111 +17,120 @@ from tests.conformance.strategies import icds as random_icds
 from tests.features.data import Feature
 from tests.features.outputs import (
     LINKED,
-    SAYS,
-    Refused,
+    RESULTS,
+    Rejected,
     Subject,
-    differs,
     frames_of,
     icd_of,
-    laid_out,
+    is_change_reported,
+    is_formatted,
     words_of,
 )
 from tests.mutation.mutants import mutants, unchanged
 
-# Random ICDs: in so many a feature must turn up; most do in the first.
+# Number of random ICDs in which a feature must occur; most occur in the first draw.
 AT_ONCE, DRAWS = 5, 180
 BUILT = (
     "c",
     "python",
     "rust",
     "javascript",
-)  # whose code is built and asked, of the odd ICDs, by the conformance run
+)  # the conformance run builds and runs their code, also of the odd ICDs
 
 
 @dataclass(frozen=True)
 class Cell:
-    """Whether an output has a feature; ``says`` is what it says of it wrongly said, or
-    what keeps it from having it.
+    """Whether an output supports a feature.
+
+    ``reason`` is the error of the output for a wrong use, or why it has no support.
     """
 
     has: bool
-    says: str = ""
+    reason: str = ""
 
 
 def row(feature: Feature, folder: Path) -> dict[str, Cell]:
-    """What each output, by its key, makes of the feature."""
+    """Return for each output, by its key, whether it supports the feature."""
     icd = icd_of(feature.example, folder)
     frames = frames_of(icd)
-    of = partial(
+    subject = partial(
         Subject, feature, folder=folder, frames=frames, words=words_of(icd, frames)
     )
-    example, changed = of(content=feature.example), of(content=feature.changed())
-    cells = {name: _cell(name, example, changed) for name in SAYS}
-    cells["javascript"] = cells[
-        "site"
-    ]  # the codec of the site works on what stands in its pages
+    example, changed = (
+        subject(content=feature.example),
+        subject(content=feature.changed()),
+    )
+    cells = {name: _cell(name, example, changed) for name in RESULTS}
+    # The decoder of the site has no other input than the data in its pages.
+    cells["javascript"] = cells["site"]
     for name in BUILT:
-        if cells[name].has and not feature.places(_tried()):
+        if cells[name].has and not feature.places(_conformance_icds()):
             cells[name] = Cell(False, "no ICD of the conformance run has it")
+    # To prove that a feature is absent, all draws would be necessary.
     draws = 1 if "random" in feature.without else DRAWS
     cells["random"] = Cell(
         any(feature.places(_random(number)) for number in range(draws))
     )
     cells["mutation"] = Cell(_mutated(feature, icd))
-    cells["fuzz"] = Cell(bool(feature.places(_tried())))
-    cells["fmt"] = Cell(laid_out(example))
+    cells["fuzz"] = Cell(bool(feature.places(_conformance_icds())))
+    cells["fmt"] = Cell(is_formatted(example))
     cells["check"] = _check(feature, folder)
-    cells["diff"] = Cell(differs(example, changed))
+    cells["diff"] = Cell(is_change_reported(example, changed))
     return cells
 
 
 def _cell(name: str, example: Subject, changed: Subject) -> Cell:
     try:
-        return Cell(_said(name, example) != _said(name, changed))
-    except Refused as refused:
-        return Cell(False, str(refused))
+        return Cell(_result(name, example) != _result(name, changed))
+    except Rejected as error:
+        return Cell(False, str(error))
 
 
-_remembered: dict[tuple[str, ...], str] = {}
+# Results by output, ICD and, for outputs that need a link, feature: several features
+# share an example.
+_results: dict[tuple[str, ...], str] = {}
 
 
-def _said(name: str, subject: Subject) -> str:
-    """What an output says, as text, for no NaN equals another, and but for the digest
-    of the file.
+def _result(name: str, subject: Subject) -> str:
+    """Return the result of an output as text, without the digest of the file.
+
+    A text, because a NaN does not equal another NaN.
     """
     key = (name, subject.content, subject.feature.name if name in LINKED else "")
-    if key not in _remembered:
-        text = repr(SAYS[name](subject))
-        _remembered[key] = text.replace(subject.node.digest, "").replace(
+    if key not in _results:
+        text = repr(RESULTS[name](subject))
+        _results[key] = text.replace(subject.node.digest, "").replace(
             subject.node.digest[:16], ""
         )
-    return _remembered[key]
+    return _results[key]
 
 
 def _check(feature: Feature, folder: Path) -> Cell:
     try:
-        icd_of(feature.spoilt(), folder)
-    except Refused as refused:
-        return Cell(True, str(refused))
+        icd_of(feature.with_error(), folder)
+    except Rejected as error:
+        return Cell(True, str(error))
     return Cell(False)
 
 
 def _mutated(feature: Feature, icd: Icd) -> bool:
-    """Whether there is a mutant in which the feature alone is said otherwise."""
-    as_it_is = {
-        one.message: feature.places(one.tree) for one in unchanged(icd) if one.message
+    """Return whether a mutant changes only the use of the feature."""
+    originals = {
+        original.message: feature.places(original.tree)
+        for original in unchanged(icd)
+        if original.message
     }
     return any(
-        feature.places(one.tree) != as_it_is[one.message]
-        for one in mutants(icd)
-        if one.message and as_it_is[one.message]
+        feature.places(mutant.tree) != originals[mutant.message]
+        for mutant in mutants(icd)
+        if mutant.message and originals[mutant.message]
     )
 
 
 @cache
-def _tried() -> list[object]:
-    """The ICDs of the conformance run, on which the fuzz harnesses are run in the tests
-    as well, as trees.
+def _conformance_icds() -> list[object]:
+    """Return the ICDs of the conformance run, on which the fuzz harnesses also run, as
+    trees.
     """
     with tempfile.TemporaryDirectory() as folder:
         odds = odd.write(Path(folder)).glob("*.yaml")
@@ -131,7 +140,7 @@ def _tried() -> list[object]:
 
 @cache
 def _random(number: int) -> list[object]:
-    found: list[object] = []
+    icds: list[object] = []
 
     @seed(number)
     @settings(
@@ -142,7 +151,7 @@ def _random(number: int) -> list[object]:
     )
     @given(random_icds())
     def draw(trees: dict[str, dict]) -> None:
-        found.extend(trees.values())
+        icds.extend(trees.values())
 
     draw()
-    return found
+    return icds

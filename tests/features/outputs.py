@@ -1,7 +1,7 @@
-"""What each output says of an ICD.
+"""The result of each output for an ICD.
 
-It has a feature if it works on the example and says something else when that is
-changed.
+An output supports a feature if it accepts the example and its result differs when the
+example uses the feature differently.
 """
 
 from __future__ import annotations
@@ -49,18 +49,19 @@ from tests.python import packages
 from tests.xtce import readback
 
 FRAMES = 10  # of the vectors of each message
-WORDS = 8  # of them
+WORDS = 8  # of these frames, as words on the command line
 _names = (f"features_{number}" for number in count())
 
 
-class Refused(ValueError):
-    """`icdgen check` does not take the ICD; the text is the codes."""
+class Rejected(ValueError):
+    """`icdgen check` rejects the ICD; the text is the codes of the rules."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """An ICD that is tried, frames of its messages, and what a user writes to get
-    these; all of the example.
+    """An ICD that is tried, with frames of its messages and the words that encode them.
+
+    Frames and words are derived from the unchanged example.
     """
 
     feature: Feature
@@ -78,66 +79,76 @@ class Subject:
         return self.icd.nodes[-1]
 
     def sharing(self, message: Message) -> list[Message]:
-        """The messages that have an id of its, in its direction: itself alone, if it
-        has its own.
+        """Return the messages with the id and direction of ``message``, itself
+        included.
         """
-        found = ids_of(self.icd, self.node)
-        known = (
-            found.telecommand if message.telecommand_id is not None else found.telemetry
+        ids = ids_of(self.icd, self.node)
+        variants = (
+            ids.telecommand if message.telecommand_id is not None else ids.telemetry
         )
-        return [one.message for one in known[message.ids[0]]]
+        return [variant.message for variant in variants[message.ids[0]]]
 
     def messages(self) -> Iterator[tuple[Message, bytes]]:
-        """Each message and each of its frames."""
+        """Yield each message with each of its frames."""
         for message in self.node.messages:
             for data in self.frames.get(message.name, ()):
                 yield message, data
 
     @cached_property
     def linked(self) -> tuple[Icd, str]:
-        """The ICD with a link on which it is spoken: its own; else a line and a log;
-        else one with a framed link. Raises `Refused`.
+        """The ICD with a link, and the name of the node.
+
+        The link is its own, else a line and a log, else a framed link. Raises
+        `Rejected`.
         """
         tree = yaml.safe_load(self.content)
         if "protocol" in tree:
             return self.icd, tree["node"]["name"]
-        with suppress(Refused):
+        with suppress(Rejected):
             return self._with_log(tree)
         tree |= framed_link(tree["node"].get("id_bits", 8))
         return icd_of(json.dumps(tree), self.folder), tree["node"]["name"]
 
     @cached_property
     def has_framed_link(self) -> bool:
-        """Whether that link has."""
+        """Whether the link of `linked` is framed."""
         icd, name = self.linked
         return facts.of(icd, icd.node(name)).stream is not None
 
     @cached_property
     def recordings(self) -> tuple[object, object]:
-        """What is made of a recording as CSV, and as Parquet."""
+        """A recording as CSV and as Parquet."""
         return _recordings(self)
 
     def _with_log(self, tree: dict[str, Any]) -> tuple[Icd, str]:
-        """With a line and a log; what does not fit these is not in the log.
+        """Return the ICD with a line and a log of the messages that fit into them.
 
-        Raises `Refused`.
+        Raises `Rejected`.
         """
         tree, link = dict(tree), yaml.safe_load(LINK)
-        spoken = [one for one in tree["messages"] if one["kind"] != "telecommand"]
+        spoken = [
+            message for message in tree["messages"] if message["kind"] != "telecommand"
+        ]
+        # The frame size of the log is the length of a message with the feature, if
+        # there is one.
         size = next(
             (
-                one["length"]
-                for one in spoken
-                if self.feature.places({"messages": [one]})
+                message["length"]
+                for message in spoken
+                if self.feature.places({"messages": [message]})
             ),
             None,
         )
-        size = size or next((one["length"] for one in spoken), 1)
-        logged = [one for one in spoken if one["length"] == size]
+        size = size or next((message["length"] for message in spoken), 1)
+        logged = [message for message in spoken if message["length"] == size]
         link["protocol"]["log_mask"]["frame_bytes"] = size
         link["loggable"] = [
-            {"bit": bit, "id": one.get("id", one.get("get_id")), "name": one["name"]}
-            for bit, one in enumerate(logged)
+            {
+                "bit": bit,
+                "id": message.get("id", message.get("get_id")),
+                "name": message["name"],
+            }
+            for bit, message in enumerate(logged)
         ]
         for key, value in link.items():
             tree[key] = (
@@ -147,23 +158,25 @@ class Subject:
 
 
 def icd_of(content: str, folder: Path) -> Icd:
-    """The checked ICD. Raises `Refused`."""
+    """Return the checked ICD. Raises `Rejected`."""
     file = Path(tempfile.mkdtemp(dir=folder)) / "example.yaml"
     file.write_text(content, encoding="utf-8")
     loaded = load([file])
-    codes = sorted({one.code for one in loaded.findings if one.severity == "error"})
+    codes = sorted(
+        {finding.code for finding in loaded.findings if finding.severity == "error"}
+    )
     if codes:
-        raise Refused(", ".join(codes))
+        raise Rejected(", ".join(codes))
     return loaded.icd
 
 
 def frames_of(icd: Icd) -> dict[str, list[bytes]]:
-    """Some frames of each message, those of the golden vectors, spread over them."""
-    found = {}
-    for one in make_vectors(icd, icd.nodes[-1]).messages:
-        frames = [row.frame for row in one.rows]
-        found[one.message.name] = _some(frames, FRAMES)
-    return found
+    """Return frames of each message: some of its golden vectors, evenly selected."""
+    frames_by_message = {}
+    for vectors in make_vectors(icd, icd.nodes[-1]).messages:
+        frames = [row.frame for row in vectors.rows]
+        frames_by_message[vectors.message.name] = _some(frames, FRAMES)
+    return frames_by_message
 
 
 def _some(frames: list[bytes], count: int) -> list[bytes]:
@@ -171,19 +184,24 @@ def _some(frames: list[bytes], count: int) -> list[bytes]:
 
 
 def generated(name: str) -> Callable[[Subject], object]:
-    """What a backend makes of the ICD; the site ends with what is the same on each."""
+    """Return a function that generates files with a backend.
+
+    The pages of the site that are the same for each ICD are left out.
+    """
 
     def files(subject: Subject) -> object:
-        made = backends.get(name).files(subject.icd, renderer(name))
+        files_of_icd = backends.get(name).files(subject.icd, renderer(name))
         return list(
-            takewhile(lambda file: not str(file[0]).startswith(guide.FOLDER), made)
+            takewhile(
+                lambda file: not str(file[0]).startswith(guide.FOLDER), files_of_icd
+            )
         )
 
     return files
 
 
 def _codec(subject: Subject) -> object:
-    said = []
+    results = []
     for message, data in subject.messages():
         try:
             raw = codec.decode(subject.node, message, data)
@@ -202,24 +220,26 @@ def _codec(subject: Subject) -> object:
                 field.name: codec.physical_double(field, raw[field.name])
                 for field in scaled
             }
-            known = subject.sharing(message)
-            said.append(
+            variants = subject.sharing(message)
+            results.append(
                 (
                     message.name,
                     message.ids,
                     raw,
                     physical,
-                    len(known) > 1 and _which(subject, known, data),
+                    len(variants) > 1 and _variant_of_frame(subject, variants, data),
                 )
             )
         except codec.CodecError as error:
-            said.append((message.name, str(error)))
-    return said
+            results.append((message.name, str(error)))
+    return results
 
 
-def _which(subject: Subject, known: list[Message], data: bytes) -> str | None:
-    found = codec.message_of_frame(subject.icd, known, data)
-    return found.name if found else None
+def _variant_of_frame(
+    subject: Subject, variants: list[Message], data: bytes
+) -> str | None:
+    message = codec.message_of_frame(subject.icd, variants, data)
+    return message.name if message else None
 
 
 def _show(subject: Subject) -> object:
@@ -235,87 +255,96 @@ def _show(subject: Subject) -> object:
 
 
 def _without_source(tree: object) -> object:
-    """What tells of files and places is no word of the ICD."""
+    """Return a tree without files, positions and digests, which are no content of the
+    ICD.
+    """
     if isinstance(tree, dict):
         return {
             key: _without_source(value)
             for key, value in tree.items()
             if key not in ("file", "line", "column", "digest")
         }
-    return [_without_source(one) for one in tree] if isinstance(tree, list) else tree
+    return (
+        [_without_source(entry) for entry in tree] if isinstance(tree, list) else tree
+    )
 
 
 def _decode(subject: Subject) -> object:
-    said: list[object] = []
+    results: list[object] = []
     for message, data in subject.messages():
         with suppress(UserError):
+            # A user can name a message, unless several messages share its id.
             key = (
                 message.name
                 if len(subject.sharing(message)) == 1
                 else str(message.ids[0])
             )
-            found = recognize(subject.icd, data.hex(), subject.node.name, key)
-            said += [
-                (values_text.to_text(one.frame), one.frame.to_json()) for one in found
+            readings = recognize(subject.icd, data.hex(), subject.node.name, key)
+            results += [
+                (values_text.to_text(reading.frame), reading.frame.to_json())
+                for reading in readings
             ]
-    return said
+    return results
 
 
 def words_of(icd: Icd, frames: dict[str, list[bytes]]) -> dict[str, list[list[str]]]:
-    """For each frame of a message what a user would write to get it: physical values,
-    names of members, texts.
+    """Return for each message the words by which a user would encode its frames.
+
+    Words are physical values, names of members, and texts.
     """
-    node, found = icd.nodes[-1], {}
+    node, words_by_message = icd.nodes[-1], {}
     for message in node.messages:
         rows = [
             decoded_frame(icd, node, message, data).rows
             for data in _some(frames[message.name], WORDS)
         ]
-        found[message.name] = [
-            [f"{row.field.name}={row.text}" for row in one if row.field.is_raw]
-            for one in rows
+        words_by_message[message.name] = [
+            [f"{row.field.name}={row.text}" for row in values if row.field.is_raw]
+            for values in rows
         ]
         if any(row.field.special for row in rows[0]):
-            found[message.name].append(
+            words_by_message[message.name].append(
                 [
                     f"{row.field.name}={row.field.special[0].meaning if row.field.special else row.text}"
                     for row in rows[0]
                 ]
             )
-    return found
+    return words_by_message
 
 
 def _encode(subject: Subject) -> object:
-    said: list[object] = []
+    results: list[object] = []
     for name, rows in subject.words.items():
         for words in rows:
             try:
-                said.append(
+                results.append(
                     values_text.to_text(
                         encode(subject.icd, subject.node.name, name, words)
                     )
                 )
             except UserError as error:
-                said.append(str(error))
-    return said
+                results.append(str(error))
+    return results
 
 
 def _simulator(subject: Subject) -> object:
-    """What it answers after its values were set, and after it was sent what was made
-    for the example.
+    """Return the responses of the simulator after the telecommands of the example, and
+    after each change of its values.
     """
     icd, name = subject.linked
     node = icd.node(name)
     if subject.has_framed_link:
         return framed.simulator(icd, node, subject.frames, subject.words)
     program = Program(icd, node, DeviceStorage(), SimulationSettings(strict=True), 0)
-    said: list[object] = []
+    results: list[object] = []
     for message, data in subject.messages():
         if message.telecommand_id is not None:
-            said.append(
-                program.take(len(said), bytes([message.telecommand_id]) + data, "uart")
+            results.append(
+                program.take(
+                    len(results), bytes([message.telecommand_id]) + data, "uart"
+                )
             )
-            said.append(_answers(program, len(said)))
+            results.append(_answers(program, len(results)))
     for message in node.messages:
         for words in (
             subject.words.get(message.name, ())
@@ -324,16 +353,16 @@ def _simulator(subject: Subject) -> object:
         ):
             try:
                 for key, value in (word.split("=", 1) for word in words):
-                    for own, one, given in fields_of(
+                    for own, field, given in fields_of(
                         icd, node, message.name, key, value
                     ):
                         program.values.update(
-                            own, {one.name: raw_value_of(own, one, given)}
+                            own, {field.name: raw_value_of(own, field, given)}
                         )
             except (UserError, codec.CodecError) as error:
-                said.append(str(error))
-            said.append(_answers(program, len(said)))
-    return said
+                results.append(str(error))
+            results.append(_answers(program, len(results)))
+    return results
 
 
 def _answers(program: Program, now: int) -> list[bytes | None]:
@@ -341,8 +370,8 @@ def _answers(program: Program, now: int) -> list[bytes | None]:
 
 
 def _recordings(subject: Subject) -> tuple[object, object]:
-    """As CSV and as Parquet; of framed links what is made of the bytes that the example
-    sends.
+    """Return a log as CSV and as Parquet; of a framed link, a recording of the
+    example's bytes.
     """
     icd, name = subject.linked
     if subject.has_framed_link:
@@ -379,32 +408,37 @@ def _recordings(subject: Subject) -> tuple[object, object]:
 
 
 def _columns(subject: Subject) -> object:
-    """Tables of numpy and Arrow from the generated Python, which agree with single
-    frames.
+    """Return numpy and Arrow tables from the generated Python.
+
+    They have one row for each frame that the generated code accepts.
     """
     package = packages.write(
         subject.icd, Path(tempfile.mkdtemp(dir=subject.folder)), next(_names)
     )
-    module, said = package.module(subject.node.name), []
+    module, results = package.module(subject.node.name), []
     errors = package.module("_errors")
     for message in subject.node.messages:
-        known, id = (
+        table_of_ids, id = (
             (module.TELEMETRY, message.telemetry_id)
             if message.telemetry_id is not None
             else (module.TELECOMMANDS, message.telecommand_id)
         )
-        cls = next(one for one in known.of(id) if message.name == one.NAME)
+        cls = next(
+            candidate
+            for candidate in table_of_ids.of(id)
+            if message.name == candidate.NAME
+        )
         frames = [
             frame
             for frame in subject.frames.get(message.name, ())
-            if frame and _taken(cls, frame, errors.LengthError)
+            if frame and _is_accepted(cls, frame, errors.LengthError)
         ]
         if not frames:
             continue
         given = frames if len(message.layout.lengths) > 1 else b"".join(frames)
         columns, table = cls.decode_many(given), cls.decode_table(given)
         assert len(table) == len(frames)
-        said.append(
+        results.append(
             (
                 message.name,
                 {key: _plain(column) for key, column in columns.items()},
@@ -412,10 +446,10 @@ def _columns(subject: Subject) -> object:
                 str(table.to_pylist()),
             )
         )
-    return said
+    return results
 
 
-def _taken(cls: type, frame: bytes, refusal: type[Exception]) -> bool:
+def _is_accepted(cls: type, frame: bytes, refusal: type[Exception]) -> bool:
     try:
         cls.from_bytes(frame)  # type: ignore[attr-defined]
     except refusal:
@@ -428,7 +462,7 @@ def _plain(column: object) -> str:
 
 
 def _xtce(subject: Subject) -> object:
-    """What other programs may read of the file: what comes back of it."""
+    """Return the contents of the XTCE file after import, as other programs can read it."""
     folder = Path(tempfile.mkdtemp(dir=subject.folder))
     return {
         name: readback.read_back(file, folder)
@@ -436,25 +470,26 @@ def _xtce(subject: Subject) -> object:
     }
 
 
-def differs(old: Subject, new: Subject) -> bool:
-    """Whether the diff tells of the change."""
+def is_change_reported(old: Subject, new: Subject) -> bool:
+    """Return whether the diff reports the change."""
     return bool(compare(old.icd, new.icd).changes)
 
 
-def laid_out(subject: Subject) -> bool:
-    """Whether the layout command makes the example, but for its comments, of the same
-    values in another layout.
+def is_formatted(subject: Subject) -> bool:
+    """Return whether `icdgen fmt` formats the example without a change of its values.
+
+    The tree is given as JSON, so that the input has another layout.
     """
     tree = yaml.safe_load(subject.content)
-    made = format_text(json.dumps(tree), "example.yaml")
+    formatted = format_text(json.dumps(tree), "example.yaml")
     return (
-        yaml.safe_load(made) == tree
-        and format_text(made, "example.yaml") == made
-        and "{at: " in made
+        yaml.safe_load(formatted) == tree
+        and format_text(formatted, "example.yaml") == formatted
+        and "{at: " in formatted
     )
 
 
-SAYS: dict[str, Callable[[Subject], object]] = {
+RESULTS: dict[str, Callable[[Subject], object]] = {
     "codec": _codec,
     "c": generated("c"),
     "python": generated("python"),

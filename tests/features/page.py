@@ -1,4 +1,4 @@
-"""docs/reference/features.md, from what was measured."""
+"""Writes docs/reference/features.md from the measured support."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ an output does not support the feature or does not need it. A test fails if the 
 
 
 def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
-    """The text of the page, of each feature by its name."""
+    """Return the text of the page, from the features and their measured cells by name."""
     reasons: list[str] = []
     heads = [head for head, _ in OUTPUTS.values()]
     lines = [_BEGIN, f"| | {' | '.join(heads)} |", f"|---|{'---|' * len(heads)}"]
@@ -86,7 +86,7 @@ def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
         else []
     )
     lines += ["", "| output | how support is measured |", "|---|---|"]
-    lines += [f"| {head} | {asked} |" for head, asked in OUTPUTS.values()]
+    lines += [f"| {head} | {method} |" for head, method in OUTPUTS.values()]
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""Every feature of the format is in every output, or the page says why not."""
+"""Every output supports every feature of the format, or the page states the reason."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from tests.features.page import OUTPUTS, PAGE, page
 FEATURES = {feature.name: feature for feature in features()}
 
 
-def test_every_feature_is_in_every_output_but_those_that_are_said_to_lack_it(tmp_path):
-    """And the page says so. In one test, so that no two workers measure the same."""
+def test_every_output_supports_every_feature_or_has_a_reason(tmp_path):
+    """The page must also be up to date. One test, so that no two workers measure the
+    same.
+    """
     measured = {
         name: (feature, row(feature, tmp_path)) for name, feature in FEATURES.items()
     }
@@ -24,22 +26,22 @@ def test_every_feature_is_in_every_output_but_those_that_are_said_to_lack_it(tmp
     assert PAGE.read_text("utf-8") == page(measured), "python -m tests.features"
 
 
-def test_every_example_of_the_format_is_that_of_a_feature_or_said_not_to_be_measured():
+def test_every_example_of_the_format_belongs_to_a_feature_or_is_listed_as_unmeasured():
     used = {feature.example for feature in FEATURES.values()}
-    left = {
+    unused = {
         heading
         for heading, texts in examples().items()
         for text in texts
         if text not in used
     }
-    assert left <= set(unmeasured())
+    assert unused <= set(unmeasured())
     assert not {feature.section for feature in FEATURES.values()} & set(unmeasured())
 
 
-def test_an_output_that_does_not_know_a_feature_is_noticed(tmp_path):
-    """What changes nothing that an output says is nothing that it has."""
+def test_an_output_that_ignores_a_feature_is_detected(tmp_path):
+    """A change without effect on the results must not count as support."""
     feature = FEATURES["Constants"]
-    nothing = dataclasses.replace(
+    unsupported = dataclasses.replace(
         feature,
         uses={"fields": {"thermocouple": ".*"}},
         change=("icdgen: 1\n", "icdgen: 1\n# the same, with another digest\n"),
@@ -48,5 +50,5 @@ def test_an_output_that_does_not_know_a_feature_is_noticed(tmp_path):
             "random": "no draw has it, and to look through all of them takes minutes"
         },
     )
-    has = {output for output, cell in row(nothing, tmp_path).items() if cell.has}
+    has = {output for output, cell in row(unsupported, tmp_path).items() if cell.has}
     assert has == {"fmt"}
