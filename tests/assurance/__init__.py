@@ -1,1 +1,1 @@
-"""The papers for a review: what they say is so."""
+"""The statements of the verification package are true."""

@@ -1,8 +1,8 @@
-"""Which lines of the files of vectors fail on ICDs: each question is put to the
-reference, as the conformance run does it.
+"""Determines which lines of the vector files fail on changed ICDs.
 
-Nothing of this is shared with the trace: lines are looked up in the text, and the
-answers are those of the testee.
+The reference implementation answers each request of a line, as in the conformance run.
+The code is independent of the trace: lines are looked up in the text, and the expected
+answers are computed by the code of the conformance run.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from tests.conformance.robust import line
 
 
 class Vectors:
-    """The vectors of a set of ICDs: ``texts`` are the files by node."""
+    """The vectors of a set of ICDs; ``texts`` are the files by node."""
 
     def __init__(self, texts: dict[str, str]) -> None:
         self.files = {node: json.loads(text) for node, text in texts.items()}
@@ -38,16 +38,16 @@ class Vectors:
 
     @cache  # noqa: B019
     def of_message(self, node: str, name: str) -> list[tuple[int, list[Case]]]:
-        """Each line that is about a message, and what it demands."""
+        """Return each line about a message, with the cases that it demands."""
         return list(self._of_message(node, name))
 
     def first_message(self, node: str) -> int:
-        """The line in which the messages begin."""
+        """Return the line in which the messages begin."""
         return self.lines[node].index('"messages": [') + 1
 
     def messages_at(self, node: str, numbers: set[int]) -> list[str]:
-        """The messages that lines are about."""
-        found: dict[str, None] = {}
+        """Return the messages to which the lines belong."""
+        names: dict[str, None] = {}
         name = ""
         for number, text in enumerate(self.lines[node], 1):
             if (
@@ -57,12 +57,14 @@ class Vectors:
             ):
                 name = json.loads(text.rstrip(",") + "}")["name"]
             if number in numbers and name:
-                found[name] = None
-        return list(found)
+                names[name] = None
+        return list(names)
 
     def _of_message(self, node: str, name: str) -> Iterator[tuple[int, list[Case]]]:
         data = self.files[node]
-        message = next(one for one in data["messages"] if one["name"] == name)
+        message = next(
+            candidate for candidate in data["messages"] if candidate["name"] == name
+        )
         cases = MessageCases(
             node, message, self.names, data["never_set"], shared_names(data)
         )
@@ -86,19 +88,20 @@ class Vectors:
             yield at, [_only(constants, field["name"]), *own]
         at = self._after(node, at, {"refused_lengths": message["refused_lengths"]}, "")
         yield at, list(cases.refused_lengths())
+        # All routes of a message are tested with its first vector.
         for number, vector in enumerate(message["vectors"]):
             at = self._after(node, at, vector)
             yield at, [*cases.frame(vector), *(cases.routes() if number == 0 else ())]
 
     def of_node(self, node: str) -> Iterator[tuple[int, list[Case]]]:
-        """Each line that is about a node itself, its ids and its enumerations."""
+        """Yield each line about the node itself, its ids and its enumerations."""
         data = self.files[node]
         for key in ("node_type", "interface_version"):
             if key in data:
-                whole = node_itself(data)
+                case = node_itself(data)
                 yield (
                     self._after(node, 0, {key: data[key]}, ""),
-                    [whole._replace(answer={"ok": True, key: data[key], ...: ...})],
+                    [case._replace(answer={"ok": True, key: data[key], ...: ...})],
                 )
         for direction in DIRECTIONS:
             at = self._after(node, 0, {direction: data["ids"][direction]}, "")
@@ -127,8 +130,9 @@ class Vectors:
             )
 
     def _after(self, node: str, line: int, value: dict, end: str = "}") -> int:
-        """The number of the next line that begins with the value, or with its only key,
-        or with the object that it begins.
+        """Return the number of the next line that begins with the value.
+
+        If ``end`` is empty, the line begins with the only key of the value.
         """
         if end:
             text = _compact(value).removesuffix("}") + end
@@ -137,8 +141,8 @@ class Vectors:
             text = f'"{key}": {_compact(item)}'
         return next(
             n
-            for n, one in enumerate(self.lines[node][line:], line + 1)
-            if one.startswith(text)
+            for n, text_of_line in enumerate(self.lines[node][line:], line + 1)
+            if text_of_line.startswith(text)
         )
 
 
@@ -147,24 +151,26 @@ def _compact(value: object) -> str:
 
 
 def _only(constants: Case, name: str) -> Case:
-    """The demands on the constants, as far as they are about a field."""
+    """Return the demands of the constants on one field."""
     answer = {"ok": True, ...: ...}
     for key in ("default", "special", "limits"):
-        whole = constants.answer[key]
-        own = {k: v for k, v in getattr(whole, "value", whole).items() if k == name}
+        demanded = constants.answer[key]
+        own = {
+            k: v for k, v in getattr(demanded, "value", demanded).items() if k == name
+        }
         if own:
             answer[key] = {**own, ...: ...}
     return constants._replace(answer=answer)
 
 
-class Judge:
-    """What becomes of the vectors on other ICDs."""
+class VectorCheck:
+    """Runs vectors on other ICDs."""
 
     def __init__(self, vectors: Vectors, icd: Icd) -> None:
         self.vectors, self.reference = vectors, Reference(icd)
 
     def failing(self, lines: Iterable[tuple[int, list[Case]]]) -> set[int]:
-        """The lines of which any demand is not met."""
+        """Return the lines with at least one failing case."""
         return {number for number, cases in lines if any(map(self._fails, cases))}
 
     def _fails(self, case: Case) -> bool:

@@ -1,5 +1,5 @@
-"""The pack as files: pages to print, tables for a spreadsheet, and measurements of
-nothing else.
+"""The files of the verification package: pages to print, tables for a spreadsheet, and
+measurements of the same ICDs.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def make(icd: Path, out: Path, *more: str) -> Path:
 
 @pytest.fixture(scope="module")
 def pack(tmp_path_factory) -> Path:
-    """That of ICDs that try to break it."""
+    """The package of ICDs with hostile texts."""
     folder = tmp_path_factory.mktemp("strange")
     return make(hostile.write(folder / "icd"), folder / "pack")
 
@@ -98,21 +98,21 @@ def measurement(demo: Path, **changes: object) -> dict:
     }  # fmt: skip
 
 
-def keep(folder: Path, data: object) -> Path:
+def write_measurement(folder: Path, data: object) -> Path:
     folder.mkdir()
     (folder / "sizes.json").write_text(json.dumps(data), "utf-8")
     return folder
 
 
 def test_a_measurement_goes_into_the_pack(demo, tmp_path):
-    folder = keep(tmp_path / "measured", measurement(demo))
+    folder = write_measurement(tmp_path / "measured", measurement(demo))
     out = make(demo, tmp_path / "pack", "--measured", str(folder))
     assert (out / "sizes.csv").read_bytes() == b"message,bytes\r\nRoll,12\r\n"
     assert "sizes.html" in (out / "index.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "message"),
     [
         (
             {"icd": "0" * 64},
@@ -129,20 +129,20 @@ def test_a_measurement_goes_into_the_pack(demo, tmp_path):
         ({"facts": [["All"]]}, "`facts` is missing or not of its kind"),
     ],
 )
-def test_a_measurement_of_something_else_is_refused_and_nothing_written(
-    demo, tmp_path, changes, said
+def test_a_measurement_of_something_else_is_rejected_and_nothing_is_written(
+    demo, tmp_path, changes, message
 ):
-    folder = keep(tmp_path / "measured", measurement(demo, **changes))
-    with pytest.raises(UserError, match=said) as found:
+    folder = write_measurement(tmp_path / "measured", measurement(demo, **changes))
+    with pytest.raises(UserError, match=message) as caught:
         make(demo, tmp_path / "pack", "--measured", str(folder))
-    assert str(folder / "sizes.json") in str(found.value) and found.value.help
+    assert str(folder / "sizes.json") in str(caught.value) and caught.value.help
     assert not (tmp_path / "pack").exists()
 
 
 def test_a_measurement_of_this_very_code_is_taken(demo, tmp_path):
     from icdgen.backends.assurance.pack import code_now
 
-    folder = keep(
+    folder = write_measurement(
         tmp_path / "measured",
         measurement(demo, code={"c": code_now(load([demo]).icd, "c")}),
     )
@@ -150,14 +150,14 @@ def test_a_measurement_of_this_very_code_is_taken(demo, tmp_path):
 
 
 @pytest.mark.parametrize("text", ["", "[", "[]", "\0"])
-def test_what_is_no_measurement_is_refused(demo, tmp_path, text):
+def test_a_file_that_is_no_measurement_is_rejected(demo, tmp_path, text):
     (tmp_path / "measured").mkdir()
     (tmp_path / "measured" / "sizes.json").write_text(text)
     with pytest.raises(UserError, match=r"sizes\.json"):
         make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
 
 
-def test_measurements_go_nowhere_else(demo, tmp_path):
+def test_measurements_are_rejected_for_other_outputs(demo, tmp_path):
     with pytest.raises(UserError, match="measurements go into the assurance pack only"):
         CliRunner().invoke(
             icdgen,

@@ -1,4 +1,6 @@
-"""A line of an ICD that is changed leads, through the trace, to the vectors that fail."""
+"""The trace is true: if a line of an ICD is changed, exactly the vectors that the trace
+lists fail.
+"""
 
 from __future__ import annotations
 
@@ -21,25 +23,25 @@ from icdgen.loading import load
 from icdgen.render import Renderer
 from icdgen.vectors.make import make_vectors
 from icdgen.vectors.write import vector_file_text
-from tests.assurance.failing import Judge, Vectors
+from tests.assurance.failing import VectorCheck, Vectors
 from tests.conformance.icds import SHIPPED
 from tests.conformance.random_icds import written
 from tests.conformance.strategies import icds
 from tests.conftest import ROOT
 
-EACH = 1  # changes of each kind that are tried on the shipped ICDs
+EACH = 1  # number of changes of each kind that are tried on the shipped ICDs
 
 
 class Pack:
-    """The pack of the ICDs of a folder, and their vectors."""
+    """The verification package of the ICDs of a folder, and their vectors."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.icd: Icd = load([folder]).icd
         backend = backends.get("assurance")
         self.files = {
-            str(path): made
-            for path, made in backend.files(self.icd, Renderer.of_backend(backend))
+            str(path): content
+            for path, content in backend.files(self.icd, Renderer.of_backend(backend))
         }
         self.vectors = Vectors(
             {
@@ -53,55 +55,54 @@ class Pack:
         return list(csv.DictReader(io.StringIO(self.files[name], newline="")))
 
     def changed(self, change: dict[str, str], folder: Path) -> Icd:
-        """The ICDs, read anew with one value of one line changed."""
+        """Return the ICDs with one value of one line changed."""
         shutil.copytree(self.folder, folder)
         needed = {change["node"], *self.listed(change)}
         needed |= {
-            one.name
+            node.name
             for name in needed
-            for one in self.icd.included(self.icd.node(name))
+            for node in self.icd.included(self.icd.node(name))
         }
         for node in self.icd.nodes:  # reading them all takes a second each time
             if node.name not in needed:
                 Path(node.file.replace(str(self.folder), str(folder), 1)).unlink()
         path = folder / change["file"]
         text = path.read_text("utf-8")
+        # Offset of the value in the file, from its line and column.
         before = (
-            sum(len(one) + 1 for one in text.split("\n")[: int(change["line"]) - 1])
+            sum(len(line) + 1 for line in text.split("\n")[: int(change["line"]) - 1])
             + int(change["column"])
             - 1
         )
-        rest = text[before:]
-        if rest.startswith("["):  # an id as the numbers that are sent, or points
+        following = text[before:]
+        if following.startswith("["):  # an id as several numbers, or points of a table
             end = next(
                 end
-                for end in range(1, len(rest))
-                if rest[:end].count("[") == rest[:end].count("]")
+                for end in range(1, len(following))
+                if following[:end].count("[") == following[:end].count("]")
             )
         else:
             end = next(
                 end
-                for end in range(1, len(rest) + 1)
-                if _value(rest[:end]) == change["says"]
+                for end in range(1, len(following) + 1)
+                if _value(following[:end]) == change["says"]
             )
         now = (
             json.dumps(change["changed to"])
             if change["kind"] == "formula"
             else change["changed to"]
         )
-        path.write_text(text[:before] + now + rest[end:], "utf-8")
+        path.write_text(text[:before] + now + following[end:], "utf-8")
         return load([folder], check=False).icd
 
     def fields(self, message: str, node: str, icd: Icd | None = None) -> list[str]:
-        """The names of the fields of a message."""
-        found = next(
-            one for one in (icd or self.icd).node(node).messages if one.name == message
-        )
-        return [field.name for field in found.fields]
+        """Return the names of the fields of a message."""
+        messages = {each.name: each for each in (icd or self.icd).node(node).messages}
+        return [field.name for field in messages[message].fields]
 
     def messages_of(self, change: dict[str, str]) -> list[str]:
-        """The message that a change is part of; those in which the struct stands that
-        it is part of.
+        """Return the message that a change belongs to, or the messages that use its
+        struct.
         """
         node, part = self.icd.node(change["node"]), change["part of"]
         holders = (
@@ -116,13 +117,11 @@ class Pack:
         )
 
     def listed(self, change: dict[str, str]) -> dict[str, set[int]]:
-        return noticed(change["vectors"])
+        return numbers_by_node(change["vectors"])
 
 
 def structs(layout: Layout) -> Iterator[Layout]:
-    """The layouts of the structs that stand in a message or a struct, and of those in
-    them.
-    """
+    """Yield the layouts of the structs of a message or a struct, including nested ones."""
     for place in places_in(layout):
         if place.struct is not None:
             yield place.struct
@@ -130,8 +129,9 @@ def structs(layout: Layout) -> Iterator[Layout]:
 
 
 def _value(text: str) -> str:
-    """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts
-    without quotes.
+    """Return a scalar of YAML or JSON as a table shows it.
+
+    Numbers are shown as Python prints them, texts without quotes.
     """
     text = text.strip()
     if text[:1] == "'":
@@ -146,16 +146,16 @@ def _value(text: str) -> str:
         return "" if text[:1] == '"' else text
 
 
-def noticed(cell: str) -> dict[str, set[int]]:
-    """``demo.json 3-5 7; other.json 1`` as numbers."""
-    found: dict[str, set[int]] = {}
+def numbers_by_node(cell: str) -> dict[str, set[int]]:
+    """Return ``demo.json 3-5 7; other.json 1`` as numbers by node."""
+    by_node: dict[str, set[int]] = {}
     for part in filter(None, cell.split("; ")):
         file, *runs = part.split(" ")
-        numbers = found.setdefault(file.removesuffix(".json"), set())
+        numbers = by_node.setdefault(file.removesuffix(".json"), set())
         for run in runs:
             first, _, last = run.partition("-")
             numbers |= set(range(int(first), int(last or first) + 1))
-    return found
+    return by_node
 
 
 @pytest.fixture(scope="module")
@@ -172,12 +172,14 @@ def demo_pack(tmp_path_factory) -> Pack:
     return Pack(folder)
 
 
-def hold(pack: Pack, change: dict[str, str], folder: Path) -> None:
-    """Every vector that the trace names fails, and of the frames of what the line is
-    about no other does.
+def assert_listed_vectors_fail(
+    pack: Pack, change: dict[str, str], folder: Path
+) -> None:
+    """Check that every vector that the trace lists fails, and no other vector of the
+    frames of the changed message.
     """
     changed, listed = pack.changed(change, folder), pack.listed(change)
-    judge = Judge(pack.vectors, changed)
+    vector_check = VectorCheck(pack.vectors, changed)
     for node, numbers in listed.items():
         about = (
             [*pack.vectors.of_node(node)]
@@ -186,7 +188,7 @@ def hold(pack: Pack, change: dict[str, str], folder: Path) -> None:
         )
         for name in pack.vectors.messages_at(node, numbers):
             about += pack.vectors.of_message(node, name)
-        failing = judge.failing(
+        failing = vector_check.failing(
             (number, cases) for number, cases in about if number in numbers
         )
         assert numbers == failing, (change, node, sorted(numbers - failing))
@@ -194,18 +196,21 @@ def hold(pack: Pack, change: dict[str, str], folder: Path) -> None:
         node = change["node"]
         for message in pack.messages_of(change):
             if pack.fields(message, node) != pack.fields(message, node, changed):
-                # Parts that no longer make up their field, or elements: all frames are
-                # decoded to other names.
+                # The change adds or removes elements or parts of a split field: all frames
+                # are decoded to other names.
                 continue
-            others = pack.vectors.of_message(node, message)
-            # a value that does not come back from its physical one is asked in another
-            # frame than that of the row
-            rest = [
-                (number, [one for one in cases if one.answer.get("bytes") is not ...])
-                for number, cases in others
+            vectors_of_message = pack.vectors.of_message(node, message)
+            # A value that physical values cannot restore is tested with another frame than
+            # that of the row. These cases have no fixed bytes and are left out.
+            unlisted = [
+                (
+                    number,
+                    [case for case in cases if case.answer.get("bytes") is not ...],
+                )
+                for number, cases in vectors_of_message
                 if is_row(cases) and number not in listed.get(node, ())
             ]
-            assert judge.failing(rest) == set(), change
+            assert vector_check.failing(unlisted) == set(), change
 
 
 def is_row(cases: list) -> bool:
@@ -226,7 +231,7 @@ def test_each_change_of_a_small_icd_fails_the_vectors_that_the_trace_names(
     }
     for number, change in enumerate(demo_pack.changes):
         assert change["vectors"], change
-        hold(demo_pack, change, tmp_path / str(number))
+        assert_listed_vectors_fail(demo_pack, change, tmp_path / str(number))
 
 
 NAMED = """\
@@ -258,7 +263,7 @@ def test_each_change_of_a_range_or_of_a_special_value_fails_the_vectors_that_the
     assert len(named) == 14
     for number, change in enumerate(named):
         assert change["vectors"], change
-        hold(pack, change, tmp_path / str(number))
+        assert_listed_vectors_fail(pack, change, tmp_path / str(number))
 
 
 DERIVED = """\
@@ -286,18 +291,18 @@ def test_each_change_of_a_derived_value_and_of_a_condition_fails_the_vectors_tha
     (tmp_path / "icd").mkdir()
     (tmp_path / "icd" / "demo.yaml").write_text(DERIVED, "utf-8")
     pack = Pack(tmp_path / "icd")
-    told = [
+    changes = [
         change
         for change in pack.changes
         if change["key"] == "formula" or change["kind"] == "condition"
     ]
     assert [
-        change["changed to"] for change in told if change["kind"] == "condition"
+        change["changed to"] for change in changes if change["kind"] == "condition"
     ] == ["0"]
-    assert {change["name"] for change in told} == {"Triple", "Power", "Level"}
-    for number, change in enumerate(told):
+    assert {change["name"] for change in changes} == {"Triple", "Power", "Level"}
+    for number, change in enumerate(changes):
         assert change["vectors"], change
-        hold(pack, change, tmp_path / str(number))
+        assert_listed_vectors_fail(pack, change, tmp_path / str(number))
 
 
 OVERLAPPING = """\
@@ -310,7 +315,7 @@ messages:
 """
 
 
-def test_elements_of_a_struct_that_take_the_bits_of_each_other_when_they_grow_fail_what_the_trace_names(
+def test_changes_of_elements_that_then_overlap_fail_the_vectors_that_the_trace_names(
     tmp_path,
 ):
     (tmp_path / "icd").mkdir()
@@ -321,7 +326,7 @@ def test_elements_of_a_struct_that_take_the_bits_of_each_other_when_they_grow_fa
     }
     for number, change in enumerate(pack.changes):
         assert change["vectors"], change
-        hold(pack, change, tmp_path / str(number))
+        assert_listed_vectors_fail(pack, change, tmp_path / str(number))
 
 
 def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names(
@@ -334,9 +339,10 @@ def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names
     }
     touched = {(node, line) for node, lines in decided for line in lines.split("; ")}
     source = random.Random(13)
+    # A change takes seconds, because the ICDs are loaded again: only some of each kind
+    # are tried.
     for kind in sorted({change["kind"] for change in shipped.changes}):
-        # where a decision stands on what is printed there, the line cannot be changed
-        # without it
+        # An erratum that refers to the printed value of a line would no longer apply.
         free = [
             c
             for c in shipped.changes
@@ -344,7 +350,7 @@ def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names
             and (c["node"], f"{c['file']}:{c['line']}") not in touched
         ]
         for number, change in enumerate(source.sample(free, min(EACH, len(free)))):
-            hold(shipped, change, tmp_path / f"{kind}{number}")
+            assert_listed_vectors_fail(shipped, change, tmp_path / f"{kind}{number}")
 
 
 @settings(max_examples=3)
@@ -358,10 +364,10 @@ def test_changed_lines_of_any_icd_fail_the_vectors_that_the_trace_names(
     pack = Pack(folder / "icd")
     chosen = random.Random(1).sample(pack.changes, min(12, len(pack.changes)))
     for number, change in enumerate(chosen):
-        hold(pack, change, folder / str(number))
+        assert_listed_vectors_fail(pack, change, folder / str(number))
 
 
-def test_every_change_of_the_shipped_icds_is_noticed(shipped):
+def test_every_change_of_the_shipped_icds_is_detected(shipped):
     assert len(shipped.changes) > 10_000
     assert [row["name"] for row in shipped.trace if row["unnoticed"] != "0"] == []
 
@@ -415,10 +421,10 @@ def test_the_symbols_of_a_line_stand_in_the_generated_code(shipped):
 
 
 def test_the_pack_is_the_same_each_time(demo_pack, tmp_path):
-    again = Pack(demo_pack.folder)
+    repeated = Pack(demo_pack.folder)
     elsewhere = tmp_path / "elsewhere"
     shutil.copytree(demo_pack.folder, elsewhere)
-    assert again.files == demo_pack.files == Pack(elsewhere).files
+    assert repeated.files == demo_pack.files == Pack(elsewhere).files
 
 
 TWO_PARTS = """\
@@ -447,4 +453,4 @@ def test_each_change_of_elements_behind_a_variable_part_fails_the_vectors_that_t
     assert {change["kind"] for change in behind} == {"type", "formula"}
     for number, change in enumerate(behind):
         assert change["vectors"], change
-        hold(pack, change, tmp_path / str(number))
+        assert_listed_vectors_fail(pack, change, tmp_path / str(number))

@@ -1,3 +1,4 @@
-"""Commands that measure generated code with compilers and write what they found for
-`icdgen --lang assurance --measured`.
+"""Commands that measure generated code with compilers.
+
+They write files for `icdgen --lang assurance --measured`.
 """

@@ -1,4 +1,4 @@
-"""A measurement as a file that the pack takes."""
+"""A measurement as a file for the verification package."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ from tests.conformance.languages import version
 
 
 @dataclass
-class Measured:
-    """What a command found; ``language`` is that of the code, ``tools`` are asked for
-    their versions.
+class MeasurementFile:
+    """The result of a command.
+
+    ``remarks`` are paragraphs of the page. ``language`` is the language of the code.
+    ``tools`` are the programs whose versions are recorded.
     """
 
     name: str
     title: str
-    says: Sequence[str]
+    remarks: Sequence[str]
     language: str
     command: str
     tools: Sequence[str]
@@ -31,9 +33,9 @@ class Measured:
     facts: list[tuple[str, str]] = field(default_factory=list)
 
     def write(self, icd: Icd, folder: Path) -> Path:
-        """Writes ``NAME.json``; its path."""
+        """Write ``NAME.json`` and return its path."""
         data = {
-            "icdgen_measurement": FORMAT, "name": self.name, "title": self.title, "says": list(self.says),
+            "icdgen_measurement": FORMAT, "name": self.name, "title": self.title, "says": list(self.remarks),
             "icd": icd_digest(icd), "code": {self.language: code_now(icd, self.language)},
             "made_by": [self.command, *map(_version, self.tools)], "facts": self.facts,
             "columns": list(self.columns), "rows": [[str(cell) for cell in row] for row in self.rows],
@@ -45,18 +47,20 @@ class Measured:
 
 
 def _version(tool: str) -> str:
-    """The first line that a tool says of itself, without where it lies."""
-    said, path = version(tool), shutil.which(tool)
-    assert said is not None and path is not None, f"{tool} is not installed"
-    return said.removeprefix(path).strip().split("\n")[0]
+    """Return the first line of the version of a tool, without the path of the tool."""
+    text, path = version(tool), shutil.which(tool)
+    assert text is not None and path is not None, f"{tool} is not installed"
+    return text.removeprefix(path).strip().split("\n")[0]
 
 
 def share(done: int, of: int) -> str:
-    """``12,345 of 12,345 (100.00 %)``; never rounded up to all."""
+    """Return ``12,345 of 12,345 (100.00 %)``; the percentage is never rounded up to
+    100.
+    """
     hundredths = 10_000 if not of else 10_000 * done // of
     return f"{done:,} of {of:,} ({hundredths // 100}.{hundredths % 100:02} %)"
 
 
 def total(rows: Iterable[Sequence[object]], column: int) -> int:
-    """The sum of a column of numbers."""
+    """Return the sum of a column of numbers."""
     return sum(int(str(row[column])) for row in rows)

@@ -1,9 +1,9 @@
-"""``python -m tests.assurance.measure.python_coverage [--out FOLDER]``: what the golden
-vectors execute of the generated Python.
+"""``python -m tests.assurance.measure.python_coverage [--out FOLDER]``: the coverage of
+the generated Python by the golden vectors.
 
-The testee of the conformance run is asked everything that the vectors of messages and
-of the protocol demand. Ends with status 1 if a line of what is made of the ICDs was not
-executed, if there is a branch in it, or if an answer differs.
+The testee of the conformance run runs all vectors of messages and of the protocol. The
+exit status is 1 if a line of code that is generated from the ICDs is not executed, if
+it has a branch, or if an answer differs.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.assurance.measure import traced
-from tests.assurance.measure.measurement import Measured, share, total
+from tests.assurance.measure.measurement import MeasurementFile, share, total
 from tests.conformance import run as messages
 from tests.conformance import wire
 from tests.conformance.build import execute
@@ -28,22 +28,21 @@ from tests.conformance.languages import Language
 from tests.conformance.languages import python as python_language
 
 COMMAND = "python -m tests.assurance.measure.python_coverage"
-_SAYS = (
-    "What the golden vectors execute of the generated package, line by line. What is made of the ICDs are declarations: "
-    "classes with fields, tables of facts, and functions without a branch, which is checked; so every line is every way. "
-    "What type checkers alone read is not counted.",
-    "Besides the testee of the conformance run a few lines ask each node for its link, for the message of every id and for "
-    "one that it does not have. What encodes and "
-    "decodes is compiled by the runtime from the declarations when it is first used. The runtime is the same for every ICD "
-    "and has tests of its own, which are not counted here.",
+_REMARKS = (
+    "Coverage of the generated package by the golden vectors, line by line. The code of the ICDs has only declarations: "
+    "classes with fields, tables of facts, and functions without a branch. This is checked, so that line coverage includes "
+    "branch coverage. Lines for type checkers only are not counted.",
+    "In addition to the testee of the conformance run, a small program requests from each node its link, the message of every "
+    "id, and an unknown id. The runtime compiles encoders and decoders from the declarations when they are first used. It is "
+    "the same for every ICD and has tests of its own, which are not counted here.",
 )
 _TYPES_ONLY = "TYPE_CHECKING"  # False whenever the program runs
-_ASKED = "asked_by_id"
+_PROGRAM = "asked_by_id"
 _BY_ID = """\
 from importlib import import_module
 from importlib.util import find_spec
 
-for node, direction, id, length in {asked}:
+for node, direction, id, length in {requests}:
     module = import_module("{package}." + node)
     assert set(module._HOMES) <= set(dir(module))
     message = getattr(module, "decode_" + direction)(id, bytes(length))
@@ -62,7 +61,8 @@ _BRANCHES = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.Try, ast.Mat
 
 
 def build(source: Path, out: Path) -> list[str]:
-    """The command of the testee, watched."""
+    """Return the command of the testee, run under the tracer."""
+    # The command of the testee is `env ... python -m MODULE`.
     *env, interpreter, _, module = python_language.build(
         source, out, interpreter=sys.executable
     )
@@ -77,7 +77,7 @@ def build(source: Path, out: Path) -> list[str]:
 
 
 def measure(icd: Icd, folder: Path) -> tuple[list[tuple[str, int, int]], list[str]]:
-    """Lines of each file and how many were executed, and what is wrong."""
+    """Return the lines of each file, how many were executed, and errors."""
     language = Language("python-coverage", python_language.BACKENDS, (), partial(build))
     wrong, seen = [], {}
     for results in (
@@ -97,13 +97,13 @@ def measure(icd: Icd, folder: Path) -> tuple[list[tuple[str, int, int]], list[st
     for path in sorted(top.rglob("*.py")):
         if (
             str(built / "source" / "python-testee" / path.relative_to(top)) in own
-            or path.stem == _ASKED
+            or path.stem == _PROGRAM
         ):
             continue
         lines = executable(path.read_text("utf-8"))
         name = path.relative_to(top).as_posix()
         rows.append((name, len(lines), len(lines & seen.get(str(path), set()))))
-        if is_made(icd, name):
+        if is_generated_from_icds(icd, name):
             wrong += [
                 f"{name}:{line}: not executed"
                 for line in sorted(lines - seen.get(str(path), set()))
@@ -115,18 +115,18 @@ def measure(icd: Icd, folder: Path) -> tuple[list[tuple[str, int, int]], list[st
 
 
 def by_id(icd: Icd, built: Path) -> list[messages.Result]:
-    """Asks each node for the message of every id."""
+    """Decode a message of every id of each node."""
     top = built / "source" / "python"
-    asked = [
-        (node.name, direction.kind, getattr(one.model, name), one.model.length)
+    requests = [
+        (node.name, direction.kind, getattr(message.model, name), message.model.length)
         for node in describe(icd).nodes
         for direction in node.directions
-        for one, name in direction.messages
+        for message, name in direction.messages
     ]
     package = next(top.glob("*/_base.py")).parent.name
-    (top / f"{_ASKED}.py").write_text(
+    (top / f"{_PROGRAM}.py").write_text(
         _BY_ID.format(
-            asked=asked, nodes=[node.name for node in icd.nodes], package=package
+            requests=requests, nodes=[node.name for node in icd.nodes], package=package
         ),
         "utf-8",
     )
@@ -135,65 +135,72 @@ def by_id(icd: Icd, built: Path) -> list[messages.Result]:
         traced.__file__,
         str(built / "out" / "lines.json"),
         str(top),
-        _ASKED,
+        _PROGRAM,
     ]
     execute("env", f"PYTHONPATH={top}", "PYTHONDONTWRITEBYTECODE=1", *command)
     return []
 
 
 def executable(text: str) -> set[int]:
-    """The lines of a source that there is something to execute in."""
-    found: set[int] = set()
+    """Return the lines of a source that have code to execute."""
+    lines: set[int] = set()
     codes = [compile(text, "", "exec")]
     while codes:
         code = codes.pop()
-        found |= traced.lines_of(code)
-        codes += [one for one in code.co_consts if hasattr(one, "co_lines")]
+        lines |= traced.lines_of(code)
+        codes += [
+            constant for constant in code.co_consts if hasattr(constant, "co_lines")
+        ]
     for node in ast.walk(ast.parse(text)):
         if (
             isinstance(node, ast.If)
             and isinstance(node.test, ast.Name)
             and node.test.id == _TYPES_ONLY
         ):
-            found -= set(range(node.lineno + 1, (node.end_lineno or node.lineno) + 1))
-    return found
+            lines -= set(range(node.lineno + 1, (node.end_lineno or node.lineno) + 1))
+    return lines
 
 
 def branches(text: str) -> list[int]:
-    """The lines in which one of several ways is taken."""
-    found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, _BRANCHES))
+    """Return the lines with a branch."""
     return sorted(
-        one.lineno
-        for one in found
-        if not (isinstance(one, ast.If) and _TYPES_ONLY in ast.unparse(one.test))
+        node.lineno
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, _BRANCHES)
+        and not (isinstance(node, ast.If) and _TYPES_ONLY in ast.unparse(node.test))
     )
 
 
-def is_made(icd: Icd, name: str) -> bool:
-    """Whether a file is made of the ICDs, and none of the runtime."""
+def is_generated_from_icds(icd: Icd, name: str) -> bool:
+    """Return whether a file is generated from the ICDs and does not belong to the
+    runtime.
+    """
     return any(f"/{node.name}/" in name for node in icd.nodes)
 
 
-def measured(icd: Icd, rows: list[tuple[str, int, int]]) -> Measured:
-    """The paper."""
-    made = [row for row in rows if is_made(icd, row[0])]
-    runtime = [row for row in rows if not is_made(icd, row[0])]
+def measurement_file(icd: Icd, rows: list[tuple[str, int, int]]) -> MeasurementFile:
+    """Return the coverage as a measurement."""
+    generated = [row for row in rows if is_generated_from_icds(icd, row[0])]
+    runtime = [row for row in rows if not is_generated_from_icds(icd, row[0])]
     facts = [
-        ("Made of the ICDs: lines", share(total(made, 2), total(made, 1))),
+        (
+            "Generated from the ICDs: lines",
+            share(total(generated, 2), total(generated, 1)),
+        ),
         ("The runtime: lines", share(total(runtime, 2), total(runtime, 1))),
         ("Measured in", f"Python {sys.version.split()[0]}"),
     ]
     columns = ("file", "lines", "executed")
     title = "Coverage of the generated Python"
-    return Measured(
+    return MeasurementFile(
         "coverage-python",
         title,
-        _SAYS,
+        _REMARKS,
         "python",
         COMMAND,
         (),
         columns,
-        [*made, *runtime],
+        [*generated, *runtime],
         facts,
     )
 
@@ -213,9 +220,9 @@ def main(arguments: list[str] | None = None) -> int:
     icd = icd_of(options.icds)
     with tempfile.TemporaryDirectory() as name:
         rows, wrong = measure(icd, Path(name))
-    found = measured(icd, rows)
-    print(found.write(icd, options.out))
-    for key, value in found.facts:
+    file = measurement_file(icd, rows)
+    print(file.write(icd, options.out))
+    for key, value in file.facts:
         print(f"  {key}: {value}")
     print("\n".join(wrong[:40]), file=sys.stderr)
     return int(bool(wrong))

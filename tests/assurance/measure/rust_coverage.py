@@ -1,10 +1,10 @@
-"""``python -m tests.assurance.measure.rust_coverage [--out FOLDER]``: what the golden
-vectors execute of the generated Rust.
+"""``python -m tests.assurance.measure.rust_coverage [--out FOLDER]``: the coverage of
+the generated Rust by the golden vectors.
 
-The testee of the conformance run, instrumented by rustc, is asked everything that the
-vectors of messages and of the protocol demand, and a program asks what only Rust has.
-Ends with status 1 if a line of what is made of the ICDs was not executed, or if an
-answer differs. The tools that read what rustc counts come from a crate: ``cargo install
+The testee of the conformance run, instrumented by rustc, runs all vectors of messages
+and of the protocol; another program tests functions that only Rust has. The exit status
+is 1 if a line of code that is generated from the ICDs is not executed, or if an answer
+differs. The tool that reads the counts of rustc comes from a crate: ``cargo install
 llvm_profparser``.
 """
 
@@ -23,8 +23,8 @@ from pathlib import Path
 
 from icdgen.backends.rust import CRATE
 from icdgen.icd.model import Icd
-from tests.assurance.measure import rust_rest
-from tests.assurance.measure.measurement import Measured, share, total
+from tests.assurance.measure import rust_only
+from tests.assurance.measure.measurement import MeasurementFile, share, total
 from tests.conformance import run as messages
 from tests.conformance import wire
 from tests.conformance.build import execute
@@ -34,13 +34,13 @@ from tests.conformance.languages import rust as rust_language
 
 COMMAND = "python -m tests.assurance.measure.rust_coverage"
 FLAGS = ("-C", "instrument-coverage")
-_SAYS = (
-    "What the golden vectors execute of the generated crate, line by line, generic code in each form that is used. Built "
-    "without optimisation and instrumented by rustc; lines in which there is nothing to execute are not counted.",
-    "The vectors are asked by the testee of the conformance run and by a program that asks what only Rust has: physical values "
-    "in single precision and as whole numbers, messages as text and as data, buffers that are too small, dispatchers by every "
-    "id. That a line is executed does not show that it is right: every answer of the testee was compared with the "
-    "reference, and the trace says which vectors notice a change.",
+_REMARKS = (
+    "Coverage of the generated crate by the golden vectors, line by line, generic code in each form that is used. The crate is "
+    "built without optimisation and instrumented by rustc. Lines without code to execute are not counted.",
+    "The vectors are run by the testee of the conformance run and by a program for features of Rust only: physical values in "
+    "single precision and as integers, messages as text and as data, buffers that are too small, dispatchers by every id. An "
+    "executed line can still be wrong; therefore every answer of the testee was compared with the reference, and the trace "
+    "lists the vectors that notice a change.",
     "The runtime is the same for every ICD and has tests of its own, which are not counted here.",
 )
 _LINE = re.compile(r" *(\d+)\| *(\d+)\|")
@@ -49,8 +49,9 @@ Lines = dict[str, Counter[int]]  # by file: how often each line was executed
 
 
 def can_count() -> bool:
-    """Whether rustc has what instrumented programs are linked with; that of Debian 12
-    has not.
+    """Return whether rustc has the runtime with which instrumented programs are linked.
+
+    The rustc of Debian 12 does not have it.
     """
     with tempfile.TemporaryDirectory() as folder:
         (empty := Path(folder) / "empty.rs").write_text("fn main() {}\n", "utf-8")
@@ -59,7 +60,8 @@ def can_count() -> bool:
 
 
 def build(source: Path, out: Path) -> list[str]:
-    """The command of the testee, instrumented."""
+    """Return the command of the instrumented testee."""
+    # Cargo reads the flags of rustc from this variable.
     before = os.environ.get("RUSTFLAGS")
     os.environ["RUSTFLAGS"] = " ".join(FLAGS)
     try:
@@ -74,10 +76,10 @@ def build(source: Path, out: Path) -> list[str]:
     ]
 
 
-def rest(icd: Icd, source: Path, out: Path) -> Path:
-    """Builds and runs the program that asks the rest; it."""
-    program, text = out / "rest", out / "rest.rs"
-    text.write_text(rust_rest.source(icd), "utf-8")
+def run_program_of_rust_only(icd: Icd, source: Path, out: Path) -> Path:
+    """Build and run the program for features of Rust only; return its path."""
+    program, text = out / "rust_only", out / "rust_only.rs"
+    text.write_text(rust_only.source(icd), "utf-8")
     rustc = ("rustc", "--edition", "2021", *FLAGS)
     execute(
         *rustc,
@@ -92,14 +94,14 @@ def rest(icd: Icd, source: Path, out: Path) -> Path:
     execute(
         *rustc, "--extern", f"{CRATE}={out / f'lib{CRATE}.rlib'}", "-o", program, text
     )
-    execute(program, env={**os.environ, "LLVM_PROFILE_FILE": str(out / "rest.profraw")})
+    execute(
+        program, env={**os.environ, "LLVM_PROFILE_FILE": str(out / "rust_only.profraw")}
+    )
     return program
 
 
 def measure(icd: Icd, folder: Path) -> tuple[Lines, Path, list[str]]:
-    """How often each line of each file was executed; the folder of the crate's sources;
-    what is wrong.
-    """
+    """Return the counts of each file, the folder of the crate's sources, and errors."""
     language = Language("rust-coverage", rust_language.BACKENDS, (), build)
     results = (
         *messages.run([language], icd, vectors_of(icd), 0, 1, folder),
@@ -107,17 +109,17 @@ def measure(icd: Icd, folder: Path) -> tuple[Lines, Path, list[str]]:
     )
     built = next(folder.glob("rust-coverage-*"))
     out, source = built / "out", built / "source" / "rust" / "src"
-    found: Lines = defaultdict(Counter)
+    counts: Lines = defaultdict(Counter)
     for program, profiles in (
         (out / "debug" / "testee", "testee-*.profraw"),
-        (rest(icd, source, out), "rest.profraw"),
+        (run_program_of_rust_only(icd, source, out), "rust_only.profraw"),
     ):
-        collect(found, program, sorted(out.glob(profiles)), source)
-    return found, source, [text for result in results for text in result.shown]
+        collect(counts, program, sorted(out.glob(profiles)), source)
+    return counts, source, [text for result in results for text in result.shown]
 
 
-def collect(found: Lines, program: Path, profiles: list[Path], source: Path) -> None:
-    """Adds what the runs of a program executed of the sources in a folder."""
+def collect(counts: Lines, program: Path, profiles: list[Path], source: Path) -> None:
+    """Add the counts that the runs of a program have for the sources in a folder."""
     given = [word for profile in profiles for word in ("--instr-profile", profile)]
     name = None
     for line in execute("cov", "show", "--object", program, *given).splitlines():
@@ -129,22 +131,24 @@ def collect(found: Lines, program: Path, profiles: list[Path], source: Path) -> 
                 else None
             )
         elif name is not None and (match := _LINE.match(line)):
-            found[name][int(match[1])] += int(match[2])
+            counts[name][int(match[1])] += int(match[2])
 
 
-def is_made(name: str) -> bool:
-    """Whether a file is made of the ICDs, and none of the runtime."""
+def is_generated_from_icds(name: str) -> bool:
+    """Return whether a file is generated from the ICDs and does not belong to the
+    runtime.
+    """
     return not name.startswith(("support/", "wire/")) or name.startswith("wire/links/")
 
 
-def gaps(found: Lines, source: Path) -> Iterator[str]:
-    """Lines that are made of the ICDs and were not executed."""
-    for name, lines in sorted(found.items()):
+def gaps(counts: Lines, source: Path) -> Iterator[str]:
+    """Yield lines that are generated from the ICDs and were not executed."""
+    for name, lines in sorted(counts.items()):
         text = (source / name).read_text("utf-8").split("\n")
         missed = (
             number
             for number, count in sorted(lines.items())
-            if not count and is_made(name)
+            if not count and is_generated_from_icds(name)
         )
         yield from (
             f"{name}:{number}: not executed: {text[number - 1].strip()}"
@@ -152,29 +156,32 @@ def gaps(found: Lines, source: Path) -> Iterator[str]:
         )
 
 
-def measured(found: Lines) -> Measured:
-    """The paper."""
+def measurement_file(counts: Lines) -> MeasurementFile:
+    """Return the coverage as a measurement."""
     rows = [
         (name, len(lines), sum(map(bool, lines.values())))
-        for name, lines in sorted(found.items())
+        for name, lines in sorted(counts.items())
     ]
-    made = [row for row in rows if is_made(row[0])]
-    runtime = [row for row in rows if not is_made(row[0])]
+    generated = [row for row in rows if is_generated_from_icds(row[0])]
+    runtime = [row for row in rows if not is_generated_from_icds(row[0])]
     facts = [
-        ("Made of the ICDs: lines", share(total(made, 2), total(made, 1))),
+        (
+            "Generated from the ICDs: lines",
+            share(total(generated, 2), total(generated, 1)),
+        ),
         ("The runtime: lines", share(total(runtime, 2), total(runtime, 1))),
     ]
     columns = ("file", "lines", "executed")
     title = "Coverage of the generated Rust"
-    return Measured(
+    return MeasurementFile(
         "coverage-rust",
         title,
-        _SAYS,
+        _REMARKS,
         "rust",
         COMMAND,
         ("rustc",),
         columns,
-        [*made, *runtime],
+        [*generated, *runtime],
         facts,
     )
 
@@ -203,11 +210,11 @@ def main(arguments: list[str] | None = None) -> int:
         )
     icd = icd_of(options.icds)
     with tempfile.TemporaryDirectory() as name:
-        found, source, wrong = measure(icd, Path(name))
-        wrong += gaps(found, source)
-    paper = measured(found)
-    print(paper.write(icd, options.out))
-    for key, value in paper.facts:
+        counts, source, wrong = measure(icd, Path(name))
+        wrong += gaps(counts, source)
+    file = measurement_file(counts)
+    print(file.write(icd, options.out))
+    for key, value in file.facts:
         print(f"  {key}: {value}")
     print("\n".join(wrong[:40]), file=sys.stderr)
     return int(bool(wrong))

@@ -1,9 +1,8 @@
 """``python -m tests.assurance.measure.sizes [--out FOLDER]``: code, stack and RAM of
-each message, by target, from the compilers.
+each message, by target.
 
-One object is compiled a target, in which each encoder and decoder is a function of its
-own that nothing can be shared with but the functions of the support header that the
-compiler does not inline.
+One object is compiled for each target. Each encoder and decoder is a function of its
+own. They share only functions of the support header that the compiler does not inline.
 """
 
 from __future__ import annotations
@@ -16,26 +15,25 @@ from pathlib import Path
 from typing import NamedTuple
 
 from icdgen.icd.model import Icd
-from tests.assurance.measure.measurement import Measured, total
+from tests.assurance.measure.measurement import MeasurementFile, total
 from tests.c import harness
 from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 
 COMMAND = "python -m tests.assurance.measure.sizes"
-_SAYS = (
-    "Bytes of each message's encoder and decoder, of the stack that each takes itself, and of its struct in RAM. What both "
-    "call and the compiler does not inline stands in the facts, once for all messages. Values are raw: accessors of "
-    "physical values are not in it.",
-    "The wire layer is what icdgen_wire.c takes as a whole; a linker leaves out what a program does not call.",
+_REMARKS = (
+    "Bytes of each message's encoder and decoder, of their own stack, and of the struct in RAM. Functions that both call and "
+    "that are not inlined are in the facts, once for all messages. Accessors of physical values are not included.",
+    "The size of the wire layer is that of the complete icdgen_wire.c; a linker removes functions that a program does not call.",
 )
 
 
 class Target(NamedTuple):
-    """What is compiled for."""
+    """A processor with its compiler and flags."""
 
     name: str
     title: str
-    tools: str  # what their names begin with
+    tools: str  # prefix of the names of the tools
     flags: tuple[str, ...]
 
 
@@ -57,10 +55,10 @@ class Function(NamedTuple):
     stack: int
 
 
-def measure(icd: Icd, target: Target, folder: Path) -> Measured:
-    """The sizes for a target. Raises `BuildError`."""
+def measure(icd: Icd, target: Target, folder: Path) -> MeasurementFile:
+    """Return the sizes for a target. Raises `BuildError`."""
     harness.generate(icd, folder)
-    stems = [harness.stem(one.message) for one in harness.targets(icd)]
+    stems = [harness.stem(target_.message) for target_ in harness.targets(icd)]
     text = harness.wrappers(icd) + "".join(
         f"extern const char r_{s}[]; const char r_{s}[sizeof({s}_t)];\n" for s in stems
     )
@@ -75,26 +73,32 @@ def measure(icd: Icd, target: Target, folder: Path) -> Measured:
              decode.stack, encode.stack)
         )  # fmt: skip
     shared = {
-        name: one for name, one in functions.items() if name[:2] not in ("d_", "e_")
+        name: function
+        for name, function in functions.items()
+        if name[:2] not in ("d_", "e_")
     }
     facts = [
         ("All decoders, bytes of code", f"{total(rows, 4):,}"),
         ("All encoders, bytes of code", f"{total(rows, 5):,}"),
         (
             "Called by them, bytes of code",
-            f"{sum(one.code for one in shared.values()):,}",
+            f"{sum(function.code for function in shared.values()):,}",
         ),
         ("Deepest stack of a message", f"{max(max(row[6], row[7]) for row in rows):,}"),
     ]
+    # ICDs without a link have no wire layer.
     if (folder / "icdgen_wire.c").exists():
         wire, _ = compiled(folder, "icdgen_wire.c", target, "-DICDGEN_SHARED=1")
         facts.append(
-            ("Wire layer, bytes of code", f"{sum(one.code for one in wire.values()):,}")
+            (
+                "Wire layer, bytes of code",
+                f"{sum(function.code for function in wire.values()):,}",
+            )
         )
         facts.append(
             (
                 "Wire layer, deepest stack of one function",
-                f"{max(one.stack for one in wire.values()):,}",
+                f"{max(function.stack for function in wire.values()):,}",
             )
         )
     columns = (
@@ -109,10 +113,10 @@ def measure(icd: Icd, target: Target, folder: Path) -> Measured:
     )
     title = f"Sizes on {target.title}"
     facts.append(("Compiled with", " ".join(target.flags)))
-    return Measured(
+    return MeasurementFile(
         f"sizes-{target.name}",
         title,
-        _SAYS,
+        _REMARKS,
         "c",
         COMMAND,
         (f"{target.tools}gcc",),
@@ -125,25 +129,32 @@ def measure(icd: Icd, target: Target, folder: Path) -> Measured:
 def compiled(
     folder: Path, source: str, target: Target, *more: str
 ) -> tuple[dict[str, Function], dict[str, int]]:
-    """The functions of an object by name, and the bytes of its data."""
-    made = folder / f"{Path(source).stem}.o"
+    """Compile a source; return the functions of the object by name, and the sizes of
+    its data.
+    """
+    object_file = folder / f"{Path(source).stem}.o"
     flags = (*target.flags, "-std=c99", "-ffunction-sections", "-fstack-usage", *more)
     execute(
-        f"{target.tools}gcc", *flags, f"-I{folder}", "-c", folder / source, "-o", made
+        f"{target.tools}gcc",
+        *flags,
+        f"-I{folder}",
+        "-c",
+        folder / source,
+        "-o",
+        object_file,
     )
     stacks: dict[str, int] = {}
-    for line in made.with_suffix(".su").read_text("utf-8").splitlines():
+    for line in object_file.with_suffix(".su").read_text("utf-8").splitlines():
         where, bytes_, kind = line.split("\t")
         assert kind in (
             "static",
             "dynamic,bounded",
-        ), line  # else its size is known when it runs only
-        name = where.rpartition(":")[2].partition(".")[
-            0
-        ]  # without what the compiler calls a copy of it
+        ), line  # otherwise the size is only known at run time
+        # The compiler appends ".constprop.0" and the like to names of copies.
+        name = where.rpartition(":")[2].partition(".")[0]
         stacks[name] = max(int(bytes_), stacks.get(name, 0))
     functions, data = {}, {}
-    for line in execute(f"{target.tools}nm", "-S", made).splitlines():
+    for line in execute(f"{target.tools}nm", "-S", object_file).splitlines():
         if match := re.fullmatch(r"[0-9a-f]+ ([0-9a-f]+) (\w) (\S+)", line):
             size, kind, name = int(match[1], 16), match[2], match[3]
             if kind in "tT":
@@ -171,9 +182,9 @@ def main(arguments: list[str] | None = None) -> int:
     icd = icd_of(options.icds)
     for target in TARGETS:
         with tempfile.TemporaryDirectory() as name:
-            found = measure(icd, target, Path(name))
-        print(found.write(icd, options.out))
-        for key, value in found.facts:
+            file = measure(icd, target, Path(name))
+        print(file.write(icd, options.out))
+        for key, value in file.facts:
             print(f"  {key}: {value}")
     return 0
 

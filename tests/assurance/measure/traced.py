@@ -1,8 +1,8 @@
-"""``python traced.py OUT FOLDER MODULE``: runs a module and writes which lines of the
-sources of a folder were executed.
+"""``python traced.py OUT FOLDER MODULE``: runs a module and writes the executed lines
+of the sources of a folder.
 
-A function of which every line was seen is not watched any more, so that this costs
-little.
+A function of which every line was executed is not traced any more, so that the overhead
+is small.
 """
 
 from __future__ import annotations
@@ -14,33 +14,34 @@ import sys
 from types import CodeType, FrameType
 from typing import Any
 
-_left: dict[CodeType, set[int]] = {}
+_unseen: dict[CodeType, set[int]] = {}
 _seen: dict[str, set[int]] = {}
 
 
 def lines_of(code: CodeType) -> set[int]:
-    """The lines of a piece of code itself, without what is defined in it."""
+    """Return the lines of a code object itself, without nested functions."""
     return {line for _, _, line in code.co_lines() if line}
 
 
 def watch(folder: str) -> None:
-    """Begins to note lines of the files of the folder."""
+    """Start to record executed lines of the files of the folder."""
 
     def called(frame: FrameType, event: str, argument: Any) -> Any:
         code = frame.f_code
         if not code.co_filename.startswith(folder):
             return None
-        left = _left.get(code)
-        if left is None:
-            left = _left[code] = lines_of(code)
-        if not left:
+        unseen = _unseen.get(code)
+        if unseen is None:
+            unseen = _unseen[code] = lines_of(code)
+        if not unseen:
             return None
         seen = _seen.setdefault(code.co_filename, set())
 
         def line(frame: FrameType, event: str, argument: Any) -> Any:
             seen.add(frame.f_lineno)
-            left.discard(frame.f_lineno)
-            return line if left else None
+            unseen.discard(frame.f_lineno)
+            # Returning None ends the trace of this function.
+            return line if unseen else None
 
         return line(frame, event, argument)
 
@@ -48,7 +49,7 @@ def watch(folder: str) -> None:
 
 
 def write(out: str) -> None:
-    """The lines of each file."""
+    """Write the executed lines of each file."""
     sys.settrace(None)
     with open(out, "w", encoding="utf-8") as file:
         json.dump({name: sorted(lines) for name, lines in _seen.items()}, file)

@@ -1,6 +1,7 @@
-"""The program that asks of the golden vectors what only C has: see ``rest.c.j2``.
+"""Source of the program that tests the functions of the generated C that other
+languages do not have: see ``c_only.c.j2``.
 
-What it expects is the reference's.
+The reference codec computes the expected values.
 """
 
 from __future__ import annotations
@@ -33,15 +34,15 @@ HERE = Path(__file__).parent
 
 
 def source(icd: Icd) -> str:
-    """The program."""
-    known = describe(icd)
+    """Return the source of the program."""
+    description = describe(icd)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True
     )
-    return environment.get_template("rest.c.j2").render(
-        nodes=[_node(known, node) for node in known.nodes],
+    return environment.get_template("c_only.c.j2").render(
+        nodes=[_node(description, node) for node in description.nodes],
         messages=[
-            _message(message) for node in known.nodes for message in node.messages
+            _message(message) for node in description.nodes for message in node.messages
         ],
         longest=max(
             1, *(message.length for node in icd.nodes for message in node.messages)
@@ -50,19 +51,20 @@ def source(icd: Icd) -> str:
 
 
 def _message(message: MessageDescription) -> dict[str, Any]:
-    wholes = {
+    integers = {
         field.model.name: (accessor.name, accessor.integers)
         for field in message.fields
         for accessor in accessors_of(field, "integer")
     }
     beyond = []
     for field in message.fields:
-        if field.model.name in wholes:
-            name, whole = wholes[field.model.name]
-            limit = 1 << (whole.bits - 1)
+        if field.model.name in integers:
+            name, integer = integers[field.model.name]
+            limit = 1 << (integer.bits - 1)
             steps = (field.model.raw_min - 1, field.model.raw_max + 1)
             values = (
-                int(field.model.scale.physical(raw) * whole.scale.per) for raw in steps
+                int(field.model.scale.physical(raw) * integer.scale.per)
+                for raw in steps
             )
             beyond += [
                 (name, physical.int64(value))
@@ -78,29 +80,31 @@ def _message(message: MessageDescription) -> dict[str, Any]:
         "stem": stem(message),
         "length": message.model.length,
         "beyond": beyond,
-        "rows": [_row(message, row, wholes) for row in (rows if wholes else rows[:2])],
+        "rows": [
+            _row(message, row, integers) for row in (rows if integers else rows[:2])
+        ],
         "fields": [literal(field.model.name) for field in message.members],
     }
 
 
 def _parts(message: MessageDescription, frame: bytes) -> Iterator[dict[str, Any]]:
-    """Each part: the call that gives it, and its bytes where these are whole ones of
-    the frame.
+    """Yield each part of a message: the call that returns it, and its bytes.
 
-    What the part reserves may hold something of the whole message: encoding the part
-    leaves it out.
+    The bytes are empty if the part does not begin at a byte. The part is decoded and
+    encoded again, because its reserved bits can have values of other fields of the
+    message.
     """
     for part in contained_messages(message):
         for index, begin in enumerate(part.positions):
-            which = f"{index}u, " if len(part.positions) > 1 else ""
-            call = f"{stem(message)}_{part_name(part.message)}(&message, {which}&part)"
+            index_argument = f"{index}u, " if len(part.positions) > 1 else ""
+            call = f"{stem(message)}_{part_name(part.message)}(&message, {index_argument}&part)"
             yield {
                 "stem": stem(part.message),
                 "call": call,
                 "bytes": _part(part.message, frame, begin),
             }
-            if which and begin == part.positions[-1]:
-                beyond = call.replace(which, f"{len(part.positions)}u, ")
+            if index_argument and begin == part.positions[-1]:
+                beyond = call.replace(index_argument, f"{len(part.positions)}u, ")
                 yield {
                     "stem": stem(part.message),
                     "call": f"CHECK({beyond} == ICD_ERROR_RANGE)",
@@ -118,11 +122,11 @@ def _part(part: MessageDescription, frame: bytes, begin: int) -> str:
 
 
 def _row(
-    message: MessageDescription, row: FrameVector, wholes: dict[str, Any]
+    message: MessageDescription, row: FrameVector, integers: dict[str, Any]
 ) -> dict[str, Any]:
     values = []
-    for name, (accessor, whole) in wholes.items():
-        exact: Fraction = row.physical[name] * whole.scale.per
+    for name, (accessor, integer) in integers.items():
+        exact: Fraction = row.physical[name] * integer.scale.per
         assert exact.denominator == 1
         values.append((accessor, physical.int64(int(exact))))
     encoded = "" if row.encoded == row.frame else _bytes(row.encoded)
@@ -138,21 +142,21 @@ def _bytes(data: bytes) -> str:
     return ", ".join(f"{byte}u" for byte in data)
 
 
-def _node(known: Description, node: NodeDescription) -> dict[str, Any]:
-    link = links_of(known).get(node.name)
+def _node(description: Description, node: NodeDescription) -> dict[str, Any]:
+    link = links_of(description).get(node.name)
     buses = []
     if link is not None:
-        found = (
+        supported = (
             ("uart", link.facts.framing),
             ("i2c", link.facts.i2c_address),
             ("can", link.can),
         )
-        buses = [bus for bus, there in found if there is not None]
+        buses = [bus for bus, form in supported if form is not None]
     directions = []
     for direction in node.directions:
         ids = [
-            (getattr(one.model, name), one.model.length)
-            for one, name in direction.messages
+            (getattr(message.model, name), message.model.length)
+            for message, name in direction.messages
         ]
         unknown = next(id for id in range(256) if id not in dict(ids))
         directions.append({"kind": direction.kind, "ids": ids, "unknown": unknown})
@@ -160,22 +164,22 @@ def _node(known: Description, node: NodeDescription) -> dict[str, Any]:
         "name": node.name,
         "buses": buses,
         "directions": directions,
-        "telecommands": [_sent(one) for one in node.telecommands],
+        "telecommands": [_sent(message) for message in node.telecommands],
         "telemetry": [
             {
-                "stem": stem(one),
-                "name": one.name,
-                "id": one.model.telemetry_id,
-                "length": one.model.length,
+                "stem": stem(message),
+                "name": message.name,
+                "id": message.model.telemetry_id,
+                "length": message.model.length,
             }
-            for one in node.telemetry
+            for message in node.telemetry
         ],
     }
 
 
 def _sent(message: MessageDescription) -> dict[str, Any]:
     narrow = next((field for field in message.fields if field.is_narrow), None)
-    unfit = (narrow.name, _unfit(narrow)) if narrow is not None else None
+    unfit = (narrow.name, _value_out_of_range(narrow)) if narrow is not None else None
     return {
         "stem": stem(message),
         "name": message.name,
@@ -184,7 +188,7 @@ def _sent(message: MessageDescription) -> dict[str, Any]:
     }
 
 
-def _unfit(field: FieldDescription) -> int:
+def _value_out_of_range(field: FieldDescription) -> int:
     value = field.model.raw_max + 1
     try:
         codec.check_raw(field.model, value)

@@ -1,6 +1,7 @@
-"""The program that asks what only Rust has: see ``rest.rs.j2``.
+"""Source of the program that tests the functions of the generated Rust that other
+languages do not have: see ``rust_only.rs.j2``.
 
-Frames and names are the description's.
+Frames and names come from the description.
 """
 
 from __future__ import annotations
@@ -27,27 +28,27 @@ HERE = Path(__file__).parent
 
 
 def source(icd: Icd) -> str:
-    """The program."""
+    """Return the source of the program."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True
     )
     nodes = {node.name: _node(node) for node in describe(icd).nodes}
-    return environment.get_template("rest.rs.j2").render(nodes=nodes)
+    return environment.get_template("rust_only.rs.j2").render(nodes=nodes)
 
 
 def _node(node: NodeDescription) -> dict[str, Any]:
     return {
         "name": node.name,
         "enums": [
-            {"type": one.camel_name, "numbers": _values(one)} for one in node.enums
+            {"type": enum.camel_name, "numbers": _values(enum)} for enum in node.enums
         ],
         "messages": [
             {
-                "path": _path(one),
-                "frame": ", ".join(["0"] * one.model.length),
-                "lines": list(_lines(one)),
+                "path": _path(message),
+                "frame": ", ".join(["0"] * message.model.length),
+                "lines": list(_lines(message)),
             }
-            for one in node.messages
+            for message in node.messages
         ],
         "directions": [
             _direction(node, direction.kind) for direction in node.directions
@@ -56,10 +57,10 @@ def _node(node: NodeDescription) -> dict[str, Any]:
 
 
 def _direction(node: NodeDescription, kind: str) -> dict[str, Any]:
-    found = next(direction for direction in node.directions if direction.kind == kind)
+    direction = next(each for each in node.directions if each.kind == kind)
     messages = [
-        (_path(one), getattr(one.model, id), one.model.length)
-        for one, id in found.messages
+        (_path(message), getattr(message.model, id), message.model.length)
+        for message, id in direction.messages
     ]
     free = (
         {*range(2**node.id_bits)} - {id for _, id, _ in messages}
@@ -74,7 +75,7 @@ def _direction(node: NodeDescription, kind: str) -> dict[str, Any]:
 
 
 def _values(enum: EnumDescription) -> list[tuple[int, str]]:
-    """Each value and its name, and one that has none."""
+    """Return each value with its name, and one value without a name."""
     low = -(2 ** (enum.storage.bits - 1)) if enum.storage.signed else 0
     named = {}
     for member in enum.members:
@@ -95,23 +96,26 @@ def _path(message: MessageDescription) -> str:
 
 
 def _lines(message: MessageDescription) -> Iterator[str]:
-    """What is asked of a message: accessors, texts, views and parts."""
+    """Yield the statements that use a message: accessors, texts, overlay fields and
+    parts.
+    """
     for field in message.declared_members:
         if field.model.is_read_only:
-            yield f"let _ = one.{field_name(field)}();"
+            yield f"let _ = decoded.{field_name(field)}();"
         index, option = ("0", ".unwrap()") if field.count else ("", "")
-        for one in accessors(field) if field.steps else ():
-            value = f"one.{one.name}({index}){option}"
-            if one.raw:
+        for accessor in accessors(field) if field.steps else ():
+            value = f"decoded.{accessor.name}({index}){option}"
+            if accessor.raw:
                 given = ", ".join(filter(None, (index, "value")))
-                yield f"let value = {value}; one.set_{one.name}({given}).unwrap();"
+                setter = f"decoded.set_{accessor.name}"
+                yield f"let value = {value}; {setter}({given}).unwrap();"
             else:
                 yield f"let _ = {value};"
         if field.is_text and not field.model.is_read_only:
-            yield f'one.set_{field.physical_name}("").unwrap();'
-            yield f'assert_eq!(one.{field.physical_name}(), Some(""));'
+            yield f'decoded.set_{field.physical_name}("").unwrap();'
+            yield f'assert_eq!(decoded.{field.physical_name}(), Some(""));'
     for part in parts_of(message):
         kind = part.type.replace("super::", f"icd::{message.node.name}::").replace(
             "crate::", "icd::"
         )
-        yield f"let _ = <{kind}>::from(&one);"
+        yield f"let _ = <{kind}>::from(&decoded);"
