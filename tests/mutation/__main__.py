@@ -1,10 +1,11 @@
 """``python -m tests.mutation``: changes one number of the ICDs at a time and runs the
 unchanged vectors on the changed code.
 
-Prints, for each language and kind of change: the mutants; those that the rules refuse
-(and, where code can be made from them all the same, how many of these the vectors
-kill); those that the vectors kill; those that provably mean the same as the unchanged
-ICD; and the survivors. Ends with status 0 if there are none.
+Prints these numbers for each language and kind of change: the mutants; the mutants that
+the rules reject (and how many of these the vectors kill, if code can be generated from
+them nevertheless); the mutants that the vectors kill; the mutants that provably have
+the same meaning as the unchanged ICD; and the survivors. The exit status is 0 if there
+are no survivors.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ HEAD = ("mutants", "refused", "and killed", "not killed", "killed", "same", "sur
 
 
 def table(scores: dict[str, Score], refused: dict[str, int]) -> str:
-    """One block a language, one line a kind of change."""
+    """Return a block for each language, with a line for each kind of change."""
     lines = [f"{'language':10}{'change':12}" + "".join(f"{word:>12}" for word in HEAD)]
     for name, score in scores.items():
         kinds = list(
@@ -36,8 +37,8 @@ def table(scores: dict[str, Score], refused: dict[str, int]) -> str:
                 (
                     refused.get(kind, 0) + sum(ends),
                     refused.get(kind, 0),
-                    score.also[kind],
-                    score.not_also[kind],
+                    score.rejected_and_killed[kind],
+                    score.rejected_and_survived[kind],
                     *ends,
                 )
             )
@@ -110,11 +111,11 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def report(scores: dict[str, Score], refused: dict[str, int]) -> str:
-    """Each survivor and each testee that died, in a line, and the table."""
+    """Return a line for each survivor and each crash of a testee, and the table."""
     lines = []
     for name, score in scores.items():
-        for kind, found in score.survived.items():
-            lines += [f"{name}: survivor: {kind}: {text}" for text in found]
+        for kind, changes in score.survived.items():
+            lines += [f"{name}: survivor: {kind}: {text}" for text in changes]
         lines += [f"{name}: the testee died of {text}" for text in score.crashed]
     return "\n".join([*lines, table(scores, refused)]) + "\n"
 

@@ -1,4 +1,6 @@
-"""Mutants -> batches of small ICDs that are loaded, checked and built together."""
+"""Combines mutants into batches of small ICDs that are loaded, checked and built
+together.
+"""
 
 from __future__ import annotations
 
@@ -14,16 +16,15 @@ from tests.mutation.mutants import Mutant
 MOST_MUTANTS = 400
 MOST_FIELDS = 6000
 
-# The generators can make code in spite of these, so the vectors are tried on it
-# although no user would get it: an overlap, and bytes at the end that no field
-# describes.
-TRIED = frozenset({"ICD021", "ICD024"})
+# Errors in spite of which code can be generated: an overlap, and bytes at the end without a
+# field. The vectors are tried on this code, although no user would get it.
+TOLERATED = frozenset({"ICD021", "ICD024"})
 
 
 @dataclass
 class Batch:
-    """Mutants by the name of their node; those that the rules refuse, with the
-    findings; those that code can be made from.
+    """A batch: its mutants and the rejected ones, by the name of their node, and the
+    ICD of the mutants from which code can be generated.
     """
 
     mutants: dict[str, Mutant]
@@ -35,7 +36,7 @@ class Batch:
 
 
 def split(mutants: Iterable[Mutant]) -> Iterator[list[Mutant]]:
-    """Batches of about equal work."""
+    """Yield batches of about equal work."""
     batch: list[Mutant] = []
     fields = 0
     for mutant in mutants:
@@ -52,10 +53,11 @@ def split(mutants: Iterable[Mutant]) -> Iterator[list[Mutant]]:
 
 
 def _size(owner: dict, tree: dict) -> int:
-    """Fields of a message or a struct, each element of an array and each field of a
-    struct one.
+    """Return the number of fields of a message or a struct.
+
+    Each element of an array and each field of a struct counts.
     """
-    structs = {one["name"]: one for one in tree.get("structs") or ()}
+    structs = {entry["name"]: entry for entry in tree.get("structs") or ()}
     size = 0
     for row in owner.get("fields") or ():
         count = row.get("count", 1)
@@ -70,9 +72,9 @@ def _size(owner: dict, tree: dict) -> int:
 def prepare(
     mutants: list[Mutant], folder: Path, accepted: dict[tuple, set[str]] | None = None
 ) -> Batch:
-    """Writes the ICDs to an empty folder and loads them.
+    """Write the ICDs to an empty folder and load them.
 
-    ``accepted``: codes that the unchanged message has too.
+    ``accepted``: codes of errors that the unchanged message has, too.
     """
     batch = Batch({f"m{number:05}": mutant for number, mutant in enumerate(mutants)})
     for name, mutant in batch.mutants.items():
@@ -95,20 +97,21 @@ def prepare(
         tuple(
             node
             for node in loaded.icd.nodes
-            if TRIED.issuperset(batch.refused.get(node.name, ()))
+            if TOLERATED.issuperset(batch.refused.get(node.name, ()))
         )
     )
     return batch
 
 
 def key(mutant: Mutant) -> tuple:
-    """What the mutant is a mutant of."""
+    """Return the node, message or enumeration that the mutant changes."""
     return mutant.node, mutant.message, mutant.enum
 
 
 def baseline(unchanged: list[Mutant], folder: Path) -> dict[tuple, set[str]]:
-    """Codes of the errors that the small ICDs have without any change: cut out of its
-    node, a message loses its errata.
+    """Return the codes of the errors that the small ICDs have without any change.
+
+    There are some, because a message that is cut out of its node loses its errata.
     """
     batch = prepare(unchanged, folder)
     return {

@@ -139,7 +139,7 @@ def _of_statement(node: ast.AST, places: _Places) -> Iterator[Fault]:
 
 
 def _code(node: ast.AST) -> Iterator[ast.AST]:
-    """Walk over the nodes that can hold a fault."""
+    """Walk over the nodes that can contain a fault."""
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "decorator_list", "type_params"):
             continue

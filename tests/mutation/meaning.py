@@ -1,4 +1,4 @@
-"""Whether a changed message provably means the same as the unchanged one."""
+"""Compares the meaning of a changed message with that of the unchanged one."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace
 
 
-def same(node: Node, message: Message, other_node: Node, other: Message) -> bool:
-    """Whether the reference codec reads and writes every bit alike, and everything else
-    that code is made from is equal.
+def is_same_meaning(
+    node: Node, message: Message, other_node: Node, other: Message
+) -> bool:
+    """Return whether the reference codec handles every bit alike, and all other facts
+    from which code is generated are equal.
     """
     return _facts(node, message) == _facts(other_node, other)
 
@@ -38,7 +40,9 @@ def _facts(node: Node, message: Message) -> tuple:
 
 
 def _place(node: Node, field: NodePlace) -> object:
-    """Where each of its bits lies; what only the end of a frame counts has none."""
+    """Return the position of each bit of a field; of a variable-length field its
+    position.
+    """
     if field.is_bytes or field.is_count:
         return field.at
     orders = field.orders_in_effect(node.orders)

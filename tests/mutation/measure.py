@@ -1,4 +1,4 @@
-"""Runs the unchanged vectors on mutants, in batches, and keeps the score."""
+"""Runs the unchanged vectors on mutants, in batches, and counts the results."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.conformance.languages import python as python_language
 from tests.conformance.languages import rust as rust_language
 from tests.conformance.robust import line
 from tests.mutation.batches import Batch, baseline, key, prepare, split
-from tests.mutation.meaning import same
+from tests.mutation.meaning import is_same_meaning
 from tests.mutation.mutants import Mutant, unchanged
 
 # Not optimised: a mutant is built once and run for a moment.
@@ -37,7 +37,9 @@ LANGUAGES = {
         ("gcc",),
         partial(c_language.build, compiler="gcc", flags=("-O0",)),
     ),
-    "python": next(one for one in python_language.LANGUAGES if one.name == "python"),
+    "python": next(
+        language for language in python_language.LANGUAGES if language.name == "python"
+    ),
     "rust": Language(
         "rust",
         rust_language.BACKENDS,
@@ -46,36 +48,32 @@ LANGUAGES = {
     ),
 }
 
-ANY = "@"  # stands for the mutant's node in requests that are made once
+ANY = "@"  # placeholder for the mutant's node in prepared requests
 STEPS = (
     6,
     40,
     400,
     10**9,
-)  # so many cases are tried on a mutant before its answers are looked at
+)  # numbers of cases after which the answers of a mutant are compared
 
 
 @dataclass
 class Score:
-    """What became of the mutants in one language, by kind of change."""
+    """Results of the mutants in one language, by kind of change."""
 
     killed: Counter = field(default_factory=Counter)
-    also: Counter = field(
-        default_factory=Counter
-    )  # refused by the rules, and killed too
-    not_also: Counter = field(
-        default_factory=Counter
-    )  # refused by the rules, and the vectors would not have noticed
-    same: Counter = field(
-        default_factory=Counter
-    )  # survived, and provably mean the same
+    # rejected by the rules, and also killed by the vectors or not
+    rejected_and_killed: Counter = field(default_factory=Counter)
+    rejected_and_survived: Counter = field(default_factory=Counter)
+    # survived, and provably have the same meaning
+    same: Counter = field(default_factory=Counter)
     survived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
     crashed: list[str] = field(default_factory=list)
 
 
 @dataclass
 class Prepared:
-    """A case as it is sent, but for the node's name."""
+    """A case as bytes to send, except for the name of the node."""
 
     start: bytes
     end: bytes
@@ -86,7 +84,7 @@ class Prepared:
 
 
 class Vectors:
-    """The cases of every message and enumeration, made when they are first needed."""
+    """The cases of every message and enumeration, prepared at first use."""
 
     def __init__(self, files: dict[str, dict]) -> None:
         self.files, self.enums = files, member_names(files)
@@ -95,15 +93,16 @@ class Vectors:
             for node, data in files.items()
             for m in data["messages"]
         }
-        self.made: dict[tuple, list[Prepared]] = {}
+        self.prepared: dict[tuple, list[Prepared]] = {}
 
     def of(self, mutant: Mutant) -> list[Prepared]:
         name = key(mutant)
-        if name not in self.made:
-            if len(self.made) > 20:
-                self.made.clear()
-            self.made[name] = [_prepared(case) for case in self._cases(mutant)]
-        return self.made[name]
+        if name not in self.prepared:
+            # Limit the memory; most mutants of a message follow each other.
+            if len(self.prepared) > 20:
+                self.prepared.clear()
+            self.prepared[name] = [_prepared(case) for case in self._cases(mutant)]
+        return self.prepared[name]
 
     def _cases(self, mutant: Mutant) -> Iterable[Case]:
         data = self.files[mutant.node]
@@ -119,7 +118,7 @@ class Vectors:
         cases = MessageCases(ANY, message, self.enums, data["never_set"])
         return sorted(
             cases.all(), key=lambda case: case.request["op"] != "constants"
-        )  # a cheap and telling one first
+        )  # first the cheap case that detects most changes
 
 
 def _prepared(case: Case) -> Prepared:
@@ -131,8 +130,8 @@ def _prepared(case: Case) -> Prepared:
 def measure(
     icd: Icd, files: dict[str, dict], chosen: list[Mutant], languages: list[Language]
 ) -> Iterator[tuple[int, dict[str, Score], dict[str, int]]]:
-    """After each batch: how many mutants are done, the score of each language, how many
-    the rules refuse.
+    """Yield after each batch the number of finished mutants, the score of each
+    language, and the number of rejected mutants.
 
     Raises `BuildError`.
     """
@@ -169,31 +168,33 @@ def run(
     score: Score,
     folder: Path,
 ) -> None:
-    """Builds the batch and runs every mutant's vectors until one fails."""
+    """Build the batch and run the vectors of every mutant until one fails."""
     alive = [node.name for node in batch.icd.nodes]
     if not alive:
         return
+    # Most mutants fail one of the first cases. The number of cases therefore grows in
+    # steps.
     testee = Testee(build(language, batch.icd, folder))
     first = 0
     for last in STEPS:
         alive = [
             name
             for name in alive
-            if _lives(testee, batch, name, vectors, score, first, last)
+            if _survives(testee, batch, name, vectors, score, first, last)
         ]
         first = last
     testee.close()
     for name in alive:
         mutant = batch.mutants[name]
         if name in batch.refused:
-            score.not_also[mutant.kind] += 1
+            score.rejected_and_survived[mutant.kind] += 1
         elif _means_the_same(icd, batch, name):
             score.same[mutant.kind] += 1
         else:
             score.survived[mutant.kind].append(mutant.about)
 
 
-def _lives(
+def _survives(
     testee: Testee,
     batch: Batch,
     name: str,
@@ -212,7 +213,9 @@ def _lives(
         for case, reply in zip(cases, replies, strict=True)
     ):
         return True
-    (score.also if name in batch.refused else score.killed)[mutant.kind] += 1
+    (score.rejected_and_killed if name in batch.refused else score.killed)[
+        mutant.kind
+    ] += 1
     return False
 
 
@@ -222,4 +225,4 @@ def _means_the_same(icd: Icd, batch: Batch, name: str) -> bool:
         return False
     message = next(m for m in node.messages if m.name == mutant.message)
     other = batch.node(name)
-    return same(node, message, other, other.messages[0])
+    return is_same_meaning(node, message, other, other.messages[0])

@@ -1,8 +1,7 @@
-"""All single changes of an ICD's numbers.
+"""All single changes of the numbers of an ICD.
 
-Each mutant is the tree of a small ICD that holds one changed message (or enumeration).
-
-So many mutants fit into one build: each is a node of its own, and the vectors of the
+Each mutant is the tree of a small ICD with one changed message or enumeration. Many
+mutants fit into one build, because each is a node of its own. The vectors of the
 unchanged message are run on that node.
 """
 
@@ -39,7 +38,8 @@ _NUMBER_KEYS = (
 class Mutant:
     """One change, in words, and the ICD that has it.
 
-    ``message`` or ``enum`` names whose vectors must notice; neither: the node.
+    ``message`` or ``enum`` names the message or enumeration whose vectors must fail. If
+    neither is given, these are the vectors of the node.
     """
 
     kind: str  # "offset", "width", "type" ...
@@ -51,20 +51,20 @@ class Mutant:
 
 
 def mutants(icd: Icd) -> Iterator[Mutant]:
-    """Every mutant, in the order of the ICDs."""
+    """Yield every mutant, in the order of the ICDs."""
     for node in icd.nodes:
-        home = _Home(icd, node)
+        origin = _Origin(icd, node)
         for message in node.messages:
-            yield from _message(home, message)
+            yield from _message(origin, message)
         for enum in node.enums:
-            yield from _enum(home, enum)
-        yield from _node(home)
+            yield from _enum(origin, enum)
+        yield from _node(origin)
 
 
 def unchanged(icd: Icd) -> Iterator[Mutant]:
-    """The small ICDs without any change."""
+    """Yield the small ICDs without any change."""
     for node in icd.nodes:
-        home = _Home(icd, node)
+        origin = _Origin(icd, node)
         for message in node.messages:
             yield Mutant(
                 "none",
@@ -72,7 +72,7 @@ def unchanged(icd: Icd) -> Iterator[Mutant]:
                 node.name,
                 message.name,
                 None,
-                home.tree(message, []),
+                origin.tree(message, []),
             )
         for enum in node.enums:
             user = next(
@@ -85,28 +85,30 @@ def unchanged(icd: Icd) -> Iterator[Mutant]:
                 node.name,
                 None,
                 enum.name,
-                home.tree(user, [enum.name]),
+                origin.tree(user, [enum.name]),
             )
 
 
-class _Home:
-    """What a small ICD takes over from the node that it is cut out of."""
+class _Origin:
+    """The parts that a small ICD takes over from its node."""
 
     def __init__(self, icd: Icd, node: Node) -> None:
         self.node = node
         scope = (*icd.included(node), node)
-        self.enums = {enum.name: enum for one in scope for enum in one.enums}
+        self.enums = {enum.name: enum for owner in scope for enum in owner.enums}
         self.structs = {
-            struct.name: plain(struct.source) for one in scope for struct in one.structs
+            struct.name: plain(struct.source)
+            for owner in scope
+            for struct in owner.structs
         }
         self.units = {
             unit["symbol"]: unit
-            for one in scope
-            for unit in plain(one.source.get("units") or [])
+            for owner in scope
+            for unit in plain(owner.source.get("units") or [])
         }
 
     def tree(self, message: Message | None, enums: list[str]) -> dict:
-        """A small ICD with one message and some enumerations."""
+        """Return a small ICD with one message and some enumerations."""
         node, head = self.node, plain(self.node.source["node"])
         tree: dict = {
             "icdgen": 1,
@@ -114,19 +116,20 @@ class _Home:
             "vocabulary": list(node.vocabulary),
         }
         if message is not None:
-            one = plain(message.source)
-            one.pop("contains", None)
-            one.pop("listed", None)
-            if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [
-                    _line(one)
-                    for one in places_in(message.layout)
-                    if not one.is_count and one.derived is None
+            own = plain(message.source)
+            # The other messages, to which these keys refer, are not in the small ICD.
+            own.pop("contains", None)
+            own.pop("listed", None)
+            if message.fields:  # of a split field its parts
+                own["fields"] = [
+                    _line(place)
+                    for place in places_in(message.layout)
+                    if not place.is_count and place.derived is None
                 ]
-            tree["messages"] = [one]
-            tree["structs"] = structs = list(self._used(one))
-            rows = [row for part in (one, *structs) for row in part.get("fields") or ()]
-            fields = [*rows, *one.get("derived", ())]
+            tree["messages"] = [own]
+            tree["structs"] = structs = list(self._used(own))
+            rows = [row for part in (own, *structs) for row in part.get("fields") or ()]
+            fields = [*rows, *own.get("derived", ())]
             used = {field.get("unit") for field in fields}
             tree["units"] = [
                 unit for symbol, unit in self.units.items() if symbol in used
@@ -138,16 +141,14 @@ class _Home:
         return {key: value for key, value in tree.items() if value}
 
     def _used(self, part: dict) -> Iterator[dict]:
-        """The structs that stand in a message or a struct, each once, and those in
-        them.
-        """
+        """Yield the structs of a message or a struct, each once, including nested ones."""
         names = dict.fromkeys(
             field["struct"] for field in part.get("fields") or () if "struct" in field
         )
-        found = {name: copy.deepcopy(self.structs[name]) for name in names}
-        for one in list(found.values()):
-            found |= {inner["name"]: inner for inner in self._used(one)}
-        yield from found.values()
+        structs = {name: copy.deepcopy(self.structs[name]) for name in names}
+        for struct in list(structs.values()):
+            structs |= {inner["name"]: inner for inner in self._used(struct)}
+        yield from structs.values()
 
 
 def _line(field: NodePlace) -> dict:
@@ -159,8 +160,8 @@ def _line(field: NodePlace) -> dict:
     )
 
 
-def _message(home: _Home, message: Message) -> Iterator[Mutant]:
-    base = home.tree(message, [])
+def _message(origin: _Origin, message: Message) -> Iterator[Mutant]:
+    base = origin.tree(message, [])
     name = message.name
 
     def mutant(kind: str, about: str, change: Change) -> Mutant:
@@ -172,7 +173,7 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
         }
         if "enums" in tree:
             tree["enums"] = [enum for enum in tree["enums"] if enum["name"] in used]
-        return Mutant(kind, f"{name!r}: {about}", home.node.name, name, None, tree)
+        return Mutant(kind, f"{name!r}: {about}", origin.node.name, name, None, tree)
 
     def on_message(kind: str, about: str, **values: object) -> Mutant:
         return mutant(kind, about, lambda tree: tree["messages"][0].update(values))
@@ -186,7 +187,7 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
                 )
     for step in (
         (-1, 1) if not message.layout.parts else ()
-    ):  # an open end begins where it ends
+    ):  # a variable-length field begins where the fixed length ends
         yield on_message(
             "length",
             f"length {message.length} -> {message.length + step}",
@@ -231,7 +232,9 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
 
 
 def _part(part: dict) -> Iterator[tuple[str, str, Change]]:
-    """Changes of the fields of a message or a struct, and of the length of the latter."""
+    """Yield changes of the fields of a message or a struct, and of the length of a
+    struct.
+    """
     fields = part.get("fields") or []
     for about, change in _swaps(fields):
         yield "swap", about, change
@@ -242,9 +245,9 @@ def _part(part: dict) -> Iterator[tuple[str, str, Change]]:
                 f"{field['name']!r}: {about}",
                 lambda p, i=index, c=change: c(p["fields"][i]),
             )
-    for index, one in enumerate(part.get("derived") or ()):
-        for text in formulas(one["formula"]):
-            about = f"{one['name']!r}: {one['formula']} -> {text}"
+    for index, derived in enumerate(part.get("derived") or ()):
+        for text in formulas(derived["formula"]):
+            about = f"{derived['name']!r}: {derived['formula']} -> {text}"
             yield (
                 "derived",
                 about,
@@ -260,19 +263,16 @@ def _part(part: dict) -> Iterator[tuple[str, str, Change]]:
 
 
 def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
-    """Two neighbours of the same width and type in each other's place."""
+    """Yield changes in which two neighbours of the same width and type exchange their
+    positions.
+    """
     for index in range(1, len(fields)):
-        one, other = fields[index - 1], fields[index]
-        if (
-            is_variable(one)
-            or is_variable(other)
-            or "struct" in one
-            or "struct" in other
-        ):
+        first, second = fields[index - 1], fields[index]
+        if any(is_variable(each) or "struct" in each for each in (first, second)):
             continue
-        if (one["bits"], one["type"]) == (other["bits"], other["type"]):
-            about = f"{one['name']!r} and {other['name']!r} in each other's place"
-            places = {index - 1: other["at"], index: one["at"]}
+        if (first["bits"], first["type"]) == (second["bits"], second["type"]):
+            about = f"{first['name']!r} and {second['name']!r} exchanged"
+            places = {index - 1: second["at"], index: first["at"]}
             yield (
                 about,
                 lambda t, p=places: [
@@ -281,33 +281,33 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
             )
 
 
-def _open(field: dict) -> Iterator[tuple[str, str, Change]]:
-    """How many elements, or bytes, an open end has."""
+def _variable_length(field: dict) -> Iterator[tuple[str, str, Change]]:
+    """Yield changes of the number of elements, or bytes, of a variable-length field."""
     for step in (-1, 1):
         yield _number("up to", field, "up_to", step)
     key = count_key(field)
-    said = field[key]
-    if said != "rest":
+    counter = field[key]
+    if counter != "rest":
         yield "counter", "up to the end", lambda f: f.update({key: "rest"})
-    if isinstance(said, str) and said != "rest":
+    if isinstance(counter, str) and counter != "rest":
         yield (
             "counter",
-            "one more than it says",
-            lambda f: f.update({key: {"field": said, "plus": 1}}),
+            "one more than it counts",
+            lambda f: f.update({key: {"field": counter, "plus": 1}}),
         )
-    for step in (-1, 1) if isinstance(said, dict) else ():
-        plus = said["plus"] + step
-        about = f"plus {said['plus']} -> {plus}"
+    for step in (-1, 1) if isinstance(counter, dict) else ():
+        plus = counter["plus"] + step
+        about = f"plus {counter['plus']} -> {plus}"
         yield (
             "counter",
             about,
-            lambda f, v=plus: f.update({key: {"field": said["field"], "plus": v}}),
+            lambda f, v=plus: f.update({key: {"field": counter["field"], "plus": v}}),
         )
 
 
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
     if "struct" in field and is_variable(field):
-        yield from _open(field)
+        yield from _variable_length(field)
         return
     if "struct" in field:
         for key, steps in (
@@ -318,7 +318,7 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
                 yield _number("offset" if key == "at" else "count", field, key, step)
         return
     if is_variable(field):
-        yield from _open(field)
+        yield from _variable_length(field)
         for step in (-8, 8) if "bits" in field else ():
             yield _number("width", field, "bits", step)
     for step in (-8, -1, 1, 8) if not is_variable(field) else ():
@@ -328,21 +328,23 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
             yield _number("width", field, "bits", step)
     for step in (-1, 1) if type(field.get("count")) is int else ():
         yield _number("count", field, "count", step)
-    for name, said in (field.get("when") or {}).items():
-        for index, value in enumerate(said if isinstance(said, list) else [said]):
+    for name, condition in (field.get("when") or {}).items():
+        for index, value in enumerate(
+            condition if isinstance(condition, list) else [condition]
+        ):
             for step in (-1, 1) if type(value) is int else ():
                 values = (
-                    [*said[:index], value + step, *said[index + 1 :]]
-                    if isinstance(said, list)
+                    [*condition[:index], value + step, *condition[index + 1 :]]
+                    if isinstance(condition, list)
                     else value + step
                 )
                 yield (
                     "condition",
-                    f"{name} {said} -> {values}",
+                    f"{name} {condition} -> {values}",
                     lambda f, n=name, v=values: f["when"].update({n: v}),
                 )
     if field.get("when"):
-        yield "condition", "always there", lambda f: f.pop("when")
+        yield "condition", "always present", lambda f: f.pop("when")
     if field.get("view"):
         yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:
@@ -394,7 +396,9 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
 
 
 def _points(field: dict) -> Iterator[tuple[str, str, Change]]:
-    """Each number of a table one more and one less, and what is so outside of it."""
+    """Yield lookup tables with one number changed by one, and with other behaviour
+    outside.
+    """
     for points in tables(field["points"]):
         yield (
             "points",
@@ -416,6 +420,7 @@ def _number(kind: str, field: dict, key: str, step: int) -> tuple[str, str, Chan
 
 
 def _retype(field: dict, type_: str) -> None:
+    # Special values of a float, such as NaN, are invalid for other types.
     if field["type"] == "float":
         field.pop("special", None)
     field["type"] = type_
@@ -425,32 +430,32 @@ def _retype(field: dict, type_: str) -> None:
             field.pop(key, None)
 
 
-def _node(home: _Home) -> Iterator[Mutant]:
+def _node(origin: _Origin) -> Iterator[Mutant]:
     for key in ("node_type", "interface_version"):
-        number = getattr(home.node, key)
+        number = getattr(origin.node, key)
         for step in (-1, 1) if number is not None else ():
-            tree = copy.deepcopy(home.tree(None, []))
+            tree = copy.deepcopy(origin.tree(None, []))
             tree["node"][key] = number + step
             yield Mutant(
                 "node",
                 f"{key} {number} -> {number + step}",
-                home.node.name,
+                origin.node.name,
                 None,
                 None,
                 tree,
             )
 
 
-def _enum(home: _Home, enum: Enum) -> Iterator[Mutant]:
+def _enum(origin: _Origin, enum: Enum) -> Iterator[Mutant]:
     user = next(
-        (m for m in home.node.messages if any(f.enum is enum for f in m.fields)), None
+        (m for m in origin.node.messages if any(f.enum is enum for f in m.fields)), None
     )
     for index, member in enumerate(enum.members):
         for key, step in product(("value", "to"), (-1, 1)):
             if (value := getattr(member, key)) is None:
                 continue
-            tree = copy.deepcopy(home.tree(user, [enum.name]))
+            tree = copy.deepcopy(origin.tree(user, [enum.name]))
             changed = next(e for e in tree["enums"] if e["name"] == enum.name)
             changed["members"][index][key] = value + step
             about = f"{enum.name!r}: {member.name!r} {value} -> {value + step}"
-            yield Mutant("enum value", about, home.node.name, None, enum.name, tree)
+            yield Mutant("enum value", about, origin.node.name, None, enum.name, tree)

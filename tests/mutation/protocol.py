@@ -1,10 +1,10 @@
 """``python -m tests.mutation.protocol``: changes one number of a protocol section at a
-time and asks the unchanged vectors.
+time and runs the unchanged vectors.
 
-A mutant is a node that includes the real one and has nothing of its own but the changed
-protocol section, so that several are nodes of one build. Ends with status 0 if each is
-refused by ``icdgen check``, is noticed by a vector in every language, or has the very
-same facts, from which all code is made.
+A mutant is a node that includes the original node and has only the changed protocol
+section, so that one build has several mutants. The exit status is 0 if each mutant is
+rejected by ``icdgen check``, is detected by a vector in every language, or has exactly
+the same facts, from which all code is generated.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from tests.mutation.measure import LANGUAGES
 REFERENCE = "reference"
 OUTCOMES = ("refused", "killed", "same", "survived")
 TOGETHER = 40  # mutants of one build
-AT_ONCE = 50  # cases that are asked of a mutant before its answers are looked at
+AT_ONCE = 50  # number of cases after which the answers of a mutant are compared
 
 
 @dataclass(frozen=True)
@@ -51,18 +51,18 @@ class Mutant:
         return f"{self.owner}: {'.'.join(map(str, self.path))} = {self.value}"
 
     def changed(self, section: dict[str, Any]) -> dict[str, Any]:
-        """A copy of the section with the value in its place."""
-        made = copy.deepcopy(section)
-        holder: Any = made
+        """Return a copy of the section with the changed value."""
+        changed = copy.deepcopy(section)
+        holder: Any = changed
         for step in self.path[:-1]:
             holder = holder[step]
         holder[self.path[-1]] = self.value
-        return made
+        return changed
 
 
 def mutants(icd: Icd) -> Iterator[Mutant]:
-    """Every number one more and one less, every truth value the other way round;
-    reasons of assumptions are words.
+    """Yield a mutant for every number plus and minus one, and for every inverted truth
+    value.
     """
     for node in icd.nodes:
         for path, value in _leaves(node.protocol):
@@ -89,8 +89,11 @@ def _leaves(
         yield path, value
 
 
-class Judge:
-    """What `icdgen check` says of a mutant: the ICDs are written anew, errata applied."""
+class Checker:
+    """Runs `icdgen check` on a mutant.
+
+    The ICDs are written to a folder of their own, with errata applied.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -100,16 +103,16 @@ class Judge:
         }
         for name in self.trees:
             self._write(name, self.trees[name])
-        self.known = self._errors()
+        self.known_errors = self._errors()
 
     def refuses(self, mutant: Mutant) -> bool:
-        """Whether it has an error that the unchanged ICDs have not."""
+        """Return whether the mutant has an error that the unchanged ICDs do not have."""
         tree = self.trees[mutant.owner]
         self._write(
             mutant.owner, {**tree, "protocol": mutant.changed(tree["protocol"])}
         )
         try:
-            return bool(self._errors() - self.known)
+            return bool(self._errors() - self.known_errors)
         finally:
             self._write(mutant.owner, tree)
 
@@ -119,8 +122,12 @@ class Judge:
         )  # which is YAML
 
     def _errors(self) -> set[tuple[str, str]]:
-        found = load([self.folder]).findings
-        return {(one.code, one.message) for one in found if one.severity == "error"}
+        findings = load([self.folder]).findings
+        return {
+            (finding.code, finding.message)
+            for finding in findings
+            if finding.severity == "error"
+        }
 
 
 def _plain(value: Any) -> Any:
@@ -129,28 +136,30 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
-def grown(
+def with_mutants(
     icd: Icd, chosen: list[Mutant]
 ) -> tuple[Icd, list[tuple[Mutant, Node, Node]]]:
-    """The ICDs with a node for each mutant and each real node that has the changed
-    section; with the real one beside it.
+    """Return the ICDs with a node for each mutant and each node that has the changed
+    section.
+
+    The list has each mutant with its original node and its own node.
     """
     added = []
     for number, mutant in enumerate(chosen):
         for node in icd.nodes:
             if mutant.owner not in (
                 node.name,
-                *(one.name for one in icd.included(node)),
+                *(included.name for included in icd.included(node)),
             ):
                 continue
             own = icd.node(mutant.owner).protocol
             merged = protocol_of_all(
                 (
-                    replace(one, protocol=mutant.changed(own))
-                    if one.name == mutant.owner
-                    else one
+                    replace(part, protocol=mutant.changed(own))
+                    if part.name == mutant.owner
+                    else part
                 )
-                for one in (*icd.included(node), node)
+                for part in (*icd.included(node), node)
             )
             name = f"mutant{number}{node.name}"
             merged = _renamed(merged, node.name, name)
@@ -167,7 +176,9 @@ def grown(
 
 
 def _renamed(value: Any, old: str, new: str) -> Any:
-    """The section as the mutant's own: where it names its node, it names the mutant."""
+    """Return the section of the mutant: the name of the original node is replaced by
+    its own.
+    """
     if isinstance(value, dict):
         return {key: _renamed(item, old, new) for key, item in value.items()}
     if isinstance(value, list):
@@ -178,13 +189,13 @@ def _renamed(value: Any, old: str, new: str) -> Any:
 def measure(
     icd: Icd, chosen: list[Mutant], languages: list[str], folder: Path
 ) -> dict[Mutant, dict[str, str]]:
-    """What became of each mutant in each language."""
-    judge = Judge(folder)
-    sound = [mutant for mutant in chosen if not judge.refuses(mutant)]
-    found: dict[Mutant, dict[str, str]] = {
+    """Return the result of each mutant in each language."""
+    checker = Checker(folder)
+    sound = [mutant for mutant in chosen if not checker.refuses(mutant)]
+    results: dict[Mutant, dict[str, str]] = {
         m: dict.fromkeys(languages, "refused") for m in chosen
     }
-    whole, added = grown(icd, sound)
+    extended, added = with_mutants(icd, sound)
     cases = {
         node["node"]: node["cases"]
         for node in json.loads(VECTORS.read_text(encoding="utf-8"))["nodes"]
@@ -192,72 +203,81 @@ def measure(
     for language in languages:
         testee: Answering
         testee = (
-            InProcess(Reference(whole).answer)
+            InProcess(Reference(extended).answer)
             if language == REFERENCE
-            else Testee(build(LANGUAGES[language], whole))
+            else Testee(build(LANGUAGES[language], extended))
         )
         for mutant in sound:
-            found[mutant][language] = "survived"
+            results[mutant][language] = "survived"
         for mutant, node, thin in added:
-            if found[mutant][language] != "killed" and _kills(
+            if results[mutant][language] != "killed" and _kills(
                 testee, cases.get(node.name, []), thin.name
             ):
-                found[mutant][language] = "killed"
+                results[mutant][language] = "killed"
         testee.close()
     for mutant in sound:
         if all(
-            _facts(whole, thin) == _facts(whole, node)
-            for one, node, thin in added
-            if one is mutant
+            _facts(extended, thin) == _facts(extended, node)
+            for owner, node, thin in added
+            if owner is mutant
         ):
-            found[mutant] = {
+            results[mutant] = {
                 name: "same" if end == "survived" else end
-                for name, end in found[mutant].items()
+                for name, end in results[mutant].items()
             }
-    return found
+    return results
 
 
 def _facts(icd: Icd, node: Node) -> object:
-    """The facts that code is made from, but for the node that they are of, and for
-    remarks.
+    """Return the facts from which code is generated, without the node and the
+    assumptions.
     """
     return _values(replace(facts.of(icd, node), node=icd.nodes[0], assumptions=()))
 
 
-def _values(known: Any) -> object:
-    """Facts as values that can be compared; nodes and messages are themselves."""
-    if is_dataclass(known) and not isinstance(known, Node | Message):
-        return {one.name: _values(getattr(known, one.name)) for one in fields(known)}
-    if isinstance(known, dict):
-        return {key: _values(value) for key, value in known.items()}
-    return [_values(value) for value in known] if isinstance(known, tuple) else known
+def _values(fact: Any) -> object:
+    """Return facts as values that can be compared; nodes and messages are not
+    converted.
+    """
+    if is_dataclass(fact) and not isinstance(fact, Node | Message):
+        return {
+            field.name: _values(getattr(fact, field.name)) for field in fields(fact)
+        }
+    if isinstance(fact, dict):
+        return {key: _values(value) for key, value in fact.items()}
+    return [_values(value) for value in fact] if isinstance(fact, tuple) else fact
 
 
 def _kills(testee: Answering, cases: list[dict[str, Any]], name: str) -> bool:
-    """Whether any case of the real node is answered otherwise by the mutant."""
+    """Return whether the mutant answers any case of the original node differently."""
+    # In random order, a failing case is found after fewer cases.
     cases = random.Random(1).sample(cases, len(cases))
     for start in range(0, len(cases), AT_ONCE):
-        some = cases[start : start + AT_ONCE]
-        answers = testee.ask([line({**case["request"], "node": name}) for case in some])
-        for case, answer in zip(some, answers, strict=True):
+        batch = cases[start : start + AT_ONCE]
+        answers = testee.ask(
+            [line({**case["request"], "node": name}) for case in batch]
+        )
+        for case, answer in zip(batch, answers, strict=True):
             if answer is None or difference(case["answer"], answer):
                 return True
     return False
 
 
-def table(found: dict[Mutant, dict[str, str]], languages: list[str]) -> str:
-    """A line a language, then what is the same and what survived."""
+def table(results: dict[Mutant, dict[str, str]], languages: list[str]) -> str:
+    """Return a line for each language, then the mutants with the same meaning and the
+    survivors.
+    """
     lines = [
         f"{'language':12}{'mutants':>10}" + "".join(f"{word:>10}" for word in OUTCOMES)
     ]
     for language in languages:
-        ends = Counter(one[language] for one in found.values())
+        ends = Counter(by_language[language] for by_language in results.values())
         lines.append(
-            f"{language:12}{len(found):10,}"
+            f"{language:12}{len(results):10,}"
             + "".join(f"{ends[word]:10,}" for word in OUTCOMES)
         )
     for word in OUTCOMES[2:]:
-        for mutant, ends in found.items():
+        for mutant, ends in results.items():
             where = [name for name in languages if ends[name] == word]
             if where:
                 lines.append(
@@ -283,13 +303,13 @@ def main(arguments: list[str] | None = None) -> int:
     if options.sample is not None:
         chosen = random.Random(0).sample(chosen, min(options.sample, len(chosen)))
     with tempfile.TemporaryDirectory() as folder:
-        found: dict[Mutant, dict[str, str]] = {}
+        results: dict[Mutant, dict[str, str]] = {}
         for start in range(0, len(chosen), TOGETHER):
-            found |= measure(
+            results |= measure(
                 icd, chosen[start : start + TOGETHER], languages, Path(folder)
             )
-    print(table(found, languages))
-    return int(any("survived" in ends.values() for ends in found.values()))
+    print(table(results, languages))
+    return int(any("survived" in ends.values() for ends in results.values()))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The vectors notice changes of the ICD, and the measurement notices vectors that do
+"""The vectors detect changes of the ICD, and the measurement detects vectors that do
 not.
 """
 
@@ -49,8 +49,8 @@ def test_no_sampled_mutant_survives_in_any_language(icd, files):
         assert sum(score.killed.values()) > 8
 
 
-def test_vectors_without_worth_let_mutants_survive(icd, files):
-    """If only all zeros were tried, most changes would go unnoticed."""
+def test_mutants_survive_poor_vectors(icd, files):
+    """With frames of all zeros only, most changes are not detected."""
     poor = copy.deepcopy(files)
     for data in poor.values():
         for message in data["messages"]:

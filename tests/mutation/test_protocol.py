@@ -1,5 +1,5 @@
-"""The wire vectors notice changes of a protocol section, and the measurement notices
-when nothing changed.
+"""The wire vectors detect changes of a protocol section, and the measurement recognizes
+a section without changes.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ def icd():
 
 def test_no_sampled_mutant_survives(icd, tmp_path):
     chosen = random.Random(4).sample(list(mutants(icd)), 6)
-    found = measure(icd, chosen, [REFERENCE, "python"], tmp_path)
+    results = measure(icd, chosen, [REFERENCE, "python"], tmp_path)
     assert [
-        str(mutant) for mutant, ends in found.items() if "survived" in ends.values()
+        str(mutant) for mutant, ends in results.items() if "survived" in ends.values()
     ] == []
 
 
-def test_another_escape_byte_is_noticed_by_every_language_asked(icd, tmp_path):
+def test_another_escape_byte_is_detected_in_every_language(icd, tmp_path):
     framing = icd.node("common").protocol["link"]["buses"]["uart"]["framing"]
     other = Mutant("common", (*FRAMING, "escape"), framing["escape"] ^ 0x10)
     assert measure(icd, [other], [REFERENCE, "python"], tmp_path)[other] == {

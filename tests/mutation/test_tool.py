@@ -1,5 +1,7 @@
-"""The command that plants faults in icdgen itself: which faults there are, and that
-tests catch a sample of them. ``python -m tests.mutation.tool`` plants more.
+"""The tool that plants faults in icdgen itself finds all places for faults, and the
+tests catch a sample of them.
+
+``python -m tests.mutation.tool`` plants more.
 """
 
 from __future__ import annotations
@@ -56,7 +58,7 @@ def test_a_changed_module_is_python_with_the_same_lines():
 
 
 def test_other_processes_load_the_module_with_the_fault(tmp_path):
-    """Also those that a test starts, such as `icdgen`."""
+    """This includes processes that a test starts, such as `icdgen`."""
     changed = tmp_path / "changed.py"
     changed.write_text("def close_to(*_):\n    return 'planted'\n", encoding="utf-8")
     environment = os.environ | {

@@ -1,7 +1,7 @@
 """``python -m tests.mutation.tool [FILE ...]``: plants faults in icdgen itself, one at a
 time, and runs the tests that cover the file (`tests.covering`).
 
-In: Python files below ``codegen/`` and ``runtime/python/``; without any, those that
+In: Python files below ``codegen/`` and ``runtime/python/``; by default the files that
 changed since ``--base``. Out: a line per fault that no test caught, and the counts.
 Ends with status 0 if all are caught. A fault may be equivalent to the code; whoever
 reads the list decides. The faults themselves are in `tests.mutation.faults`.
@@ -24,8 +24,8 @@ from tests.mutation.faults import Fault, faults_of
 
 PLANTING = Path(__file__).parent / "planting"
 
-# A fault that makes a loop endless is caught by time: after so many times the time of
-# the tests without a fault.
+# A fault can make a loop endless. It is caught after this multiple of the time that the
+# tests take without a fault.
 PATIENCE = 5
 
 
