@@ -1,5 +1,7 @@
-"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it;
-status 0 if nothing is found.
+"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a fuzz harness and runs
+it.
+
+The exit status is 0 if the harness finds no error.
 """
 
 from __future__ import annotations
@@ -53,7 +55,7 @@ doc = false
 
 
 def sources(language: Language, icd: Icd, folder: Path) -> Path:
-    """A fresh folder of generated code."""
+    """Return a new folder of generated code."""
     source = folder / "source"
     shutil.rmtree(source, ignore_errors=True)
     for name, data in generated(language, icd).items():
@@ -63,41 +65,42 @@ def sources(language: Language, icd: Icd, folder: Path) -> Path:
 
 
 def routes(icd: Icd, node: Node) -> dict[int, list[tuple[int, Message]]]:
-    """What a harness counts the messages of a direction by: id and message, as the
-    dispatchers of C have them.
+    """Return the id and message of each number in the input of a harness, by direction.
+
+    They have the order of the dispatchers of C.
     """
-    one = describe(icd).node(node.name)
+    described = describe(icd).node(node.name)
     return {
         0: [
             (m.model.telecommand_id, m.model)
-            for m in one.telecommands
+            for m in described.telecommands
             if m.model.telecommand_id is not None
         ],
         DIRECTION: [
             (m.model.telemetry_id, m.model)
-            for m in one.telemetry
+            for m in described.telemetry
             if m.model.telemetry_id is not None
         ],
     }
 
 
 def seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every frame of the golden vectors.
+    """Yield an input for every frame of the golden vectors.
 
-    Harnesses count the nodes in the order of the ICDs or of their names.
+    Harnesses number the nodes in the order of the ICDs or of their names.
     """
     names = [node.name for node in icd.nodes]
     for node in icd.nodes:
         ways = routes(icd, node)
         for vectors in make_vectors(icd, node).messages:
-            for flag, found in ways.items():
-                ids = sorted({id for id, _ in found})
+            for flag, routes_of_flag in ways.items():
+                ids = sorted({id for id, _ in routes_of_flag})
                 numbers = {
                     place
-                    for place, (_, one) in enumerate(found)
-                    if one == vectors.message
+                    for place, (_, message) in enumerate(routes_of_flag)
+                    if message == vectors.message
                 }
-                numbers |= {ids.index(found[place][0]) for place in numbers}
+                numbers |= {ids.index(routes_of_flag[place][0]) for place in numbers}
                 for row, number in product(vectors.rows, numbers):
                     for index in {
                         names.index(node.name),
@@ -107,8 +110,8 @@ def seeds(icd: Icd) -> Iterator[bytes]:
 
 
 def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream, row of packets and log of the golden vectors of the
-    protocol, for the harness `c_wire`.
+    """Yield an input for every stream, row of packets and log in the golden vectors of
+    the protocol, for the harness `c_wire`.
     """
     for index, node in enumerate(icd.nodes):
         for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
@@ -118,15 +121,15 @@ def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
                     yield bytes((index, 3, 0, 3, 255)) + bytes.fromhex(stream)
                 case {"op": "can_join", "packets": packets}:
                     yield bytes((index, 1, 3)) + b"".join(
-                        _packet(one) for one in packets
+                        _packet(packet) for packet in packets
                     )
                 case {"op": "log_decode", "bytes": file}:
                     yield bytes((index, 2, 5)) + bytes.fromhex(file)
 
 
 def c_stream_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream of a framed link in the golden vectors of the protocol, for
-    the harness `c_stream`.
+    """Yield an input for every stream of a framed link in the golden vectors of the
+    protocol, for the harness `c_stream`.
     """
     for index, node in enumerate(icd.nodes):
         for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
@@ -135,8 +138,9 @@ def c_stream_seeds(icd: Icd) -> Iterator[bytes]:
                 yield head + bytes.fromhex("".join(case.request["chunks"]))[:LONGEST]
 
 
-def _packet(one: dict) -> bytes:
-    id, data = one["id"], bytes.fromhex(one["bytes"])
+def _packet(packet: dict) -> bytes:
+    # The harness has few bits of an identifier, so that packets often belong together.
+    id, data = packet["id"], bytes.fromhex(packet["bytes"])
     return (
         bytes((id >> 24 & 31, id >> 16 & 255, (id >> 8 & 3) | (id & 3) << 2))
         + data.ljust(8, b"\0")
@@ -145,8 +149,8 @@ def _packet(one: dict) -> bytes:
 
 
 def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream, log and set of packets of the golden vectors of the
-    protocol layer.
+    """Yield an input for every stream, log and set of packets in the golden vectors of
+    the protocol layer.
     """
     for index, node in enumerate(
         json.loads(protocol.protocol_vectors_text(icd) or '{"nodes": []}')["nodes"]
@@ -159,10 +163,10 @@ def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
                 yield bytes((index, 3, 3, 128)) + stream
             elif request["op"] == "can_join":
                 rows = (
-                    one["id"].to_bytes(4, "big")
+                    packet["id"].to_bytes(4, "big")
                     + b"\0"
-                    + bytes.fromhex(one["bytes"]).ljust(9, b"\0")
-                    for one in request["packets"]
+                    + bytes.fromhex(packet["bytes"]).ljust(9, b"\0")
+                    for packet in request["packets"]
                 )
                 yield bytes((index, 1, 3, 128)) + b"".join(rows)[:LONGEST]
             elif request["op"] in ("log_decode", "log_message_decode"):
@@ -173,19 +177,19 @@ def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
 
 
 def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """libFuzzer with the address and the undefined-behaviour sanitizer, on the
+    """Build libFuzzer with the address and the undefined-behaviour sanitizer, on the
     dispatchers.
     """
     return _c(icd, folder, "c_target.c")
 
 
 def c_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """The same on the stream decoders and step machines of the wire layer."""
+    """Build the harness on the stream decoders and state machines of the wire layer."""
     return _c(icd, folder, "c_wire_target.c")
 
 
 def c_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """The same on the decoders of framed links."""
+    """Build the harness on the decoders of framed links."""
     return _c(icd, folder, "c_stream_target.c")
 
 
@@ -221,15 +225,17 @@ def _c(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
 
 
 def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """cargo-fuzz: libFuzzer with the address sanitizer, integer overflow checked."""
+    """Build cargo-fuzz: libFuzzer with the address sanitizer and checks of integer
+    overflow.
+    """
     arms = []
     for index, node in enumerate(icd.nodes):
         for flag, name in ((0, "Telecommand"), (DIRECTION, "Telemetry")):
             ids = ", ".join(str(id) for id, _ in routes(icd, node)[flag])
-            told = f"icd::{node.name}::{name}, [{ids}], flags, number, data"
+            arguments = f"icd::{node.name}::{name}, [{ids}], flags, number, data"
             arms += (
                 [
-                    f"    ({index}, {'true' if flag else 'false'}) => exercise!({told}),\n"
+                    f"    ({index}, {'true' if flag else 'false'}) => exercise!({arguments}),\n"
                 ]
                 if ids
                 else []
@@ -241,12 +247,12 @@ def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 
 def rust_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """The same on the stream decoders and the client of the wire layer."""
+    """Build the harness on the stream decoders and the client of the wire layer."""
     return _rust_links(icd, folder, "wire")
 
 
 def rust_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """The same on the decoders of framed links."""
+    """Build the harness on the decoders of framed links."""
     return _rust_links(icd, folder, "stream")
 
 
@@ -286,48 +292,50 @@ def _cargo_fuzz(
         (fuzz / name).write_text(text)
     options = ["--fuzz-dir", str(fuzz), "--dev"]
     execute("cargo", "+nightly", "fuzz", "build", *options, target, cwd=fuzz)
-    found = sorted(fuzz.glob(f"target/*/debug/{target}"))
-    if not found:
+    programs = sorted(fuzz.glob(f"target/*/debug/{target}"))
+    if not programs:
         raise BuildError("cargo fuzz built nothing")
-    return [str(found[0])], {}
+    return [str(programs[0])], {}
 
 
 def stream_seeds(icd: Icd) -> Iterator[bytes]:
-    """Inputs of the harnesses on stream decoders, from the golden vectors of the
+    """Yield inputs of the harnesses on stream decoders, from the golden vectors of the
     protocol.
     """
     for index, node in enumerate(protocol.nodes(icd)):
         for case in protocol.cases(icd, node):
-            asked = case.request
-            if asked["op"] in ("uart_decode", "log_decode"):
-                part = 0 if asked["op"] == "uart_decode" else 2
+            request = case.request
+            if request["op"] in ("uart_decode", "log_decode"):
+                part = 0 if request["op"] == "uart_decode" else 2
                 yield bytes((part, index + 1, len(case.why))) + bytes.fromhex(
-                    asked["bytes"]
+                    request["bytes"]
                 )
-            elif asked["op"] == "uart_events":
-                yield bytes((0, index + 1, 7)) + bytes.fromhex("".join(asked["chunks"]))
-            elif asked["op"] == "stream_events":
-                head = bytes((7, index, asked["direction"] == "telemetry"))
-                yield head + bytes.fromhex("".join(asked["chunks"]))[:LONGEST]
-            elif asked["op"] == "client":
-                part = 3 + ("uart", "can", "i2c").index(asked["bus"])
-                heard = [
+            elif request["op"] == "uart_events":
+                yield bytes((0, index + 1, 7)) + bytes.fromhex(
+                    "".join(request["chunks"])
+                )
+            elif request["op"] == "stream_events":
+                head = bytes((7, index, request["direction"] == "telemetry"))
+                yield head + bytes.fromhex("".join(request["chunks"]))[:LONGEST]
+            elif request["op"] == "client":
+                part = 3 + ("uart", "can", "i2c").index(request["bus"])
+                received = [
                     row["receive"]
-                    for row in asked["script"]
+                    for row in request["script"]
                     if isinstance(row.get("receive"), str)
                 ]
-                yield bytes((part, index + 1, len(heard))) + bytes.fromhex(
-                    "".join(heard)
+                yield bytes((part, index + 1, len(received))) + bytes.fromhex(
+                    "".join(received)
                 )
 
 
 def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """atheris."""
+    """Build atheris on the dispatchers."""
     return atheris(icd, folder, "python_target.py")
 
 
 def python_streams(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """atheris, on the stream decoders."""
+    """Build atheris on the stream decoders."""
     return atheris(icd, folder, "python_streams_target.py")
 
 
@@ -380,9 +388,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_intermixed_args(arguments)
     folder = cache_folder().resolve() / f"fuzz-{options.lang}"
     corpus = folder / "corpus"
-    shutil.rmtree(
-        corpus, ignore_errors=True
-    )  # inputs mean something for these ICDs only
+    # Inputs are valid for these ICDs only.
+    shutil.rmtree(corpus, ignore_errors=True)
     corpus.mkdir(parents=True)
     if options.odd:
         (folder / "odd").mkdir(exist_ok=True)
@@ -394,7 +401,7 @@ def main(arguments: list[str] | None = None) -> int:
         (corpus / f"seed-{number:05}").write_bytes(seed)
     if not any(corpus.iterdir()):
         print(
-            "these ICDs have nothing that the harness takes: name others",
+            "the vectors of these ICDs have no input for the harness: name other ICDs",
             file=sys.stderr,
         )
         return 2

@@ -1,4 +1,7 @@
-"""What the Python harness does with an input; needs no atheris. See README.md."""
+"""Decodes and encodes inputs with the dispatchers of a generated package.
+
+It does not need atheris. See README.md.
+"""
 
 from __future__ import annotations
 
@@ -6,22 +9,22 @@ from collections.abc import Iterator
 from types import ModuleType
 
 DIRECTION, FIT, AS_ID = 1, 2, 4
-LONGEST = 65535  # bytes of a frame; a field that counts may tell of more
-# physical values of wider fields need not lead back to the same raw value
+LONGEST = 65535  # bytes of a frame; a counter may state more
+# Physical values of wider fields need not have the same raw value again.
 EXACT_BITS = 52
 
 
 class Dispatch:
-    """Tries inputs on the dispatchers of a generated package."""
+    """Runs inputs on the dispatchers of a generated package."""
 
     def __init__(self, package: ModuleType) -> None:
         self.package = package
         self.nodes = [getattr(package, name) for name in package.NODES]
 
-    def one(self, data: bytes) -> None:
-        """Decodes, encodes, and compares.
+    def run(self, data: bytes) -> None:
+        """Decode, encode, and compare.
 
-        Raises what the package should not have raised.
+        Raises every exception that the package should not have raised.
         """
         if len(data) < 3:
             return
@@ -55,13 +58,13 @@ class Dispatch:
 
 
 def check(message, frame: bytes, package: ModuleType) -> None:
-    """Encoding gives the frame, but for reserved bits; so does setting every physical
-    value.
+    """Check that encoding returns the frame, except for reserved bits, also after every
+    physical value has been set.
     """
-    first = message.to_bytes()
-    assert len(first) == (len(frame) if message.TAIL else message.LENGTH)
-    again = type(message).from_bytes(first)
-    for part in _parts(again):
+    encoded = message.to_bytes()
+    assert len(encoded) == (len(frame) if message.TAIL else message.LENGTH)
+    copy = type(message).from_bytes(encoded)
+    for part in _parts(copy):
         for info in part.FIELDS:
             if not info.physical:
                 continue
@@ -77,22 +80,21 @@ def check(message, frame: bytes, package: ModuleType) -> None:
             try:
                 setattr(part, info.physical, value)
             except package.RangeError:
-                assert value != value  # what a table refuses reads as no number
-            if (
-                getattr(part, info.attribute) != raw
-            ):  # raw values that have the same double
+                assert value != value  # NaN: the raw value is outside its lookup table
+            if getattr(part, info.attribute) != raw:
+                # Two raw values can have the same double.
                 assert getattr(part, info.physical) == value
                 setattr(part, info.attribute, raw)
-    assert again.to_bytes() == first
+    assert copy.to_bytes() == encoded
     repr(message)
     message.as_dict(physical=True)
 
 
-def _parts(whole) -> Iterator:
-    """A message and the structs in it."""
-    yield whole
-    for info in whole.FIELDS:
+def _parts(message) -> Iterator:
+    """Yield a message and the structs in it."""
+    yield message
+    for info in message.FIELDS:
         if info.struct is not None:
-            found = getattr(whole, info.attribute)
-            for one in found if isinstance(found, tuple) else (found,):
-                yield from _parts(one)
+            value = getattr(message, info.attribute)
+            for element in value if isinstance(value, tuple) else (value,):
+                yield from _parts(element)

@@ -1,6 +1,6 @@
-"""What the Python harness of the stream decoders does with an input; needs no atheris.
+"""Runs inputs on the stream decoders of a generated package.
 
-See README.md.
+It does not need atheris. See README.md.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ STEPS = 400  # of a procedure
 
 
 class Streams:
-    """Feeds inputs to everything of a generated package that takes a stream.
+    """Feeds inputs to all classes of a generated package that accept a stream.
 
-    Raises what it should not have raised.
+    Raises every exception that they should not have raised.
     """
 
     def __init__(self, package: ModuleType) -> None:
@@ -32,8 +32,10 @@ class Streams:
             self.framed_links,
         )
 
-    def one(self, data: bytes) -> None:
-        """Part, node, and how it is cut: a byte each; then the stream."""
+    def run(self, data: bytes) -> None:
+        """Run one input: part, node, and the size of pieces, one byte each; then the
+        stream.
+        """
         if len(data) < 3:
             return
         part = self.parts[data[0] % len(self.parts)]
@@ -44,18 +46,18 @@ class Streams:
 
     def uart(self, link, size: int, data: bytes) -> None:
         limit = link.longest if size & 1 else 1 + size % link.longest
-        whole, cut = (self.wire.UartDecoder(link, limit) for _ in range(2))
-        found, again = whole.feed(data), []
+        uncut, cut = (self.wire.UartDecoder(link, limit) for _ in range(2))
+        events, events_of_pieces = uncut.feed(data), []
         for piece in pieces(data, size):
-            again += cut.feed(piece)
+            events_of_pieces += cut.feed(piece)
             assert len(cut._buffer) <= limit
-        assert found == again
-        assert (whole.discarded, whole.pending) == (cut.discarded, cut.pending)
-        messages = [event.message for event in found if event.event == "message"]
+        assert events == events_of_pieces
+        assert (uncut.discarded, uncut.pending) == (cut.discarded, cut.pending)
+        messages = [event.message for event in events if event.event == "message"]
         on_line = sum(len(self.wire.uart_encode(link, message)) for message in messages)
         # An escape byte that the ICD has skipped stands in no message.
         assert (
-            whole.discarded + whole.pending + on_line == len(data)
+            uncut.discarded + uncut.pending + on_line == len(data)
             or link.framing.ignores_other
         )
         for message in messages:
@@ -64,29 +66,30 @@ class Streams:
     def framed_links(self, link, size: int, data: bytes) -> None:
         """The lowest bit of ``size`` is the direction."""
         direction = "telemetry" if size & 1 else "telecommand"
-        whole, cut = (self.wire.StreamDecoder(link, direction) for _ in range(2))
-        found = whole.feed(data)
-        assert whole.discarded + whole.pending <= len(data)
+        uncut, cut = (self.wire.StreamDecoder(link, direction) for _ in range(2))
+        events = uncut.feed(data)
+        assert uncut.discarded + uncut.pending <= len(data)
         if link.stream.delimited_by != "none":
-            assert found == [
+            assert events == [
                 event for piece in pieces(data, size) for event in cut.feed(piece)
             ]
-            assert (whole.discarded, whole.pending) == (cut.discarded, cut.pending)
-        for event in (event for event in found if event.event == "message"):
+            assert (uncut.discarded, uncut.pending) == (cut.discarded, cut.pending)
+        for event in (event for event in events if event.event == "message"):
             sent = self.wire.stream_encode(
                 link, event.id, event.data, direction, **event.values
             )
-            (again,) = self.wire.StreamDecoder(link, direction).feed(sent)
-            assert (again.event, again.id, again.values) == (
+            (repeated,) = self.wire.StreamDecoder(link, direction).feed(sent)
+            assert (repeated.event, repeated.id, repeated.values) == (
                 "message",
                 event.id,
                 event.values,
             )
-            assert again.data.rstrip(b"\0") == event.data.rstrip(b"\0")
+            assert repeated.data.rstrip(b"\0") == event.data.rstrip(b"\0")
 
     def packets(self, data: bytes) -> Iterator[tuple[int, object]]:
-        """Packets that mostly belong together: 29 bits of which few differ, up to 8
-        bytes, and times.
+        """Yield packets that mostly belong together, with their times.
+
+        Few of the 29 bits of the identifiers differ. Packets have up to 8 bytes.
         """
         now = 0
         while len(data) >= 3:
@@ -109,26 +112,22 @@ class Streams:
         assert not joiner._open
 
     def log(self, link, size: int, data: bytes) -> None:
-        whole, cut = self.wire.LogReader(link), self.wire.LogReader(link)
-        found = whole.feed(data)
-        assert found == [
+        uncut, cut = self.wire.LogReader(link), self.wire.LogReader(link)
+        entries = uncut.feed(data)
+        assert entries == [
             entry for piece in pieces(data, size) for entry in cut.feed(piece)
         ]
-        assert (whole.mask, whole.truncated) == (cut.mask, cut.truncated)
-        if whole.mask is not None:
-            writer = self.wire.LogWriter(link, whole.mask)
-            again = writer.header() + b"".join(
-                writer.entry(
-                    entry.seconds,
-                    entry.milliseconds,
-                    [frame.data for frame in entry.frames],
-                )
-                for entry in found
-            )
-            assert len(again) == len(data) - whole.truncated
+        assert (uncut.mask, uncut.truncated) == (cut.mask, cut.truncated)
+        if uncut.mask is not None:
+            writer = self.wire.LogWriter(link, uncut.mask)
+            written = writer.header()
+            for entry in entries:
+                frames = [frame.data for frame in entry.frames]
+                written += writer.entry(entry.seconds, entry.milliseconds, frames)
+            assert len(written) == len(data) - uncut.truncated
 
     def client_uart(self, link, size: int, data: bytes) -> None:
-        client, now, ends = self.asked(link, "uart", size), 0, 0
+        client, now, ends = self.client_with_request(link, "uart", size), 0, 0
         for piece in pieces(data, size):
             now += 40
             ends += self.ends(client.received(now, piece))
@@ -136,7 +135,7 @@ class Streams:
         self.idle(client, now, ends)
 
     def client_can(self, link, size: int, data: bytes) -> None:
-        client, last, ends = self.asked(link, "can", size), 0, 0
+        client, last, ends = self.client_with_request(link, "can", size), 0, 0
         for now, packet in self.packets(data):
             ends += self.ends(client.packet(now, packet))
             client.packets()
@@ -144,7 +143,7 @@ class Streams:
         self.idle(client, last, ends)
 
     def client_i2c(self, link, size: int, data: bytes) -> None:
-        client, now, ends = self.asked(link, "i2c", size), 0, 0
+        client, now, ends = self.client_with_request(link, "i2c", size), 0, 0
         for piece in pieces(data, size):
             now += 7
             if client.transfers():
@@ -153,8 +152,8 @@ class Streams:
                 ends += self.ends(client.tick(now))
         self.idle(client, now, ends)
 
-    def asked(self, link, bus: str, pick: int):
-        """A client with a request that goes on."""
+    def client_with_request(self, link, bus: str, pick: int):
+        """Return a client with a request that has not ended."""
         client = self.wire.Client(link, bus, crc=bool(pick & 2))
         kind, ids = (
             ("telecommand", link.commands) if pick & 4 else ("telemetry", link.frames)
@@ -174,7 +173,7 @@ class Streams:
         return sum(isinstance(event, ends) for event in events)
 
     def idle(self, client, now: float, ends: int) -> None:
-        """Each request ends, once, whatever has come."""
+        """Check that the request ends exactly once."""
         for _ in range(1000):
             client.output()
             client.packets()
@@ -188,8 +187,9 @@ class Streams:
         assert not client.busy and ends == 1
 
     def procedure(self, link, size: int, data: bytes) -> None:
-        """Outcomes and packets of any kind; the procedure ends, and delivers what it
-        was given.
+        """Run a procedure with outcomes and packets of any kind.
+
+        It must end, or deliver the data that it received.
         """
         if not link.procedures:
             return
@@ -229,5 +229,5 @@ class Streams:
 
 
 def pieces(data: bytes, size: int) -> list[bytes]:
-    """The stream in pieces of 1 to 256 bytes."""
+    """Return the stream in pieces of 1 to 256 bytes."""
     return [data[at : at + size + 1] for at in range(0, len(data), size + 1)]

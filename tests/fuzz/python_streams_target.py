@@ -1,7 +1,6 @@
-"""atheris harness on the stream decoders of the generated package, which must be on the
-path.
+"""atheris harness on the stream decoders of a generated package.
 
-See README.md.
+The package must be on the import path. See README.md.
 
 ``python python_streams_target.py PACKAGE [libFuzzer options] [corpus]``
 """
@@ -28,5 +27,5 @@ with atheris.instrument_imports(include=[PACKAGE]):
     streams = Streams(package)
 
 if __name__ == "__main__":
-    atheris.Setup(sys.argv, streams.one)
+    atheris.Setup(sys.argv, streams.run)
     atheris.Fuzz()

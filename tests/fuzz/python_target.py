@@ -1,7 +1,6 @@
-"""atheris harness on the dispatchers of the generated package, which must be on the
-path.
+"""atheris harness on the dispatchers of a generated package.
 
-See README.md.
+The package must be on the import path. See README.md.
 
 ``python python_target.py PACKAGE [libFuzzer options] [corpus]``
 """
@@ -26,13 +25,13 @@ with atheris.instrument_imports(include=[PACKAGE]):
     from python_dispatch import Dispatch
 
     dispatch = Dispatch(package)
-    for _node in (
-        dispatch.nodes
-    ):  # types load on first use: load them while imports are instrumented
+    # Types load on first use: load them while imports are instrumented.
+    for _node in dispatch.nodes:
         for _messages in (_node.TELECOMMANDS, _node.TELEMETRY):
-            for _message in (one for id in _messages for one in _messages.of(id)):
-                _message()
+            for _id in _messages:
+                for _message in _messages.of(_id):
+                    _message()
 
 if __name__ == "__main__":
-    atheris.Setup(sys.argv, dispatch.one)
+    atheris.Setup(sys.argv, dispatch.run)
     atheris.Fuzz()

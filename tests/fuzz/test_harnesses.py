@@ -1,5 +1,7 @@
-"""The fuzz harnesses, on the frames of the golden vectors and on random bytes; fuzzing
-proper is `python -m tests.fuzz`.
+"""The fuzz harnesses find no error with the frames of the golden vectors and with
+random bytes.
+
+`python -m tests.fuzz` runs the fuzzers.
 """
 
 from __future__ import annotations
@@ -40,8 +42,8 @@ def icd():
 
 @pytest.fixture(scope="module")
 def odd_icd(tmp_path_factory):
-    """What the shipped ICDs do not have: wide ids, variable length, shared ids,
-    conditions, curves ...
+    """Features that the shipped ICDs do not use: wide ids, variable length, shared ids,
+    optional fields, calibration curves, and others.
     """
     return icd_of([odd.write(tmp_path_factory.mktemp("odd")), *DEVICES])
 
@@ -49,42 +51,42 @@ def odd_icd(tmp_path_factory):
 @pytest.fixture(scope="module")
 def inputs(odd_icd):
     source = random.Random(1)
-    found = list(seeds(odd_icd))
-    for seed in found[:]:
+    inputs_ = list(seeds(odd_icd))
+    for seed in inputs_[:]:
         flags = bytes((seed[0], source.randrange(16), seed[2]))
-        found += [flags + source.randbytes(source.randrange(64)), flags + seed[3:]]
-    return found
+        inputs_ += [flags + source.randbytes(source.randrange(64)), flags + seed[3:]]
+    return inputs_
 
 
 @pytest.fixture(scope="module")
 def wire_inputs(icd):
     source = random.Random(2)
-    found = list(c_wire_seeds(icd))
-    for seed in found[:]:
-        found.append(
+    inputs_ = list(c_wire_seeds(icd))
+    for seed in inputs_[:]:
+        inputs_.append(
             seed[:1]
             + bytes((source.randrange(7),))
             + seed[2:]
             + source.randbytes(source.randrange(64))
         )
-    return found
+    return inputs_
 
 
 @pytest.fixture(scope="module")
 def linked():
-    """Links of other protocols, on framed links."""
+    """Framed links of other protocols."""
     return icd_of([ROOT / "examples" / "links"])
 
 
 @pytest.fixture(scope="module")
 def stream_inputs(linked):
     source = random.Random(3)
-    found = list(c_stream_seeds(linked))
-    for seed in found[:]:
-        spoilt = bytearray(seed[:2] + source.randbytes(2) + seed[4:] + seed[4:])
-        spoilt[source.randrange(2, len(spoilt))] = source.randrange(256)
-        found.append(bytes(spoilt))
-    return found
+    inputs_ = list(c_stream_seeds(linked))
+    for seed in inputs_[:]:
+        damaged = bytearray(seed[:2] + source.randbytes(2) + seed[4:] + seed[4:])
+        damaged[source.randrange(2, len(damaged))] = source.randrange(256)
+        inputs_.append(bytes(damaged))
+    return inputs_
 
 
 @pytest.mark.parametrize(
@@ -95,7 +97,7 @@ def stream_inputs(linked):
         ("c_stream_target.c", "linked", "stream_inputs"),
     ],
 )
-def test_the_c_harnesses_find_nothing(target, icds, kind, request, tmp_path):
+def test_the_c_harnesses_find_no_error(target, icds, kind, request, tmp_path):
     inputs, icd = request.getfixturevalue(kind), request.getfixturevalue(icds)
     source = sources(
         Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, tmp_path
@@ -127,7 +129,7 @@ def test_the_c_harnesses_find_nothing(target, icds, kind, request, tmp_path):
         "-o",
         tmp_path / "replay",
     )
-    data = b"".join(len(one).to_bytes(2, "little") + one for one in inputs)
+    data = b"".join(len(input_).to_bytes(2, "little") + input_ for input_ in inputs)
     done = subprocess.run([tmp_path / "replay"], input=data, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
     assert done.stdout == f"{len(inputs)} inputs\n".encode()
@@ -141,12 +143,12 @@ def package(icd, tmp_path, monkeypatch):
 
 @pytest.fixture
 def odd_package(odd_icd, tmp_path, monkeypatch):
-    """That of the odd ones."""
+    """The package of the odd ICDs."""
     yield from _imported(odd_icd, tmp_path, monkeypatch)
 
 
 def _imported(icd, tmp_path, monkeypatch):
-    """The generated package, imported afresh."""
+    """Import a generated package that was not imported before."""
     source = sources(
         Language("python", ("python",), (), lambda source, out: []), icd, tmp_path
     )
@@ -156,32 +158,31 @@ def _imported(icd, tmp_path, monkeypatch):
         monkeypatch.delitem(sys.modules, name)
     yield importlib.import_module(package.name)
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
-        del sys.modules[
-            name
-        ]  # for good: monkeypatch then puts back those that were there before
+        # monkeypatch restores the modules that were imported before the test.
+        del sys.modules[name]
 
 
-def test_the_python_harness_finds_nothing(inputs, odd_package):
+def test_the_python_harness_finds_no_error(inputs, odd_package):
     dispatch = Dispatch(odd_package)
-    for one in inputs:
-        dispatch.one(one)
+    for input_ in inputs:
+        dispatch.run(input_)
 
 
-def test_the_python_harness_of_streams_finds_nothing(icd, package):
+def test_the_python_harness_of_streams_finds_no_error(icd, package):
     importlib.import_module(f"{package.__name__}.wire")
     streams, source = Streams(package), random.Random(1)
     seeds = list(stream_seeds(icd))
     assert {seed[0] for seed in seeds} >= {0, 2, 3, 5}
     for seed in seeds:
-        streams.one(seed)
+        streams.run(seed)
         spoilt = bytearray(seed)
         spoilt[source.randrange(len(spoilt))] = source.randrange(256)
-        streams.one(bytes(spoilt))
+        streams.run(bytes(spoilt))
     for _ in range(2000):
-        streams.one(source.randbytes(source.randrange(200)))
+        streams.run(source.randbytes(source.randrange(200)))
 
 
-def test_the_python_harness_of_streams_finds_nothing_in_framed_links(
+def test_the_python_harness_of_streams_finds_no_error_in_framed_links(
     linked, tmp_path, monkeypatch
 ):
     for package in _imported(linked, tmp_path, monkeypatch):
@@ -190,26 +191,24 @@ def test_the_python_harness_of_streams_finds_nothing_in_framed_links(
         seeds = list(stream_seeds(linked))
         assert {seed[0] for seed in seeds} == {7}
         for seed in seeds:
-            streams.one(seed)
+            streams.run(seed)
             spoilt = bytearray(seed)
             spoilt[source.randrange(1, len(spoilt))] = source.randrange(256)
-            streams.one(bytes(spoilt))
+            streams.run(bytes(spoilt))
 
 
-def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(
-    package, monkeypatch
-):
+def test_the_python_harness_of_streams_detects_a_wrong_decoder(package, monkeypatch):
     wire = importlib.import_module(f"{package.__name__}.wire")
     streams = Streams(package)
-    streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
+    streams.run(b"\0\0\0\x1f\x7f\x80\x1f\xff")
     monkeypatch.setattr(
         wire.UartDecoder, "_inside", lambda self, data, position, events: len(data)
     )
     with pytest.raises(AssertionError):
-        streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
+        streams.run(b"\0\0\0\x1f\x7f\x80\x1f\xff")
 
 
-def test_the_python_harness_notices_a_codec_that_is_wrong():
+def test_the_python_harness_detects_a_wrong_codec():
     class Wrong:
         LENGTH, TAIL, FIELDS = 1, None, ()
 
