@@ -1,5 +1,6 @@
-"""What the golden vectors promise, shown without the reference codec where that is
-possible.
+"""The golden vectors have the properties that their format promises.
+
+The properties are checked without the reference codec where this is possible.
 """
 
 from __future__ import annotations
@@ -63,15 +64,13 @@ def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
 
 
 def test_raw_values_are_the_bits_of_the_frame(icd, files):
-    """The wire convention as the manual's readers know it: the frame is one
-    little-endian integer.
-    """
+    """The frame is one little-endian integer, as the manual defines it."""
     seen = 0
     for node in icd.nodes:
-        for message, found in zip(
+        for message, message_vectors in zip(
             node.messages, files[node.name]["messages"], strict=True
         ):
-            for vector in found["vectors"]:
+            for vector in message_vectors["vectors"]:
                 frame = int.from_bytes(bytes.fromhex(vector["bytes"]), "little")
                 for field, raw in zip(message.fields, vector["raw"], strict=True):
                     value = frame >> field.at & (1 << field.bits) - 1
@@ -93,13 +92,13 @@ def test_raw_values_are_the_bits_of_the_frame(icd, files):
 
 def test_reserved_bits_are_encoded_as_zeros(icd, files):
     for node in icd.nodes:
-        for message, found in zip(
+        for message, message_vectors in zip(
             node.messages, files[node.name]["messages"], strict=True
         ):
             covered = 0
             for field in message.fields:
                 covered |= (1 << field.bits) - 1 << field.at
-            for vector in found["vectors"]:
+            for vector in message_vectors["vectors"]:
                 frame = int.from_bytes(bytes.fromhex(vector["bytes"]), "little")
                 encoded = int.from_bytes(
                     bytes.fromhex(vector.get("encoded", vector["bytes"])), "little"
@@ -107,11 +106,12 @@ def test_reserved_bits_are_encoded_as_zeros(icd, files):
                 assert encoded == frame & covered
 
 
-def test_any_two_bits_of_a_frame_can_be_told_apart(files):
+def test_any_two_bits_of_a_frame_differ_in_a_vector(files):
     for message in messages(files):
         frames = [
             int.from_bytes(bytes.fromhex(v["bytes"]), "little")
             for v in message["vectors"]
+            # These vectors encode the position of each bit in binary.
             if "position" in v["why"]
         ]
         bits = message["length"] * 8
@@ -120,7 +120,7 @@ def test_any_two_bits_of_a_frame_can_be_told_apart(files):
         assert len(frames) <= 2 * max(1, bits.bit_length())
 
 
-def test_every_field_is_seen_at_the_ends_of_its_range_and_with_every_member(files):
+def test_every_field_has_vectors_at_the_ends_of_its_range_and_for_every_member(files):
     members = {e["name"]: e for data in files.values() for e in data["enums"]}
     for message in messages(files):
         for index, field in enumerate(message["fields"]):
@@ -133,6 +133,8 @@ def test_every_field_is_seen_at_the_ends_of_its_range_and_with_every_member(file
                 wanted = {0, (1 << bits) - 1}
             elif field["type"] == "float":
                 wanted = {
+                    # Infinities, a quiet and a signalling NaN, the negative zero, and a
+                    # NaN with a payload.
                     32: {
                         "7f800000",
                         "ff800000",
@@ -178,7 +180,7 @@ def test_physical_values_are_exact_and_their_doubles_are_the_nearest(files):
     assert seen > 10_000
 
 
-def test_settings_hold_exact_ties_both_ways_and_refusals(files):
+def test_settings_include_exact_ties_in_both_directions_and_rejected_values(files):
     ties, refused = {0: 0, 1: 0}, 0
     for message in messages(files):
         for field in message["fields"]:
@@ -190,13 +192,14 @@ def test_settings_hold_exact_ties_both_ways_and_refusals(files):
                 else:
                     assert abs(exact - raw) <= Fraction(1, 2)
                     if exact.denominator == 2:
+                        # Ties are rounded to even.
                         assert raw % 2 == 0
                         ties[int(exact > raw)] += 1
     assert min(ties.values()) > 300
     assert refused > 300
 
 
-def test_ties_are_found_for_every_formula_that_has_them(odd_icd):
+def test_settings_include_ties_for_every_formula_that_has_them(odd_icd):
     fields = {
         f.name: f
         for node in odd_icd.nodes
@@ -224,7 +227,7 @@ def test_ties_are_found_for_every_formula_that_has_them(odd_icd):
         bits=8,
         type="uint",
         scale=Scale(Fraction(1), Fraction(1, 3)),
-    )  # half way is never a double
+    )  # half way between two raw values is never a double
     assert ties(third) == 0
 
 
@@ -236,9 +239,11 @@ def test_exact_decimals():
 
 
 def test_no_two_messages_share_their_vectors(files):
-    """A dispatcher that confuses two messages of the same length must show."""
-    for one, other in combinations(messages(files), 2):
-        if one["length"] == other["length"] > 0 and [
-            f["type"] for f in one["fields"]
-        ] == [f["type"] for f in other["fields"]]:
-            assert one["vectors"] != other["vectors"]
+    """The vectors must detect a dispatcher that confuses two messages of the same
+    length.
+    """
+    for first, second in combinations(messages(files), 2):
+        if first["length"] == second["length"] > 0 and [
+            f["type"] for f in first["fields"]
+        ] == [f["type"] for f in second["fields"]]:
+            assert first["vectors"] != second["vectors"]

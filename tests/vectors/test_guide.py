@@ -1,4 +1,4 @@
-"""The guide to golden vectors: its programs test the vectors of a first device."""
+"""The programs of the guide to golden vectors work with the vectors of a first device."""
 
 from __future__ import annotations
 

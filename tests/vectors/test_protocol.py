@@ -1,5 +1,5 @@
-"""The golden vectors of the protocol: as committed, in the published form, and answered
-by the reference.
+"""The golden vectors of the protocol follow the published schema, show every operation,
+and the reference implementation answers them.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def test_there_is_no_file_without_a_protocol(tmp_path):
     assert protocol.protocol_vectors_text(icd_of([odd.write(tmp_path)])) is None
 
 
-def test_a_node_that_would_take_the_files_name_is_found(tmp_path):
+def test_a_node_with_the_name_of_the_file_is_reported(tmp_path):
     text = (
         "icdgen: 1\nnode: {name: protocol, title: P, byte_order: little, bit_order: lsb0}\n"
         "protocol: {link: {buses: {uart: {line: {baud_rate: 9600}}}}}\n"
@@ -122,14 +122,16 @@ def test_a_node_that_would_take_the_files_name_is_found(tmp_path):
     assert [f.code for f in findings] == ["ICD071"] and "vectors" in findings[0].message
 
 
-def test_the_reference_answers_as_its_vectors_say(icd, files, tmp_path):
-    """The languages are held to them by their own tests: `tests/*/test_wire*.py`."""
+def test_the_reference_gives_the_answers_of_its_vectors(icd, files, tmp_path):
+    """The tests of each language compare it with these vectors:
+    `tests/*/test_wire*.py`.
+    """
     (result,) = wire.run([all_languages()["reference"]], icd, files, tmp_path)
     assert result.differences == 0, "\n".join(result.shown)
     assert result.vectors > 900
 
 
-def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
+def test_a_request_without_a_node_is_for_the_last_node_with_a_protocol(icd):
     ask = Reference(icd).answer
     assert ask(
         b'{"op": "checksum", "name": "crc8", "bytes": "313233343536373839"}'
@@ -163,7 +165,9 @@ def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
     }
 
 
-def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_path):
+def test_requests_that_an_icd_does_not_support_are_answered_with_an_error(
+    files, tmp_path
+):
     text = (
         "icdgen: 1\nnode: {name: demo, title: D, byte_order: big, bit_order: msb0}\n"
         "protocol:\n  link: {buses: {uart: {line: {baud_rate: 9600}}}}\n"

@@ -1,4 +1,8 @@
-"""Frames of ids that several messages share."""
+"""Vectors of multiplexed messages distinguish the messages that share an id.
+
+The constant bytes by which generated code distinguishes them must lead to the same
+message as the constants that the reference codec decodes.
+"""
 
 from __future__ import annotations
 
@@ -21,52 +25,68 @@ from tests.conformance.strategies import icds
 
 
 @pytest.fixture(scope="module")
-def apart(tmp_path_factory) -> Icd:
+def multiplexed(tmp_path_factory) -> Icd:
     return icd_of([odd.write(tmp_path_factory.mktemp("icd"))])
 
 
-def told(icd: Icd, group, frame: bytes) -> object:
-    """What generated code does: in order, by length and signs."""
-    for one in group:
-        whole = frame.ljust(one.message.length, b"\0")
-        if len(frame) in one.message.layout.lengths and all(
-            whole[at] & mask == value for at, mask, value in constant_bytes(one)
+def identified_by_bytes(icd: Icd, group, frame: bytes) -> object:
+    """Return the message that generated code finds, in order, by length and constant
+    bytes.
+
+    If no message matches, return the common length of the messages, if the frame has
+    another length.
+    """
+    # Variants are ordered: specific messages precede general ones.
+    for variant in group:
+        filled = frame.ljust(variant.message.length, b"\0")
+        if len(frame) in variant.message.layout.lengths and all(
+            filled[at] & mask == value for at, mask, value in constant_bytes(variant)
         ):
-            return one.message.name
+            return variant.message.name
     length = common_length(group)
     return length if length not in (None, len(frame)) else None
 
 
-def demanded(icd: Icd, group, frame: bytes) -> object:
+def identified_by_reference(icd: Icd, group, frame: bytes) -> object:
     try:
-        found = codec.message_of_frame(icd, [one.message for one in group], frame)
+        message = codec.message_of_frame(
+            icd, [variant.message for variant in group], frame
+        )
     except codec.LengthError as error:
         return error.expected
-    return found and found.name
+    return message and message.name
 
 
-def hold(icd: Icd, source: random.Random) -> int:
-    """Bytes that are looked at tell what the reference reads from fields; how many
-    frames were compared.
+def assert_identified_alike(icd: Icd, source: random.Random) -> int:
+    """Compare both ways to identify the frames of shared ids; return the number of
+    frames.
     """
     compared = 0
     for node in icd.nodes:
         rows = make_vectors(icd, node).shared
-        for direction, known in zip(
+        for direction, variants_by_id in zip(
             ("telecommand", "telemetry"), ids_of(icd, node), strict=True
         ):
-            for id, group in known.items():
+            for id, group in variants_by_id.items():
                 frames = [
                     row.frame
                     for row in rows
                     if (row.direction, row.id) == (direction, id)
                 ]
                 for frame in (
-                    [*frames, *(source.randbytes(one.message.length) for one in group)]
+                    [
+                        *frames,
+                        *(
+                            source.randbytes(variant.message.length)
+                            for variant in group
+                        ),
+                    ]
                     if len(group) > 1
                     else ()
                 ):
-                    assert told(icd, group, frame) == demanded(icd, group, frame), (
+                    assert identified_by_bytes(
+                        icd, group, frame
+                    ) == identified_by_reference(icd, group, frame), (
                         direction,
                         id,
                         frame.hex(),
@@ -75,33 +95,37 @@ def hold(icd: Icd, source: random.Random) -> int:
     return compared
 
 
-def test_the_bytes_that_code_looks_at_tell_what_the_reference_reads_from_constants(
-    apart,
+def test_constant_bytes_identify_the_same_message_as_the_reference(
+    multiplexed,
 ):
-    assert hold(apart, random.Random(1)) > 300
+    assert assert_identified_alike(multiplexed, random.Random(1)) > 300
 
 
 @settings(max_examples=8, deadline=None)
 @given(icds())
-def test_so_they_do_in_random_icds(trees):
+def test_constant_bytes_identify_the_same_message_in_random_icds(trees):
     with tempfile.TemporaryDirectory() as name:
-        hold(written(trees, Path(name)), random.Random(2))
+        assert_identified_alike(written(trees, Path(name)), random.Random(2))
 
 
-def test_every_message_of_a_shared_id_has_a_frame_and_so_has_none_of_them(apart):
-    rows = make_vectors(apart, apart.node("apart")).shared
-    found = {(row.id, row.message) for row in rows}
-    for direction in ids_of(apart, apart.node("apart")):
+def test_every_message_of_a_shared_id_has_a_frame_and_some_frames_have_no_message(
+    multiplexed,
+):
+    rows = make_vectors(multiplexed, multiplexed.node("apart")).shared
+    covered = {(row.id, row.message) for row in rows}
+    for direction in ids_of(multiplexed, multiplexed.node("apart")):
         for id, group in direction.items():
             if len(group) > 1:
-                assert {(id, one.message.name) for one in group} <= found
+                assert {(id, variant.message.name) for variant in group} <= covered
     assert {row.id for row in rows if row.message is None} >= {0x1300, 0x0601, 0x0602}
     assert {row.expected for row in rows} == {None, 2}
 
 
-def test_a_general_message_takes_what_is_none_of_the_narrower_ones(apart):
-    node = apart.node("apart")
-    names = [one.message.name for one in ids_of(apart, node).telecommand[0x4C]]
+def test_a_general_message_takes_frames_of_no_specific_message(multiplexed):
+    node = multiplexed.node("apart")
+    names = [
+        variant.message.name for variant in ids_of(multiplexed, node).telecommand[0x4C]
+    ]
     assert names == [
         "Arm at once",
         "Reset command",
@@ -109,7 +133,9 @@ def test_a_general_message_takes_what_is_none_of_the_narrower_ones(apart):
         "Arm command",
         "Any command",
     ]
-    known = [one.message for one in ids_of(apart, node).telecommand[0x4C]]
+    messages = [
+        variant.message for variant in ids_of(multiplexed, node).telecommand[0x4C]
+    ]
     frames = {
         "567800000000": "Arm at once",
         "567800000001": "Arm command",
@@ -121,5 +147,8 @@ def test_a_general_message_takes_what_is_none_of_the_narrower_ones(apart):
         "785600000000": "Any command",
     }
     for frame, name in frames.items():
-        assert codec.message_of_frame(apart, known, bytes.fromhex(frame)).name == name
-    assert codec.message_of_frame(apart, known, b"\x12\x35") is None
+        assert (
+            codec.message_of_frame(multiplexed, messages, bytes.fromhex(frame)).name
+            == name
+        )
+    assert codec.message_of_frame(multiplexed, messages, b"\x12\x35") is None

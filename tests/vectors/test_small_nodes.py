@@ -1,5 +1,5 @@
-"""Whatever messages a node has, and however few, its link has vectors that every
-language can be asked.
+"""The link of a node with few messages, or none, has vectors that every language can
+answer.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SOURCES = [
 
 
 def small(source: Path, folder: Path, chosen: random.Random, count: int) -> Path:
-    """The node of ``source`` with a few of its messages, some of which are not
+    """Write the node of ``source`` with a few of its messages; some are not
     acknowledged.
     """
     tree = yaml.load(source.read_text(encoding="utf-8"), yaml.CSafeLoader)
@@ -41,17 +41,17 @@ def small(source: Path, folder: Path, chosen: random.Random, count: int) -> Path
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 @pytest.mark.parametrize("count", range(4))
-def test_a_node_of_a_few_messages_has_vectors_and_no_question_that_is_none(
+def test_a_node_of_few_messages_has_vectors_without_invalid_requests(
     tmp_path, source, count
 ):
     chosen = random.Random(count)
-    made = 0
+    count_of_cases = 0
     for _ in range(8):
         loaded = load([small(source, tmp_path, chosen, count)])
-        if not loaded.ok:  # what the protocol section names is not among them
+        if not loaded.ok:  # a message that the protocol section names is missing
             continue
         (node,) = loaded.icd.nodes
-        found = protocol.cases(loaded.icd, node)
-        assert [case for case in found if case.answer.get("error") == "request"] == []
-        made += len(found)
-    assert made
+        cases = protocol.cases(loaded.icd, node)
+        assert [case for case in cases if case.answer.get("error") == "request"] == []
+        count_of_cases += len(cases)
+    assert count_of_cases
