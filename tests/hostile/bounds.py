@@ -1,6 +1,6 @@
-"""Bounds of procedures: what the limits of an ICD add up to.
+"""Bounds of procedures, computed from the limits of an ICD.
 
-`docs/reference/wire-procedures.md` has the same in words.
+`docs/reference/wire-procedures.md` describes the bounds in words.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from icdgen_runtime.wire.procedures import Procedure
 
 
 class Bound(NamedTuple):
-    """Most requests, most time spent waiting between them (ms), and most bytes or
-    entries that the procedure stores.
+    """Maximum number of requests, time spent waiting between them in ms, and number of
+    bytes or entries that the procedure stores.
     """
 
     requests: int
@@ -48,10 +48,10 @@ def poll(timeout: int, interval: int) -> Bound:
 
 
 def most_of(procedure: Procedure) -> Bound:
-    """Return the bound of a procedure: of each step as often as it can be reached, and
-    the limit of requests.
+    """Return the bound of a procedure.
 
-    Each request can be damaged as often as it can be repeated.
+    It is the sum of the bounds of each step as often as it can be reached, within the
+    limit of requests. Each request can be damaged as often as it can be repeated.
     """
     form, retries = procedure.form, procedure.link.settings.retries
     most = Bound(0, 0, _stored(procedure))

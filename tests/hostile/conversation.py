@@ -36,8 +36,9 @@ PROCEDURES: tuple[Row, ...] = (
 
 
 def longest_request(link: Link[Any]) -> int:
-    """Return the longest time that a client spends on one request, in milliseconds: a
-    wait for a late response, and each attempt with its polls.
+    """Return the longest time that a client spends on one request, in milliseconds.
+
+    It is a wait for a late response, and each attempt with its polls.
     """
     form = link.settings
     attempt = 2 * form.reply_timeout + form.poll_timeout + form.poll_interval
@@ -77,27 +78,27 @@ def converse(link: Link[Any], row: Row, kind: Kind, latency: int = 1) -> Convers
     def pass_on(event: Event | None) -> Request | None:
         if event is not None:
             procedure.event(now, event)
-        asked = procedure.next(now)
+        following = procedure.next(now)
         script.append({"at": now, **({"event": row_of(event)} if event else {})})
-        return asked
+        return following
 
-    asked = pass_on(None)
+    request = pass_on(None)
     while procedure.result is None:
-        if asked:
+        if request:
             request_times.append(now)
-            events, asked = device.answer(asked), None
+            events, request = device.answer(request), None
             for event in events:
                 now += longest if isinstance(event, Timeout) else latency
-                asked = pass_on(event) or asked
+                request = pass_on(event) or request
         else:
             deadline = procedure.deadline
-            assert deadline is not None, "it waits for nothing"
+            assert deadline is not None, "no request and no deadline"
             events = device.answer(None)
             until = int(min(deadline, now + IDLE) if events else deadline)
             waited += max(0, until - now)
             now = max(now, until)
             for event in events or [None]:
-                asked = pass_on(event) or asked
+                request = pass_on(event) or request
         assert len(request_times) <= most.requests, "too many requests"
         assert waited <= most.waiting, "too long"
         assert stored(procedure) <= most.stored, "too much"
@@ -150,7 +151,7 @@ class Line:
         assert link.acknowledge_bytes
         (response,) = responses_on(link, "uart")
         listed = dict(response.meanings)
-        success = next(code for code, says in listed.items() if says == "ack")
+        success = next(code for code, verdict in listed.items() if verdict == "ack")
         refusal = next(code for code, _ in response.reasons if code not in listed)
         for event in events:
             if isinstance(event, Arrived):

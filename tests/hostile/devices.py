@@ -61,7 +61,7 @@ class Device:
         ]
         self.burst = bursts[0].telecommand if bursts else None
         self.registers: dict[int, int] = {}  # numbers that the client has sent
-        self.asked: dict[str, int] = {}  # number of requests by name
+        self.request_counts: dict[str, int] = {}  # number of requests by name
         self.received: dict[int, bytes] = {}  # packets by number
         self.unread: list[int] = []  # packets that the client reads one at a time
         self.is_sending = False  # between a burst and the next request
@@ -80,7 +80,7 @@ class Device:
         """Return the events of a request, or of an idle line."""
         name = self.name_of(request)
         if request is not None:
-            self.asked[name] = self.asked.get(name, 0) + 1
+            self.request_counts[name] = self.request_counts.get(name, 0) + 1
             self.is_sending = name == "burst"
             self._note(request)
         events = self.kind(self, request)
@@ -90,8 +90,10 @@ class Device:
         return [e for e in events if self.bus == "uart" or not isinstance(e, Arrived)]
 
     def name_of(self, request: Request | None) -> str:
-        """Name of a request: ``burst`` starts the packets, ``read`` requests one of
-        them, ``map`` a part of the map, ``state`` other telemetry.
+        """Return the name of a request.
+
+        ``burst`` starts the packets, ``read`` requests one of them, ``map`` a part of
+        the map, and ``state`` other telemetry.
         """
         if request is None:
             return "idle"
@@ -249,7 +251,7 @@ def sends_packets_slowly(device: Device, request: Request | None) -> Events:
     if device.name_of(request) == "burst":
         return [Timeout(0, 1)]
     if request is None and device.is_sending:
-        count = device.asked["idle"] = device.asked.get("idle", 0) + 1
+        count = device.request_counts["idle"] = device.request_counts.get("idle", 0) + 1
         return [device.packet(count // 8 % 15)]
     return None
 
@@ -270,7 +272,7 @@ def sends_unknown_packets(device: Device, request: Request | None) -> Events:
 def alternates(device: Device, request: Request | None) -> Events:
     """Alternate two states in each frame."""
     if state := _state(device, request):
-        number = device.asked["state"] % 2
+        number = device.request_counts["state"] % 2
         registers = [take.register for take in device.step_of(state).takes]
         return device.done(state, dict.fromkeys(registers, number))
     return None
@@ -290,7 +292,7 @@ def never_ends(device: Device, request: Request | None) -> Events:
     if (state := _state(device, request)) and state.id == device.form.entry:
         [done] = device.done(state, device.honest_values(state))
         assert isinstance(done, Done)
-        count = device.asked["state"].to_bytes(4, "big")
+        count = device.request_counts["state"].to_bytes(4, "big")
         return [Done(state.id, 1, done.data[:-4] + count)]
     return None
 
@@ -351,8 +353,8 @@ def misses_a_packet(device: Device, request: Request | None) -> Events:
     if request and device.name_of(request) == "map":
         assert device.blocks
         first = device.blocks.first_packet
-        others = range(first + 1, first + device.packets)
-        return [Done(request.id, 1, device.map_of(others, request.id))]
+        received = range(first + 1, first + device.packets)
+        return [Done(request.id, 1, device.map_of(received, request.id))]
     return None
 
 

@@ -1,5 +1,5 @@
-"""Single requests of a client to a device that responds to something else: its own
-messages, well-formed, at any time.
+"""Single requests of a client to a device that sends other well-formed messages at any
+time.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ OTHER_KINDS: tuple[CanKind, ...] = (
 
 
 class Ended(NamedTuple):
-    """A request that has ended: what happened, how many messages the client sent, and
-    the time that it took in milliseconds.
+    """A request that has ended: its script and outcomes, the number of messages that
+    the client sent, and the time in milliseconds.
     """
 
     script: list[Row]

@@ -1,5 +1,5 @@
-"""A device that obeys the syntax of the link ends every procedure within its limits,
-whatever it says.
+"""A device that obeys the syntax of the link cannot keep a procedure busy beyond its
+limits.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ BOARD = ROOT / "tests" / "protocol" / "keys" / "board.yaml"
 
 @pytest.fixture(scope="module")
 def board():
-    """A link whose procedures have no other limits than those of their steps."""
+    """A link whose procedures have only the limits of their steps."""
     icd = load([BOARD]).icd
     return limited(link_of(icd, facts.of(icd, icd.node("board"))), FAR, FAR)
 
@@ -91,7 +91,9 @@ def test_no_procedure_sends_a_request_after_the_time_of_the_icd(board, row, kind
 
 @given(st.integers(0, 1 << 32), st.sampled_from(["uart", "i2c", "can"]))
 @settings(max_examples=300)
-def test_a_request_ends_in_its_time_whatever_else_the_device_sends(board, seed, bus):
+def test_a_request_ends_in_its_time_although_the_device_sends_other_messages(
+    board, seed, bus
+):
     ended = end_of_request(board, bus, seed)
     assert len(ended.outcomes) == 1
 
@@ -113,7 +115,7 @@ def test_a_download_near_4_gib_ends_at_the_limit_of_the_icd(board, left):
     assert len(download.data) == left // blocks.size * blocks.size
 
 
-def test_a_size_above_the_limit_of_the_icd_is_refused(board):
+def test_a_size_above_the_limit_of_the_icd_is_rejected(board):
     inputs = {"type": 2, "counter": 1}
     form = next(i for i in board.procedures["download"].inputs if i.name == "size")
     Procedure(board, "download", {**inputs, "size": form.most})

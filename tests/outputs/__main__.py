@@ -1,9 +1,9 @@
-"""Compare everything icdgen generates with what another revision generates: ``python -m
-tests.outputs REVISION``.
+"""``python -m tests.outputs REVISION``: compares everything that icdgen generates with
+the output of another revision.
 
-Both revisions get the same ICDs, those of the working tree: shipped, examples,
-documents, odd and random ones. Compared are all languages, the site, `show`, `check`,
-the reports for wrong ICDs and those of the diff. Ends with status 0 if nothing differs.
+Both revisions get the ICDs of the working tree: shipped, examples, documents, odd and
+random ones. All languages, the site, `show`, `check`, the reports about wrong ICDs and
+the reports of the diff are compared. The exit status is 0 if nothing differs.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ def run(
     paths = os.pathsep.join(
         str(sources / part) for part in ("codegen", "runtime/python")
     )
+    # Outputs must not depend on the terminal or on the order of sets.
     environment = os.environ | {
         "PYTHONPATH": paths,
         "PYTHONHASHSEED": "0",
@@ -65,8 +66,8 @@ def run(
 def differences(
     before: dict[str, dict[str, str]], after: dict[str, dict[str, str]]
 ) -> list[str]:
-    """Describe the commands whose outputs differ, a line each, with the names of some
-    of these outputs.
+    """Describe the commands whose outputs differ, one per line, with the names of some
+    outputs.
     """
     lines = []
     for command in sorted(before.keys() | after.keys()):
@@ -85,14 +86,10 @@ def differences(
 
 
 def _described(output: str, old: dict[str, str], new: dict[str, str]) -> str:
-    """Name an output; say if only one of the revisions has it."""
-    return (
-        f"{output} (new)"
-        if output not in old
-        else f"{output} (gone)"
-        if output not in new
-        else output
-    )
+    """Name an output; add whether only one of the revisions has it."""
+    if output not in old:
+        return f"{output} (new)"
+    return f"{output} (gone)" if output not in new else output
 
 
 def main() -> None:
@@ -121,7 +118,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
         chosen_commands = [
-            one for one in commands(chosen.random) if chosen.only in one.name
+            command
+            for command in commands(chosen.random)
+            if chosen.only in command.name
         ]
         listed = work / "commands.json"
         listed.write_text(json.dumps(chosen_commands), "utf-8")

@@ -1,10 +1,10 @@
-"""Run command lines of the `icdgen` on the import path and write digests of what each
-gives.
+"""Run command lines of the icdgen on the import path and write digests of their
+outputs.
 
 python driver.py COMMANDS.json DIGESTS.json PART PARTS
 
-A file of its own without imports from the repository, because it runs with the sources
-of other revisions.
+This file has no imports from the repository, because it runs with the sources of other
+revisions.
 """
 
 from __future__ import annotations
@@ -20,12 +20,14 @@ from pathlib import Path
 
 
 def digests_of(arguments: list[str]) -> dict[str, str]:
-    """Run one command in a process of its own; return digests by output file, of the
-    text and the exit status.
+    """Run one command in a process of its own.
+
+    Return digests by output file, and of the text and the exit status.
     """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         out, text = folder / "out", folder / "text"
+        # A command can change global state, and a fork is faster than a new process.
         child = os.fork()
         if not child:
             _run([argument.replace("{out}", str(out)) for argument in arguments], text)
@@ -42,8 +44,9 @@ def digests_of(arguments: list[str]) -> dict[str, str]:
 
 
 def _run(arguments: list[str], text: Path) -> None:
-    """Run a command in this process with standard output and error in a file; never
-    returns.
+    """Run a command in this process, with standard output and error in a file.
+
+    Never returns.
     """
     stream = os.open(text, os.O_WRONLY | os.O_CREAT)
     os.dup2(stream, 1)
@@ -61,6 +64,7 @@ def _run(arguments: list[str], text: Path) -> None:
 
         traceback.print_exc()
         sys.stderr.flush()
+    # EX_SOFTWARE of sysexits.h: icdgen itself failed.
     os._exit(70)
 
 
@@ -75,6 +79,7 @@ def _digest(content: bytes) -> str:
 
 def main() -> None:
     commands, digests, part, parts = sys.argv[1:]
+    # Both revisions would otherwise share cached models.
     os.environ["ICDGEN_CACHE"] = "off"
     from icdgen import (  # noqa: F401
         cli,

@@ -1,4 +1,4 @@
-"""The ICDs that outputs are compared for, and the command lines that make these
+"""The ICDs for which outputs are compared, and the command lines that generate the
 outputs.
 """
 
@@ -40,17 +40,16 @@ _SINGLE = ("examples", "docs", "tests/conformance/links")
 
 
 class Command(NamedTuple):
-    """A command line of icdgen; `{out}` in an argument is an empty folder of the
-    command's own.
-    """
+    """A command line of icdgen; `{out}` in an argument is replaced by an empty folder."""
 
     name: str
     arguments: list[str]
 
 
 def commands(random_count: int) -> Iterator[Command]:
-    """List the commands for all sets of ICDs; random ICDs are written into `build/`, as
-    paths appear in outputs.
+    """List the commands for all sets of ICDs.
+
+    Random ICDs are written into `build/`, because paths appear in outputs.
     """
     yield Command("icd assurance", ["--lang", "assurance", "--out", "{out}", "icd"])
     for name, files in _sets(random_count):
