@@ -1,6 +1,4 @@
-"""Shared by all tests: a small ICD of our own, and a cache folder that no test shares
-with its user.
-"""
+"""Fixtures of all tests: a small ICD, and a cache folder of its own for each test."""
 
 from __future__ import annotations
 
@@ -21,8 +19,8 @@ ROOT = Path(__file__).parent.parent
 # Tests import `icdgen_runtime`, also if they run alone.
 shipped.provide_runtime()
 
-# What cargo builds here is run once: neither its debugger nor its next build would be
-# quicker for these.
+# Programs that cargo builds in tests run once, so that incremental data and debug
+# information would only cost time.
 os.environ |= {"CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
 
 # The model of an ICD consists of many small objects that live as long as a test. With
@@ -30,7 +28,7 @@ os.environ |= {"CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
 # it takes a quarter of the time of many tests.
 gc.set_threshold(10_000, 10, 50)
 
-# A busy machine makes no test fail, and what was green stays green;
+# Inputs are the same in every run, and a busy machine makes no test fail.
 # `--hypothesis-profile=explore` tries new inputs each time.
 _PATIENT = {
     "deadline": None,
@@ -66,9 +64,10 @@ messages:
 
 
 @cache
-def _terminals() -> bool:
-    """Whether this machine can make a pseudo-terminal: a chroot without /dev/pts
-    cannot.
+def _has_terminals() -> bool:
+    """Return whether this machine can create a pseudo-terminal.
+
+    A chroot without /dev/pts cannot.
     """
     try:
         for end in os.openpty():
@@ -79,7 +78,9 @@ def _terminals() -> bool:
 
 
 def pytest_collection_finish() -> None:
-    """Modules and tests live until the end: the garbage collector need not look there."""
+    """Exclude modules and tests from garbage collection, because they live until the
+    end.
+    """
     gc.collect()
     gc.freeze()
 
@@ -89,7 +90,9 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         missing = [program for program in mark.args if shutil.which(program) is None]
         if missing:
             pytest.skip(f"no {' and no '.join(missing)}: scripts/test installs it")
-    if (item.get_closest_marker("pty") or "--pty]" in item.nodeid) and not _terminals():
+    if (
+        item.get_closest_marker("pty") or "--pty]" in item.nodeid
+    ) and not _has_terminals():
         pytest.skip("this machine has no pseudo-terminals: /dev/pts is not mounted")
 
 
@@ -101,7 +104,7 @@ def caches(tmp_path_factory) -> Path:
 
 @pytest.fixture(autouse=True)
 def own_cache(caches, monkeypatch):
-    """Every test starts without anything remembered."""
+    """Give every test an empty cache."""
     # `mktemp` of pytest reads the names of all folders of earlier tests each time.
     monkeypatch.setenv("ICDGEN_CACHE", tempfile.mkdtemp(dir=caches))
 

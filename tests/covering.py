@@ -3,9 +3,9 @@
 In: files of the repository. Out: test files and folders, the most specific first.
 ``scripts/test --for FILE`` runs them; `tests.mutation.tool` runs them on changed code.
 
-Two sources are joined. `COVERING` names the tests of each folder, which mirror it or
-prove it in all languages. Test modules that import a module of icdgen are tests of it,
-unless so many import it that they only use it.
+Two sources are combined. `COVERING` names the tests of each folder, which mirror it or
+test it in all languages. Test modules that import a module of icdgen are tests of it,
+unless so many import it that it is only a tool for them.
 """
 
 from __future__ import annotations
@@ -162,10 +162,10 @@ def _importing(file: PurePosixPath) -> list[str]:
 
 
 def covering_tests(file: str) -> list[str]:
-    """Return the tests of a file, as paths below the top of the repository: tests with
-    its name, tests that import it, and those that `COVERING` names.
+    """Return the tests of a file, as paths below the top of the repository.
 
-    A test covers itself. Raises `KeyError` if no test is known.
+    They are the tests with its name, tests that import it, and the tests in `COVERING`.
+    A test covers itself. Raises `KeyError` if a file has no tests.
     """
     path = PurePosixPath(file)
     if path.parts[0] == "tests" and path.name.startswith("test_"):

@@ -14,28 +14,29 @@ _HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 
 
 def pages() -> list[Path]:
-    """All pages, in the order of their paths."""
+    """Return all pages, in the order of their paths."""
     return sorted(DOCS.rglob("*.md"))
 
 
 def text(name: str) -> str:
-    """Text of a page: ``guides/scales``."""
+    """Return the text of a page; an example of a name is ``guides/scales``."""
     return (DOCS / f"{name}.md").read_text(encoding="utf-8")
 
 
 def blocks(page: str, language: str) -> list[str]:
-    """Code blocks of a language that a page shows."""
+    """Return the code blocks of a language on a page."""
     return re.findall(rf"^```{language}\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
 
 
 def icds(page: str) -> list[str]:
-    """Complete ICDs that a page shows."""
+    """Return the complete ICDs on a page."""
     return _EXAMPLE.findall(page)
 
 
 def layout(icd: str) -> str:
-    """Pattern of the text that `icdgen fmt` writes for an ICD of a page: each row of a
-    table on one line. Pages wrap long rows.
+    """Return a pattern of the text that `icdgen fmt` writes for an ICD of a page.
+
+    The pattern has each row of a table on one line, because pages wrap long rows.
     """
     joined = re.sub(
         r"^ +- \{(?:.*,\n +)+",
@@ -48,7 +49,7 @@ def layout(icd: str) -> str:
 
 
 def icds_by_heading(page: str) -> dict[str, list[str]]:
-    """Complete ICDs that a page shows, by the nearest heading above each."""
+    """Return the complete ICDs on a page, by the nearest heading above each."""
     examples: dict[str, list[str]] = {}
     for match in _EXAMPLE.finditer(page):
         # A comment in an earlier example is no heading.

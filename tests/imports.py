@@ -1,5 +1,7 @@
-"""Who imports whom within packages, imports within functions and for type checkers
-included, and calls of `import_module` with a literal name.
+"""The graph of imports within packages, and checks of their direction.
+
+It includes imports within functions and for type checkers, and calls of `import_module`
+with a literal name.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ Graph = Mapping[str, frozenset[str]]  # module -> modules that it imports
 
 
 def graph(*folders: Path) -> Graph:
-    """The modules of packages. Raises `SyntaxError` for what is no Python."""
+    """Return the modules of packages with their imports. Raises `SyntaxError`."""
     files = {
         _module(path, folder): path
         for folder in folders
@@ -29,11 +31,11 @@ def _module(path: Path, folder: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def _imports(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
+def _imports(name: str, path: Path, files: Mapping[str, Path]) -> Iterator[str]:
     home = name if path.name == "__init__.py" else name.rpartition(".")[0]
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name in known)
+            yield from (alias.name for alias in node.names if alias.name in files)
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
@@ -41,12 +43,12 @@ def _imports(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
                 base = ".".join([*above, *([base] if base else [])])
             for alias in node.names:
                 inner = f"{base}.{alias.name}"
-                if inner in known:
+                if inner in files:
                     yield inner
-                elif base in known:
+                elif base in files:
                     yield base
         elif isinstance(node, ast.Call):
-            yield from {_imported_by_call(node)} & known.keys()
+            yield from {_imported_by_call(node)} & files.keys()
 
 
 def _imported_by_call(call: ast.Call) -> str:
@@ -64,7 +66,7 @@ def _imported_by_call(call: ast.Call) -> str:
 
 
 def circles(graph: Graph) -> list[list[str]]:
-    """Groups of modules that import each other, directly or by way of others."""
+    """Return groups of modules that import each other, directly or indirectly."""
     reached = {name: _reached(name, graph) for name in graph}
     groups = {
         frozenset(other for other in reached[name] if name in reached[other])
@@ -74,42 +76,43 @@ def circles(graph: Graph) -> list[list[str]]:
 
 
 def _reached(name: str, graph: Graph) -> set[str]:
-    found: set[str] = set()
+    reached: set[str] = set()
     queue = list(graph[name])
     while queue:
-        one = queue.pop()
-        if one not in found:
-            found.add(one)
-            queue += graph[one]
-    return found
+        module = queue.pop()
+        if module not in reached:
+            reached.add(module)
+            queue += graph[module]
+    return reached
 
 
 def folded(graph: Graph, places: Iterable[str]) -> Graph:
-    """The graph of the places, each a module or a package with all that is in it; the
-    longest that fits counts.
+    """Return the graph with modules combined into places.
 
-    The outermost package stands for itself alone.
+    A place is a module, or a package with everything in it; the longest place that
+    matches a module counts. The outermost package contains only its own module.
     """
     ranked = sorted(places, key=len, reverse=True)
 
     def place(name: str) -> str:
         return next(
             (
-                one
-                for one in ranked
-                if name == one or ("." in one and name.startswith(f"{one}."))
+                candidate
+                for candidate in ranked
+                if name == candidate
+                or ("." in candidate and name.startswith(f"{candidate}."))
             ),
             name,
         )
 
-    found: dict[str, set[str]] = {}
+    combined: dict[str, set[str]] = {}
     for name, imports in graph.items():
-        found.setdefault(place(name), set()).update(place(one) for one in imports)
-    return {name: frozenset(imports - {name}) for name, imports in found.items()}
+        combined.setdefault(place(name), set()).update(map(place, imports))
+    return {name: frozenset(imports - {name}) for name, imports in combined.items()}
 
 
 def upward(graph: Graph, layers: Iterable[Iterable[str]]) -> list[str]:
-    """Imports that do not lead down, and places that are in no layer.
+    """Return imports that do not lead to a lower layer, and places without a layer.
 
     ``layers`` go from the bottom to the top.
     """
@@ -117,15 +120,18 @@ def upward(graph: Graph, layers: Iterable[Iterable[str]]) -> list[str]:
     rows = folded(graph, level)
     wrong = [f"{name} is in no layer" for name in rows if name not in level]
     for name, imports in rows.items():
-        for one in sorted(imports):
-            if name in level and one in level and level[one] >= level[name]:
-                wrong.append(f"{name} imports {one}, which does not stand below it")
+        for imported in sorted(imports):
+            if name in level and imported in level and level[imported] >= level[name]:
+                wrong.append(
+                    f"{name} imports {imported}, which does not stand below it"
+                )
     return sorted(wrong)
 
 
 def reserved(graph: Graph, users: Mapping[str, Iterable[str]]) -> list[str]:
-    """Imports of a package by another package than its ``users``, each of which stands
-    for all that is in it.
+    """Return imports of a package by other packages than its ``users``.
+
+    A user is a package with everything in it.
     """
     wrong = []
     for package, allowed in users.items():

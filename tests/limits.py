@@ -19,11 +19,11 @@ def assert_limits(
     most: int | None = None,
     step: int = 1,
 ) -> None:
-    """Assert that the values at ``least`` and ``most`` are accepted, and those one
-    ``step`` inside, while those one ``step`` outside are refused.
+    """Assert that ``least`` and ``most`` are accepted, and that the next value outside
+    is rejected.
 
-    Give one end or both. ``step`` is the distance of neighbours: 8 for bits of whole
-    bytes.
+    The next value inside each end is also tested. Give one end or both. ``step`` is the
+    distance of neighbouring values: 8 for bits of whole bytes.
     """
     assert least is not None or most is not None, "give `least`, `most` or both"
     expected: dict[int, bool] = {}

@@ -1,4 +1,4 @@
-"""What tests of links share: the link of a node, CRCs bit by bit, and log files."""
+"""Helpers for tests of links: the link of a node, CRCs bit by bit, and log files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def link(icd: Icd, node: str) -> Link:
 
 
 def crc(form: Crc | CrcForm, data: bytes) -> int:
-    """The CRC by the definition of its parameters, independent of the runtimes."""
+    """Return the CRC by the definition of its parameters, independent of the runtimes."""
     if not data and form.empty is not None:
         return form.empty
     orders = form.reflect_in, form.reflect_out

@@ -41,7 +41,7 @@ def test_tests_with_the_name_of_a_file_come_first():
     assert covering_tests("tests/icd/test_formula.py") == ["tests/icd/test_formula.py"]
 
 
-def test_a_file_without_known_tests_is_refused():
+def test_a_file_without_known_tests_is_rejected():
     with pytest.raises(KeyError):
         covering_tests("LICENSE")
 

@@ -1,4 +1,4 @@
-"""Links of the documents lead to pages and headings that exist, and the index lists
+"""The links of the documents lead to existing pages and headings, and the index lists
 every page.
 """
 
@@ -61,8 +61,9 @@ def test_every_link_leads_to_a_page_and_heading_that_exists(page):
 
 
 def wrapped_lines(page: Path) -> Iterator[str]:
-    """Lines of a page except rows of Markdown tables and the output of commands, which
-    a page shows as it is printed.
+    """Yield the lines of a page that must be wrapped.
+
+    Rows of Markdown tables and the output of commands are not wrapped.
     """
     language, command = "", False
     for line in page.read_text("utf-8").splitlines():
@@ -108,7 +109,7 @@ def test_the_index_lists_every_page():
     ] == []
 
 
-def test_the_way_of_a_field_names_functions_that_exist():
+def test_the_path_of_a_field_through_the_generator_names_existing_functions():
     page = (ROOT / "docs" / "explanation" / "architecture.md").read_text("utf-8")
     section = page.split("## One field from YAML to C")[1].split("\n## ")[0]
     rows = [

@@ -1,5 +1,5 @@
-"""Classes of the model are values: equal, hashed and shown as those of `dataclasses`
-are.
+"""Classes that `icdgen.frozen` generates behave like `dataclasses` and
+`typing.NamedTuple`: equality, hash, `repr` and construction.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from icdgen.icd.model import Limits, Member
 
 def _fields(dataclass):
     @dataclass(frozen=True, slots=True)
-    class One:
+    class Example:
         name: str
         at: int = 0
         source: list = dataclasses.field(
@@ -25,63 +25,63 @@ def _fields(dataclass):
         )
         protocol: dict = dataclasses.field(default_factory=dict, hash=False)
 
-    return One
+    return Example
 
 
 @pytest.mark.parametrize("dataclass", [dataclasses.dataclass, frozen])
-def test_values_compare_hash_and_show_themselves_alike(dataclass):
-    one = _fields(dataclass)
+def test_values_have_the_same_equality_hash_and_repr(dataclass):
+    example = _fields(dataclass)
     assert (
-        one("a", 1, [1]) == one("a", 1, [2])
-        and one("a", 1) != one("a", 2)
-        and one("a") != "a"
+        example("a", 1, [1]) == example("a", 1, [2])
+        and example("a", 1) != example("a", 2)
+        and example("a") != "a"
     )
-    assert one("a") != one("a", protocol={1: 2})
-    assert len({one("a", 1, [1]), one("a", 1, [2]), one("b")}) == 2
-    assert hash(one("a", protocol={1: 2})) == hash(one("a"))
-    assert repr(one("a", 1, [1])).endswith("One(name='a', at=1, protocol={})")
-    assert not hasattr(one("a"), "__dict__")
+    assert example("a") != example("a", protocol={1: 2})
+    assert len({example("a", 1, [1]), example("a", 1, [2]), example("b")}) == 2
+    assert hash(example("a", protocol={1: 2})) == hash(example("a"))
+    assert repr(example("a", 1, [1])).endswith("Example(name='a', at=1, protocol={})")
+    assert not hasattr(example("a"), "__dict__")
 
 
 @pytest.mark.parametrize("dataclass", [dataclasses.dataclass, frozen])
-def test_objects_begin_alike(dataclass):
+def test_objects_are_constructed_alike(dataclass):
     @dataclass(frozen=True, kw_only=True)
-    class One:
+    class Example:
         name: str
         at: int = 0
         source: list = dataclasses.field(default_factory=list)
 
     @dataclass(frozen=True)
-    class More(One):
+    class More(Example):
         first: int
 
-    one, other = One(name="a"), One(at=2, name="b", source=[1])
-    assert (one.name, one.at, one.source, other.source) == (
+    first, second = Example(name="a"), Example(at=2, name="b", source=[1])
+    assert (first.name, first.at, first.source, second.source) == (
         "a",
         0,
         [],
         [1],
-    ) and one.source is not One(name="a").source
+    ) and first.source is not Example(name="a").source
     more = More(7, name="c")
     assert (more.first, more.name, more.at) == (7, "c", 0) and dataclasses.replace(
         more, at=3
     ) == More(7, name="c", at=3)
     for wrong in (
-        lambda: One("a"),
-        lambda: One(),
-        lambda: One(name="a", no=1),
+        lambda: Example("a"),
+        lambda: Example(),
+        lambda: Example(name="a", no=1),
         lambda: More(name="a"),
     ):
         with pytest.raises(TypeError):
             wrong()
 
 
-def test_without_eq_an_object_is_equal_to_itself_alone():
+def test_without_eq_an_object_is_only_equal_to_itself():
     @frozen(frozen=True, eq=False, repr=False)
-    class One:
+    class Example:
         name: str
 
-    assert One("a") != One("a") and len({One("a"), One("a")}) == 2
+    assert Example("a") != Example("a") and len({Example("a"), Example("a")}) == 2
 
 
 def test_a_field_of_another_class_is_never_equal():
@@ -92,8 +92,8 @@ def test_a_field_of_another_class_is_never_equal():
 
 
 @pytest.mark.parametrize("base", [typing.NamedTuple, NamedTuple])
-def test_named_tuples_are_those_of_typing(base):
-    class One(base):
+def test_named_tuples_behave_like_those_of_typing(base):
+    class Example(base):
         """A range."""
 
         first: int
@@ -106,17 +106,23 @@ def test_named_tuples_are_those_of_typing(base):
         def __str__(self) -> str:
             return f"{self.first} to {self.last}"
 
-    one = One(2)
-    assert one == (2, 7) == One(first=2, last=7) and one.length == 5
-    assert (str(one), repr(one)) == ("2 to 7", "One(first=2, last=7)")
-    assert one._replace(first=3).length == 4 and One._field_defaults == {"last": 7}
-    assert (One.__name__, One.__module__, One.__doc__) == (
-        "One",
+    example = Example(2)
+    assert example == (2, 7) == Example(first=2, last=7) and example.length == 5
+    assert (str(example), repr(example)) == ("2 to 7", "Example(first=2, last=7)")
+    assert example._replace(first=3).length == 4 and Example._field_defaults == {
+        "last": 7
+    }
+    assert (Example.__name__, Example.__module__, Example.__doc__) == (
+        "Example",
         __name__,
         "A range.",
     )
-    for wrong in (lambda: One(), lambda: One(1, 2, 3), lambda: One(1, no=2)):
+    for wrong in (
+        lambda: Example(),
+        lambda: Example(1, 2, 3),
+        lambda: Example(1, no=2),
+    ):
         with pytest.raises(TypeError):
             wrong()
     with pytest.raises(AttributeError):
-        one.first = 3
+        example.first = 3

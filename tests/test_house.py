@@ -1,4 +1,6 @@
-"""What must stay true of the repository itself."""
+"""The repository keeps its own rules: generated code is current, Python is formatted,
+linted and typed, and a wheel is complete.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +20,11 @@ PYTHON = [
     for name in ("codegen", "tests", "bench", "examples", "scripts")
     if (ROOT / name).is_dir()
 ]
-# Of tools that ran in a folder of ours.
+# Folders that tools create.
 CACHES = {".ruff_cache", ".mypy_cache", ".pytest_cache", "__pycache__", "target"}
 
 
-def test_generated_is_what_the_backends_make_of_the_shipped_icds():
+def test_generated_code_of_the_shipped_icds_is_current():
     command = [sys.executable, "-m", "icdgen", "--check", "--out", "generated"]
     command += [
         word for name in ("c", "python", "rust", "vectors") for word in ("--lang", name)
@@ -33,7 +35,7 @@ def test_generated_is_what_the_backends_make_of_the_shipped_icds():
     )
 
 
-def test_the_generator_knows_no_device():
+def test_the_generator_contains_no_name_of_a_device():
     names = set()
     for path in (ROOT / "icd").glob("*.yaml"):
         data = yaml.load(path.read_text(encoding="utf-8"), yaml.CSafeLoader)
@@ -58,7 +60,7 @@ def test_the_generator_knows_no_device():
 
 
 @pytest.mark.parametrize("command", [["check"], ["format", "--check"]])
-def test_our_python_is_linted_and_formatted(command):
+def test_python_is_linted_and_formatted(command):
     result = subprocess.run(
         [sys.executable, "-m", "ruff", *command, *PYTHON],
         cwd=ROOT,
@@ -68,8 +70,8 @@ def test_our_python_is_linted_and_formatted(command):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def test_the_reference_of_links_judges_and_does_nothing_else():
-    """Tools use the runtime itself; only vectors are made of its answers."""
+def test_only_vectors_are_generated_from_the_reference_of_links():
+    """Other tools use the runtime itself."""
     judging = {"reference", "operations", "scripts", "procedures", "request_keys"}
     importing = []
     for path in (ROOT / "codegen").rglob("*.py"):
@@ -94,13 +96,13 @@ def test_the_reference_of_links_judges_and_does_nothing_else():
     assert importing == []
 
 
-def test_our_python_is_typed():
+def test_python_is_typed():
     command = [sys.executable, "-m", "mypy", "--strict", "codegen/icdgen"]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def test_no_file_of_ours_outgrows_a_head():
+def test_no_source_file_has_more_than_700_lines():
     large = {
         str(p.relative_to(ROOT)): n
         for top in ("codegen", "templates", "runtime")

@@ -1,6 +1,7 @@
-"""Imports of the generator and of the Python runtime lead down.
+"""Modules of the generator and of the Python runtime import only modules of lower
+layers.
 
-The order stands here, from the bottom to the top.
+The layers are listed here, from the bottom to the top.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from tests import imports
 from tests.conftest import ROOT
 
 PACKAGE = ROOT / "codegen" / "icdgen"
-LAYERS = [  # what stands in one row does not know each other
+LAYERS = [  # modules in one row do not import each other
     "frozen",
     "diagnostics errors fingerprints naming once shipped suggest tables wording",
     "cache config icd render",
@@ -52,11 +53,11 @@ RUNTIME_LAYERS = [
 ]
 RUNTIME_ROWS = [
     *([f"icdgen_runtime.{name}" for name in row.split()] for row in RUNTIME_LAYERS),
-    ["icdgen_runtime"],  # names of all modules, so none of them imports it
+    ["icdgen_runtime"],  # exports names of all modules, so none of them imports it
 ]
-# A package -> the only packages that import it. Some need the names that the backend
-# of a language gives messages and fields. Nothing that computes needs the runtime, and
-# the runtime works without the generator.
+# The only packages that import a package. Some need the names of messages and fields in
+# a language. The model and the codec do not need the runtime, and the runtime does not need
+# the generator.
 USERS = {
     "icdgen": [],
     "icdgen_runtime": [
@@ -85,7 +86,7 @@ USERS = {
 
 
 @pytest.mark.parametrize("folder", [PACKAGE, RUNTIME], ids=lambda folder: folder.name)
-def test_no_modules_of_ours_import_each_other(folder):
+def test_no_modules_import_each_other(folder):
     assert imports.circles(imports.graph(folder)) == []
 
 
@@ -102,7 +103,7 @@ def test_backends_runtime_and_generator_are_imported_by_their_users_only():
     assert imports.reserved(imports.graph(PACKAGE, RUNTIME), USERS) == []
 
 
-def test_the_order_names_only_what_there_is():
+def test_the_layers_name_only_existing_modules():
     modules = {*imports.graph(PACKAGE), *imports.graph(RUNTIME)}
     assert [
         name for row in (*ROWS, *RUNTIME_ROWS) for name in row if name not in modules
@@ -111,13 +112,13 @@ def test_the_order_names_only_what_there_is():
 
 @pytest.fixture
 def package(tmp_path) -> Path:
-    folder = tmp_path / "made"
+    folder = tmp_path / "sample"
     for name, text in {
         "__init__": "",
         "low": "",
-        "high/__init__": "from made import low\n",
-        "high/one": "from made.low import anything\n",
-        "high/two": "from . import one\n",
+        "high/__init__": "from sample import low\n",
+        "high/first": "from sample.low import anything\n",
+        "high/second": "from . import first\n",
     }.items():
         path = folder / f"{name}.py"
         path.parent.mkdir(exist_ok=True)
@@ -125,53 +126,58 @@ def package(tmp_path) -> Path:
     return folder
 
 
-MADE = [["made"], ["made.low"], ["made.high"]]
+SAMPLE_LAYERS = [["sample"], ["sample.low"], ["sample.high"]]
 
 
-def test_what_leads_down_is_accepted(package):
+def test_imports_of_lower_layers_are_accepted(package):
     modules = imports.graph(package)
-    assert modules["made.high.two"] == {"made.high.one"}
-    assert (imports.circles(modules), imports.upward(modules, MADE)) == ([], [])
+    assert modules["sample.high.second"] == {"sample.high.first"}
+    assert (imports.circles(modules), imports.upward(modules, SAMPLE_LAYERS)) == (
+        [],
+        [],
+    )
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "import made.high\n",
-        "from made import high\n",
-        "from .high import one\n",
-        "def late():\n    from made.high.one import anything\n",
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from made.high import two\n",
+        "import sample.high\n",
+        "from sample import high\n",
+        "from .high import first\n",
+        "def late():\n    from sample.high.first import anything\n",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from sample.high import second\n",
     ],
 )
-def test_a_planted_import_upwards_is_found_wherever_it_hides(package, text):
+def test_a_planted_import_upwards_is_detected_in_every_form(package, text):
     (package / "low.py").write_text(text)
-    assert imports.upward(imports.graph(package), MADE) == [
-        "made.low imports made.high, which does not stand below it"
+    assert imports.upward(imports.graph(package), SAMPLE_LAYERS) == [
+        "sample.low imports sample.high, which does not stand below it"
     ]
 
 
 def test_a_planted_circle_is_found(package):
-    (package / "high" / "one.py").write_text(
-        "def late():\n    from made.high.two import anything\n"
+    (package / "high" / "first.py").write_text(
+        "def late():\n    from sample.high.second import anything\n"
     )
     assert imports.circles(imports.graph(package)) == [
-        ["made.high.one", "made.high.two"]
+        ["sample.high.first", "sample.high.second"]
     ]
 
 
 def test_a_module_that_is_in_no_layer_is_found(package):
     (package / "stray.py").write_text("")
-    assert imports.upward(imports.graph(package), MADE) == ["made.stray is in no layer"]
+    assert imports.upward(imports.graph(package), SAMPLE_LAYERS) == [
+        "sample.stray is in no layer"
+    ]
 
 
 def test_a_planted_import_of_a_reserved_package_is_found(package):
-    (package / "top.py").write_text("def late():\n    from made.high import two\n")
+    (package / "top.py").write_text("def late():\n    from sample.high import second\n")
     modules = imports.graph(package)
-    assert imports.reserved(modules, {"made.high": []}) == [
-        "made.top imports made.high.two"
+    assert imports.reserved(modules, {"sample.high": []}) == [
+        "sample.top imports sample.high.second"
     ]
-    assert imports.reserved(modules, {"made.high": ["made.top"]}) == []
+    assert imports.reserved(modules, {"sample.high": ["sample.top"]}) == []
 
 
 @pytest.mark.parametrize(
@@ -278,7 +284,7 @@ def test_a_circle_that_is_planted_in_a_copy_of_the_wire_layer_is_found(tmp_path)
 
 
 def _copy(package: Path, folder: Path, module: str, text: str) -> Path:
-    """A copy of a package, one module of which has another import in a function."""
+    """Return a copy of a package in which a module has another import in a function."""
     copy = shutil.copytree(
         package, folder / package.name, ignore=shutil.ignore_patterns("__pycache__")
     )

@@ -46,7 +46,7 @@ def test_a_letter_loses_its_mark_and_separates_no_words(name, identifier):
         ("速度 1", "1"),
     ],
 )
-def test_what_has_no_latin_letter_separates_words(name, identifier):
+def test_characters_without_a_latin_letter_separate_words(name, identifier):
     assert snake(words(name)) == identifier
 
 

@@ -1,5 +1,7 @@
-"""What a release promises: a version in the changelog, short entries, links that work
-away from the repository.
+"""A release has an entry in the changelog, and its documents meet their limits.
+
+Entries are short, links of the README work outside the repository, and hooks run
+existing commands.
 """
 
 from __future__ import annotations

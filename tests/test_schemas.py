@@ -1,4 +1,6 @@
-"""The JSON Schemas of the package: of ICDs, and of what icdgen writes for programs."""
+"""The JSON Schemas of ICDs and of the output for programs are valid and have no dead
+parts.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,8 @@ from icdgen.shipped import PACKAGE
 SCHEMAS = sorted(PACKAGE.rglob("*schema.json"), key=lambda path: path.name)
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in SCHEMAS]
 
-# What a schema can contain, by what stands under the keyword. An unknown keyword is
-# legal in a JSON Schema, and without effect.
+# The known keywords, by the kind of their value. An unknown keyword is legal in a JSON
+# Schema, but has no effect.
 SCHEMA_UNDER = {
     "additionalProperties",
     "items",
@@ -36,7 +38,7 @@ PLAIN = {
 
 
 def parts(schema: object, path: str = "#") -> Iterator[tuple[str, dict]]:
-    """Every schema within a schema, with its place."""
+    """Yield every schema within a schema, with its path."""
     if not isinstance(schema, dict):
         return
     yield path, schema
@@ -44,21 +46,21 @@ def parts(schema: object, path: str = "#") -> Iterator[tuple[str, dict]]:
         if key in SCHEMA_UNDER:
             yield from parts(value, f"{path}/{key}")
         elif key in SCHEMAS_UNDER:
-            for number, one in enumerate(value):
-                yield from parts(one, f"{path}/{key}/{number}")
+            for number, inner in enumerate(value):
+                yield from parts(inner, f"{path}/{key}/{number}")
         elif key in SCHEMAS_BY_NAME:
-            for name, one in value.items():
-                yield from parts(one, f"{path}/{key}/{name}")
+            for name, inner in value.items():
+                yield from parts(inner, f"{path}/{key}/{name}")
 
 
 @pytest.mark.parametrize("path", SCHEMAS, ids=NAMES)
 def test_every_key_of_a_schema_has_an_effect(path: Path):
-    known = PLAIN | SCHEMA_UNDER | SCHEMAS_UNDER | SCHEMAS_BY_NAME
+    keywords = PLAIN | SCHEMA_UNDER | SCHEMAS_UNDER | SCHEMAS_BY_NAME
     unknown = [
         f"{place}/{key}"
-        for place, one in parts(json.loads(path.read_text("utf-8")))
-        for key in one
-        if key not in known
+        for place, part in parts(json.loads(path.read_text("utf-8")))
+        for key in part
+        if key not in keywords
     ]
     assert unknown == []
 
@@ -72,7 +74,7 @@ def test_a_schema_is_valid_itself(path: Path):
 @pytest.mark.parametrize("path", SCHEMAS, ids=NAMES)
 def test_every_definition_of_a_schema_is_used(path: Path):
     schema = json.loads(path.read_text("utf-8"))
-    used = {one["$ref"] for _, one in parts(schema) if "$ref" in one}
+    used = {part["$ref"] for _, part in parts(schema) if "$ref" in part}
     documents = (
         {"icd", "errata", "source_table"} if path.parent.name == "icd" else set()
     )  # read under their names
@@ -87,21 +89,21 @@ def test_every_definition_of_a_schema_is_used(path: Path):
 def test_a_schema_requires_only_properties_that_it_has(path: Path):
     missing = [
         f"{place}/{key}"
-        for place, one in parts(json.loads(path.read_text("utf-8")))
-        if one.get("additionalProperties") is False
-        for key in (*one.get("required", ()), *one.get("dependentRequired", ()))
-        if key not in one.get("properties", {})
+        for place, part in parts(json.loads(path.read_text("utf-8")))
+        if part.get("additionalProperties") is False
+        for key in (*part.get("required", ()), *part.get("dependentRequired", ()))
+        if key not in part.get("properties", {})
     ]
     assert missing == []
 
 
 def test_every_section_that_has_parameters_of_a_crc_can_state_its_check_value():
-    """Rule ICD091 computes `check` wherever it stands, so the schema has it there."""
+    """Rule ICD091 computes `check` in every section, so the schema must allow it there."""
     schema = json.loads((PACKAGE / "icd" / "schema.json").read_text("utf-8"))
     sections = {
-        place: one["properties"]
-        for place, one in parts(schema)
-        if "polynomial" in one.get("properties", {})
+        place: part["properties"]
+        for place, part in parts(schema)
+        if "polynomial" in part.get("properties", {})
     }
     assert (
         len(sections) == 1

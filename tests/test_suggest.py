@@ -1,4 +1,6 @@
-"""What is suggested to somebody who wrote a name that there is not."""
+"""Suggestions for a misspelt name are similar to it; without similar names there are
+none.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ import pytest
 from icdgen.suggest import close_to, close_words
 
 
-def test_the_nearest_is_suggested_in_any_case():
+def test_the_closest_name_is_suggested_in_any_case():
     assert close_to("ROL", ["Pitch", "Roll", "Yaw"]) == "Roll"
     assert close_words("roll angle", ["Roll Angles", "Roll Angle", "Yaw"]) == [
         "Roll Angle",
@@ -15,7 +17,7 @@ def test_the_nearest_is_suggested_in_any_case():
     ]
 
 
-def test_nothing_is_suggested_where_nothing_comes_near():
+def test_without_a_similar_name_there_is_no_suggestion():
     assert (
         close_to("xyz", ["Pitch", "Roll"]) == ""
         and close_words("", ["Roll"]) == []
@@ -23,12 +25,12 @@ def test_nothing_is_suggested_where_nothing_comes_near():
     )
 
 
-def test_of_a_long_text_only_the_beginning_is_compared():
+def test_only_the_beginning_of_a_long_text_is_compared():
     assert close_to("Roll" + "x" * 1_000_000, ["Roll"]) == ""
 
 
 @pytest.mark.parametrize(
-    ("wanted", "known"),
+    ("wanted", "names"),
     [
         ("yellow", ["min", "max", "above", "below"]),
         ("limits", ["bits", "unit", "min"]),
@@ -37,8 +39,8 @@ def test_of_a_long_text_only_the_beginning_is_compared():
         ("red", ["name", "bits", "reserved"]),
     ],
 )
-def test_another_word_that_merely_looks_alike_is_not_suggested(wanted, known):
-    assert close_words(wanted, known) == []
+def test_another_word_that_merely_looks_alike_is_not_suggested(wanted, names):
+    assert close_words(wanted, names) == []
 
 
 @pytest.mark.parametrize(
@@ -48,9 +50,9 @@ def test_another_word_that_merely_looks_alike_is_not_suggested(wanted, known):
         ("bitorder", "bit_order"), ("Estimted Atitude Angles", "Estimated Attitude Angles"),
     ],
 )  # fmt: skip
-def test_a_slip_is_recognised(wanted, meant):
-    others = ["at", "identifier", "summary", "Magnetometer Data"]
-    assert close_words(wanted, [*others, meant]) == [meant]
+def test_a_misspelt_name_is_recognised(wanted, meant):
+    names = ["at", "identifier", "summary", "Magnetometer Data"]
+    assert close_words(wanted, [*names, meant]) == [meant]
 
 
 def test_a_name_without_one_of_its_words_is_recognised():
@@ -59,7 +61,7 @@ def test_a_name_without_one_of_its_words_is_recognised():
     assert close_words("Modes", ["Mode of Operation", "Mode"]) == ["Mode"]
 
 
-def test_the_nearest_comes_first_and_each_once():
+def test_suggestions_are_unique_and_start_with_the_closest():
     assert close_words("roll", ["Rolls", "Roll Angle", "roll", "Rolls"]) == [
         "roll",
         "Rolls",

@@ -37,7 +37,7 @@ def icd(request):
 
 
 def table(icd, language: str) -> Names:
-    """The symbol table by scope."""
+    """Return the symbol table by scope."""
     names = defaultdict(set)
     for symbol in backends.get(language).identifiers(icd):
         names[symbol.scope].add(symbol.text)
@@ -58,6 +58,10 @@ def differences(left: Names, right: Names) -> list[tuple[str, str]]:
 
 
 def names_in_c(icd) -> Names:
+    """Return the names that the generated C declares, by scope.
+
+    Short names are replaced by the long names of the symbol table.
+    """
     names = defaultdict(set)
     long_names = {
         short: text
