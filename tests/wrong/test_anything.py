@@ -1,13 +1,14 @@
-"""Whatever stands in the place of anything in an ICD, the answer is findings."""
+"""An ICD with any value replaced by anything gives findings and no exception."""
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -34,14 +35,12 @@ def tree_of(path: Path) -> Any:
 
 
 def places(tree: Any, before: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """The keys and indexes that lead to each value."""
-    items = (
-        tree.items()
-        if isinstance(tree, dict)
-        else enumerate(tree)
-        if isinstance(tree, list)
-        else ()
-    )
+    """Yield the keys and indexes that lead to each value."""
+    items: Iterable[tuple] = ()
+    if isinstance(tree, dict):
+        items = tree.items()
+    elif isinstance(tree, list):
+        items = enumerate(tree)
     for key, value in items:
         yield (*before, key)
         yield from places(value, (*before, key))
@@ -58,11 +57,34 @@ def at(tree: Any, place: tuple[Any, ...]) -> Any:
 def test_any_value_in_any_place_ends_in_findings(tmp_path_factory, data):
     tree = copy.deepcopy(tree_of(data.draw(st.sampled_from(FILES))))
     place = data.draw(st.sampled_from([*places(tree)]))
-    others = st.sampled_from([*places(tree)]).map(
+    other_values = st.sampled_from([*places(tree)]).map(
         lambda other: copy.deepcopy(at(tree, other))
     )
-    at(tree, place[:-1])[place[-1]] = data.draw(st.sampled_from(JUNK) | others)
+    at(tree, place[:-1])[place[-1]] = data.draw(st.sampled_from(JUNK) | other_values)
     path = tmp_path_factory.mktemp("any") / "any.yaml"
     path.write_text(yaml.safe_dump(tree, sort_keys=False, allow_unicode=True), "utf-8")
     loaded = load([path])
     assert reports.get("text")(loaded.findings, loaded.texts) or loaded.ok
+
+
+PROCEDURE_PLACES = [
+    (),
+    ("upload",),
+    ("upload", "nodes"),
+    ("upload", "inputs"),
+    ("upload", "inputs", "area"),
+    ("upload", "outputs"),
+    ("upload", "steps"),
+    ("upload", "steps", 0),
+]
+
+
+@pytest.mark.parametrize("place", PROCEDURE_PLACES, ids=str)
+@pytest.mark.parametrize("value", [None, [5], 5, "text"], ids=repr)
+def test_a_part_of_a_procedure_of_the_wrong_type_is_a_finding(tmp_path, place, value):
+    tree = copy.deepcopy(tree_of(ROOT / "examples" / "links" / "bootloader.yaml"))
+    *above, key = ("protocol", "procedures", *place)
+    at(tree, tuple(above))[key] = value
+    path = tmp_path / "loader.yaml"
+    path.write_text(yaml.safe_dump(tree, sort_keys=False), "utf-8")
+    assert "ICD010" in {finding.code for finding in load([path]).findings}

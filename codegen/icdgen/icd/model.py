@@ -228,11 +228,30 @@ class Icd:
 
         An included node can have some that are only for others.
         """
+        procedures = self.protocol_of(node).get("procedures")
+        if not isinstance(procedures, dict):
+            return {}
         return {
             name: section
-            for name, section in self.protocol_of(node).get("procedures", {}).items()
-            if node.name in section.get("nodes", (node.name,))
+            for name, section in procedures.items()
+            if _has_names(section) and node.name in section.get("nodes", (node.name,))
         }
+
+
+def _has_names(procedure: Any) -> bool:
+    """Return whether the parts of a procedure with names have the right form.
+
+    Names are checked before the sections are known to have the right form.
+    """
+    if not isinstance(procedure, dict):
+        return False
+    steps, nodes = procedure.get("steps"), procedure.get("nodes", [])
+    inputs, outputs = procedure.get("inputs", {}), procedure.get("outputs", {})
+    if not isinstance(inputs, dict) or not isinstance(outputs, dict):
+        return False
+    if not isinstance(steps, list) or not isinstance(nodes, list):
+        return False
+    return all(isinstance(row, dict) for row in (*inputs.values(), *steps))
 
 
 def protocol_of_all(owners: Iterable[Node]) -> dict[str, Any]:
