@@ -17,7 +17,7 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.icds import (  # noqa: F401
     SHIPPED,
-    read,
+    read_unchecked,
     shipped,
 )
 

@@ -1,5 +1,5 @@
-"""Drives the generated code of every language with the same requests and compares it
-with the reference codec.
+"""Run the generated code of every language with the same requests and compare the
+answers with the reference codec.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Generates and builds testees; what was built from the same sources by the same tools
-is taken from the cache.
+"""Generate and build testees. A build from the same sources with the same tools comes
+from the cache.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ BOARD = ROOT / "tests" / "conformance" / "board"  # what the self-tests are link
 
 
 class BuildError(RuntimeError):
-    """The generated code does not build; the message holds the compiler's words."""
+    """The generated code does not build; the message contains the compiler's output."""
 
 
 def cache_folder() -> Path:
-    """Where builds are kept: ``ICDGEN_BUILD``, else ``.icdgen-build`` in the checkout."""
+    """Folder of cached builds: ``ICDGEN_BUILD``, or ``.icdgen-build`` in the checkout."""
     return Path(os.environ.get("ICDGEN_BUILD") or ROOT / ".icdgen-build")
 
 
 @contextmanager
-def kept(folder: Path) -> Iterator[Path]:
-    """A folder of what is built once; other workers wait."""
+def locked_folder(folder: Path) -> Iterator[Path]:
+    """Yield a folder of the cache that only this worker writes; other workers wait."""
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -50,17 +50,17 @@ def kept(folder: Path) -> Iterator[Path]:
 
 
 def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]:
-    """The command line that starts the language's testee for these ICDs.
-
-    Raises `BuildError`.
+    """Build the language's testee for these ICDs and return its command line. Raises
+    `BuildError`.
     """
     files = generated(language, icd)
-    known = json.dumps(plan(icd)).encode()
+    plan_json = json.dumps(plan(icd)).encode()
     folder = (
         folder or cache_folder()
-    ) / f"{language.name}-{_key(language, {**files, 'plan.json': known})}"
+    ) / f"{language.name}-{_key(language, {**files, 'plan.json': plan_json})}"
     done = folder / "command.json"
-    with kept(folder):
+    with locked_folder(folder):
+        # The command is written last: a build that was interrupted is done again.
         if not done.exists():
             source, out = folder / "source", folder / "out"
             for old in (source, out):
@@ -69,7 +69,7 @@ def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]
             for name, data in files.items():
                 (source / name).parent.mkdir(parents=True, exist_ok=True)
                 (source / name).write_bytes(data)
-            (folder / "plan.json").write_bytes(known)
+            (folder / "plan.json").write_bytes(plan_json)
             command = language.build(source, out)
             front = (
                 [sys.executable, str(FRONT), str(folder / "plan.json")]
@@ -81,7 +81,7 @@ def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]
 
 
 def generated(language: Language, icd: Icd) -> dict[str, bytes]:
-    """What the language's backends make of the ICDs: path, beginning with the backend's
+    """Return what the language's backends generate: path, starting with the backend's
     name -> content.
     """
     files = {}
@@ -99,7 +99,7 @@ def renderer(name: str) -> Renderer:
 def execute(
     *command: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None
 ) -> str:
-    """Runs a build step; its output. Raises `BuildError`."""
+    """Run a build step and return its output. Raises `BuildError`."""
     words = [str(word) for word in command]
     environment = {**os.environ, **env} if env else None
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Vectors -> requests and the answers that they demand."""
+"""Turn test vectors into requests with the answers that each language must give."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DIRECTIONS = ("telecommand", "telemetry", "configuration")
 
 
 class Case(NamedTuple):
-    """One request, and what the answer must be."""
+    """A request and the expected answer."""
 
     about: str  # the vector, in words
     request: dict
@@ -27,18 +27,18 @@ class Case(NamedTuple):
 
 
 def member_names(files: dict[str, dict]) -> dict[str, list[list]]:
-    """The members of each enumeration, by the name of the enumeration; nodes that
-    include others know theirs.
+    """Return the members of each enumeration by its name. Enumerations of included
+    nodes count too.
     """
     return {e["name"]: e["members"] for data in files.values() for e in data["enums"]}
 
 
 def name_of(members: list[list], value: int) -> str | None:
-    """The name of a value: each member has a value and a name, and a range its last
-    value.
+    """Return the name of a value. Each member is a value with a name; a range also has
+    its last value.
     """
     if value is None:
-        return None  # of what is not there
+        return None  # the field is absent
     return next(
         (
             name
@@ -50,22 +50,23 @@ def name_of(members: list[list], value: int) -> str | None:
 
 
 def _is_among(name: str, parts: Sequence[dict], raw: dict) -> bool:
-    """Whether an element of one of these parts is in a frame of these raw values; what
-    is in no part is in every frame.
+    """Return whether an array element is in a frame with these raw values. Elements
+    outside all variable-length parts are in every frame.
     """
-    for one in parts:
-        element = name.removeprefix(one["part"] + "[")
+    for part in parts:
+        element = name.removeprefix(part["part"] + "[")
         if element != name:
             number, _, inner = element.partition("]")
-            if int(number) >= raw[one["counter"]] + one.get("plus", 0):
+            if int(number) >= raw[part["counter"]] + part.get("plus", 0):
                 return False
-            return _is_among(inner.removeprefix("."), one.get("nested", ()), raw)
+            return _is_among(inner.removeprefix("."), part.get("nested", ()), raw)
     return True
 
 
 def of_arrays_first_and_last(fields: Iterable[dict]) -> Iterator[dict]:
-    """The fields; of the elements of an array the first and the last: what is between
-    them is of the same type and scale. The vectors hold values of each element.
+    """Yield the fields, but only the first and last element of each array. Elements
+    between them have the same type and scale, and the vectors contain values of each
+    element.
     """
     groups: dict[str, list[dict]] = {}
     for field in fields:
@@ -77,8 +78,8 @@ def of_arrays_first_and_last(fields: Iterable[dict]) -> Iterator[dict]:
 
 
 class MessageCases:
-    """The cases of one message, as spoken by ``node`` (the one that declares it or one
-    that includes that).
+    """Cases of one message as sent by ``node``, which declares the message or includes
+    its node.
     """
 
     def __init__(
@@ -89,8 +90,8 @@ class MessageCases:
         never_set: list[str],
         shared: frozenset[str] = frozenset(),
     ) -> None:
-        """``shared``: the messages of the node that have no id of their own, and so go
-        by their names, too.
+        """Prepare the cases. ``shared`` are the messages that share their id with
+        others and are therefore also selected by name.
         """
         self.named = {"message": message["name"]} if message["name"] in shared else {}
         self.node, self.message, self.enums, self.never_set = (
@@ -106,9 +107,8 @@ class MessageCases:
             for field in self.fields
             if field.keys() & {"factor", "coefficients", "points"}
         ]
-        self.one_way = {
-            field["name"] for field in self.scaled if "set" not in field
-        }  # and views
+        # Fields that cannot be set by a physical value, among them overlay fields.
+        self.one_way = {field["name"] for field in self.scaled if "set" not in field}
         self.texts = [field for field in self.fields if field["type"] == "text"]
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {
@@ -121,29 +121,30 @@ class MessageCases:
         ]
         self.full = dict(self.fresh)
         highest: dict[str, int] = {}
-        for one in (
+        for counted in (
             *self.parts,
             *(nested for part in self.parts for nested in part.get("nested", ())),
         ):
-            high = one["most"] - one.get("plus", 0)
-            highest[one["counter"]] = min(high, highest.get(one["counter"], high))
+            high = counted["most"] - counted.get("plus", 0)
+            highest[counted["counter"]] = min(
+                high, highest.get(counted["counter"], high)
+            )
         self.full |= highest
         self.conditional = {
             field["name"]: field["when"] for field in self.fields if "when" in field
         }
-        self.given = self.owned(
-            self.full
-        )  # what makes such a message, with all elements
+        # Values that encode a message with all elements of its arrays.
+        self.given = self.owned(self.full)
 
     def all(self) -> Iterator[Case]:
-        """Everything that the vectors of the message demand."""
+        """Yield every case that the vectors of the message require."""
         for vector in self.message["vectors"]:
             yield from self.frame(vector)
         yield from self.routes()
         yield from self.refused_lengths()
         yield self.constants()
         for field in of_arrays_first_and_last(self.fields):
-            yield from self.unfit(field)
+            yield from self.values_out_of_range(field)
         for field in of_arrays_first_and_last((*self.scaled, *self.texts)):
             # Not every element can be in a frame: arrays in elements can share a counter.
             is_sent = self.is_sent(field["name"], self.full)
@@ -162,7 +163,9 @@ class MessageCases:
         }
 
     def frame(self, vector: dict) -> Iterator[Case]:
-        """Decoding, and encoding from raw and from physical values."""
+        """Yield cases that decode a frame and encode it from raw and from physical
+        values.
+        """
         raw = {
             f["name"]: shown(f, value)
             for f, value in zip(self.fields, vector["raw"], strict=True)
@@ -194,38 +197,41 @@ class MessageCases:
             name: value for name, value in physical.items() if self.is_sent(name, raw)
         }
         if physical:
-            rest = {
+            other_values = {
                 name: value
                 for name, value in self.owned(raw).items()
                 if name not in physical
             }
             yield Case(
                 why,
-                self.request("encode", raw=rest, physical=physical),
+                self.request("encode", raw=other_values, physical=physical),
                 self.from_physical(raw, physical, answer),
             )
 
     def is_sent(self, name: str, raw: dict) -> bool:
-        """Whether a frame of these raw values has a field: elements of open parts
-        beyond the count are 0, set or not.
+        """Return whether a frame with these raw values contains a field. Elements of a
+        variable-length array beyond its count are 0, even if set.
         """
         return _is_among(name, self.parts, raw)
 
     def owned(self, values: dict) -> dict:
-        """Without those of views, which are not set."""
+        """Return the values without overlay fields, which cannot be set."""
         return {name: value for name, value in values.items() if name not in self.views}
 
     def seen(self, raw: dict) -> dict:
-        """Raw values of which the views are not known."""
+        """Return raw values in which overlay fields may have any value."""
         return {
             name: ... if name in self.views else value for name, value in raw.items()
         }
 
     def set_views(self) -> Iterator[Case]:
-        """A view is no field that could be set."""
+        """Yield requests that set an overlay field, which is refused as an unknown
+        field.
+        """
         for field in self.fields:
             if field["name"] in self.views:
                 request = self.request("encode", raw=self.fresh)
+                # The request sets all overlay fields; a language may report any of them.
                 yield Case(
                     "a view set",
                     request,
@@ -234,30 +240,38 @@ class MessageCases:
                 return
 
     def names(self, raw: dict) -> dict[str, str | None]:
-        """Name of each enum field's member."""
+        """Return the name of the member of each enum field."""
         return {
             f["name"]: name_of(self.enums.get(f["enum"], []), raw[f["name"]])
             for f in self.fields
             if "enum" in f
         }
 
-    def there(self, field: dict) -> dict:
-        """Values, but for views, of a message with all elements that has the field."""
+    def values_with_field(self, field: dict) -> dict:
+        """Return values of a message with all elements in which the field is present.
+        Overlay fields are left out.
+        """
         if "when" not in field:
             return self.given
-        known = {one["name"]: one for one in self.fields}
-        found = self.given | {
-            on: shown(known[on], values[0]) for on, values in field["when"].items()
+        fields_by_name = {field["name"]: field for field in self.fields}
+        values_by_name = self.given | {
+            on: shown(fields_by_name[on], values[0])
+            for on, values in field["when"].items()
         }
         for name, when in self.conditional.items():
-            is_there = all(found[on] in values for on, values in when.items())
-            found[name] = zero(known[name]) if is_there else None
-        return found
+            is_there = all(values_by_name[on] in values for on, values in when.items())
+            values_by_name[name] = zero(fields_by_name[name]) if is_there else None
+        return values_by_name
 
     def from_physical(self, raw: dict, physical: dict, answer: dict) -> dict:
-        """The answer, unless some raw value is too wide to come back from a double."""
+        """Return the expected answer to encoding these physical values.
+
+        It differs from ``answer`` if a text is padded, or if a raw value has too many
+        bits to be restored from a double.
+        """
         for field in self.texts:
             if field["name"] in physical:
+                # Four bits are one hex digit; the rest of the field becomes NUL.
                 filled = physical[field["name"]].ljust(field["bits"] // 4, "0")
                 if filled != raw[field["name"]]:
                     raws = {**self.seen(answer["raw"]), field["name"]: filled}
@@ -276,7 +290,7 @@ class MessageCases:
         return answer
 
     def routes(self) -> Iterator[Case]:
-        """The same frame under every kind and id that lead to the message."""
+        """Yield the same frame under every kind and id that selects the message."""
         first = next(self.frame(self.message["vectors"][0]))
         message = self.message
         routes = {
@@ -297,7 +311,7 @@ class MessageCases:
             )
 
     def refused_lengths(self) -> Iterator[Case]:
-        """Frames that are too short or too long."""
+        """Yield frames that are too short or too long."""
         for actual in self.message["refused_lengths"]:
             answer = {
                 "ok": False,
@@ -313,6 +327,7 @@ class MessageCases:
             answer = {
                 "ok": False,
                 "error": "length",
+                # Several lengths are possible, and languages report different ones.
                 "expected": Maybe(Not(actual)),
                 "actual": actual,
             }
@@ -321,8 +336,8 @@ class MessageCases:
             )
 
     def expected(self, actual: int) -> object:
-        """What a frame of no possible length should have had, which not every language
-        tells if frames differ.
+        """Return the expected lengths of a frame with an impossible length. Not every
+        language reports them for variable-length messages.
         """
         if "may_end_early" in self.message:
             return self.message["length"] if actual else Maybe(...)
@@ -337,7 +352,7 @@ class MessageCases:
         return Maybe(least if actual < least else self.message["length"])
 
     def constants(self) -> Case:
-        """Ids, length, fresh values, special values."""
+        """Yield cases of ids, length, initial values and special values."""
         ids = [
             self.message[key]
             for key in ("id", "set_id", "get_id")
@@ -359,11 +374,13 @@ class MessageCases:
         }  # fmt: skip
         return Case("constants", self.request("constants"), answer)
 
-    def unfit(self, field: dict) -> Iterator[Case]:
-        """Raw values that encoding refuses."""
+    def values_out_of_range(self, field: dict) -> Iterator[Case]:
+        """Yield cases with raw values that encoding refuses."""
         name = field["name"]
         for value in field.get("unfit", ()):
-            request = self.request("encode", raw={**self.there(field), name: value})
+            request = self.request(
+                "encode", raw={**self.values_with_field(field), name: value}
+            )
             yield Case(
                 f"{name} = {value}",
                 request,
@@ -371,22 +388,25 @@ class MessageCases:
             )
 
     def settings(self, field: dict) -> Iterator[Case]:
-        """Physical values set, exact ties and unfit ones among them."""
+        """Yield cases that set physical values, including exact ties and values out of
+        range.
+        """
         name = field["name"]
-        given_all = self.there(field)
-        rest = {key: value for key, value in given_all.items() if key != name}
+        given_all = self.values_with_field(field)
+        other_values = {key: value for key, value in given_all.items() if key != name}
         refusal = {"ok": False, "error": "range", "field": name}
         if field["type"] == "text":
-            given = [(text.encode().hex(), raw) for text, raw in field["set"]]
+            settings = [(text.encode().hex(), raw) for text, raw in field["set"]]
         else:
             never = () if field["type"] == "float" else self.never_set
-            given = [*field["set"], *((bits, None) for bits in never)]
-        for bits, raw in given:
-            request = self.request("encode", raw=rest, physical={name: bits})
+            settings = [*field["set"], *((bits, None) for bits in never)]
+        for bits, raw in settings:
+            request = self.request("encode", raw=other_values, physical={name: bits})
+            # The values have the order of the fields.
             full = {
                 key: raw if key == name else value
                 for key, value in self.seen(self.full | given_all).items()
-            }  # in the order of the fields
+            }
             answer = (
                 refusal
                 if raw is None
@@ -396,12 +416,12 @@ class MessageCases:
 
 
 def node_cases(data: dict) -> Iterator[Case]:
-    """What the vectors of a node demand beyond its messages: ids and enumerations."""
+    """Yield the cases of a node besides its messages: ids and enumerations."""
     node = data["node"]
     yield node_itself(data)
     for direction in DIRECTIONS:
-        known = data["ids"][direction]
-        for id, names in known.items():
+        names_by_id = data["ids"][direction]
+        for id, names in names_by_id.items():
             for name in names if isinstance(names, list) else ():
                 request = {
                     "op": "constants",
@@ -415,20 +435,20 @@ def node_cases(data: dict) -> Iterator[Case]:
                     request,
                     {"ok": True, "name": name, ...: ...},
                 )
-        for id in (*test_ids(map(int, known)), 65535, 65536, -1):
-            if isinstance(known.get(str(id)), list):
+        for id in (*test_ids(map(int, names_by_id)), 65535, 65536, -1):
+            if isinstance(names_by_id.get(str(id)), list):
                 request = {"op": "constants", "node": node, "kind": direction, "id": id}
                 yield Case(
                     f"{direction} {id}, of several",
                     request,
                     {"ok": False, "error": "request"},
                 )
-            elif str(id) in known:
+            elif str(id) in names_by_id:
                 request = {"op": "constants", "node": node, "kind": direction, "id": id}
                 yield Case(
                     f"{direction} {id}",
                     request,
-                    {"ok": True, "name": known[str(id)], ...: ...},
+                    {"ok": True, "name": names_by_id[str(id)], ...: ...},
                 )
             else:
                 request = {
@@ -446,18 +466,18 @@ def node_cases(data: dict) -> Iterator[Case]:
 
 
 def shared_names(data: dict) -> frozenset[str]:
-    """The messages that a node knows by ids which others have, too."""
-    known = (
+    """Return the messages of a node that share an id with others."""
+    names_by_id = (
         names
         for ids in data["ids"].values()
         for names in ids.values()
         if isinstance(names, list)
     )
-    return frozenset(name for names in known for name in names)
+    return frozenset(name for names in names_by_id for name in names)
 
 
 def shared_ids(data: dict) -> Iterator[Case]:
-    """Which message each frame of an id is that several have."""
+    """Yield cases that decide which message a frame of a shared id is."""
     for row in data.get("shared_ids", ()):
         about = {
             "node": data["node"],
@@ -485,7 +505,7 @@ def shared_ids(data: dict) -> Iterator[Case]:
 
 
 def node_itself(data: dict) -> Case:
-    """Its constants."""
+    """Yield the case of the constants of the node."""
     answer = {
         "ok": True,
         "node_type": data.get("node_type"),
@@ -495,12 +515,14 @@ def node_itself(data: dict) -> Case:
 
 
 def enum_cases(data: dict) -> Iterator[Case]:
-    """The names of the members of the enumerations that a node declares."""
+    """Yield cases of the member names of the enumerations that a node declares."""
     node = data["node"]
     for enum in data["enums"]:
         ends = [
             (first, last)
-            for first, _, last in (one for one in enum["members"] if len(one) == 3)
+            for first, _, last in (
+                member for member in enum["members"] if len(member) == 3
+            )
         ]
         near = [
             value
@@ -519,23 +541,25 @@ def enum_cases(data: dict) -> Iterator[Case]:
 
 
 def shown(field: dict, value: object) -> object:
-    """A raw value of the vectors as it stands in the testee protocol."""
+    """Return a raw value of the vectors in the form of the testee protocol."""
     return bool(value) if field["type"] == "bool" and value is not None else value
 
 
 def zero(field: dict) -> object:
-    """A raw value of 0 as it stands in the testee protocol."""
+    """Return the raw value 0 of a field in the form of the testee protocol."""
     return "0" * (field["bits"] // 4) if field["type"] == "float" else shown(field, 0)
 
 
 def nearest_double(exact: str) -> str:
-    """The bits of the double that is nearest to an exact decimal or fraction."""
+    """Return the bits of the double that is nearest to an exact decimal or fraction."""
     value = Fraction(exact)
     return struct.pack(">d", value.numerator / value.denominator).hex()
 
 
 def nearest(field: dict, bits: str) -> int | str | None:
-    """The raw value nearest to a physical one, ties to even; None if it does not fit."""
+    """Return the raw value nearest to a physical value, ties to even; ``None`` if it is
+    out of range.
+    """
     if (curve := curve_of_plain(field)) is not None:
         return _on_curve(field, curve, bits)
     value = Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])
@@ -548,9 +572,11 @@ def nearest(field: dict, bits: str) -> int | str | None:
 
 
 def _on_curve(field: dict, curve: Curve, bits: str) -> int | str | None:
-    one = Scalar(name="", at=0, bits=field["bits"], type=field["type"], curve=curve)
+    scalar = Scalar(name="", at=0, bits=field["bits"], type=field["type"], curve=curve)
     try:
-        raw = codec.raw_from_physical(one, struct.unpack(">d", bytes.fromhex(bits))[0])
+        raw = codec.raw_from_physical(
+            scalar, struct.unpack(">d", bytes.fromhex(bits))[0]
+        )
     except codec.CodecError:
         return None
-    return raw_json(one, raw)
+    return raw_json(scalar, raw)

@@ -1,4 +1,4 @@
-"""Whether an answer is the one demanded."""
+"""Compare an answer with the expected one."""
 
 from __future__ import annotations
 
@@ -8,21 +8,20 @@ from typing import NamedTuple
 
 
 class Maybe(NamedTuple):
-    """A value that an answer may leave out, but not have wrong."""
+    """A value that an answer may leave out, but must not have wrong."""
 
     value: object
 
 
 class Not(NamedTuple):
-    """Anything but this value."""
+    """Any value except this one."""
 
     value: object
 
 
 def difference(expected: dict, line: bytes | None) -> str | None:
-    """What is wrong with an answer; None if nothing is.
-
-    ``...`` in ``expected`` stands for anything.
+    """Return what is wrong with an answer, or ``None``. ``...`` in ``expected`` matches
+    anything.
     """
     if line is None:
         return "no answer: the testee died or fell silent"
@@ -37,10 +36,11 @@ def difference(expected: dict, line: bytes | None) -> str | None:
         if expected.get("field") != answer.get("field") and _is_array_of(
             answer.get("field"), expected.get("field")
         ):
+            # Not every language names the element, or the struct.
             expected = {
                 **expected,
                 "field": answer["field"],
-            }  # which element, and of which struct, not every language says
+            }
     return _difference(expected, answer, "")
 
 
@@ -49,8 +49,8 @@ def _is_array_of(name: object, element: object) -> bool:
         element = element.value
     if not isinstance(element, str):
         return False
-    whole = re.sub(r"\[\d+\]\Z", "", element)
-    return name in (whole.rpartition(".")[2], re.sub(r"\[\d+\]\.", "[].", whole))
+    array = re.sub(r"\[\d+\]\Z", "", element)
+    return name in (array.rpartition(".")[2], re.sub(r"\[\d+\]\.", "[].", array))
 
 
 def _difference(expected: object, actual: object, path: str) -> str | None:
@@ -84,9 +84,9 @@ def _difference(expected: object, actual: object, path: str) -> str | None:
             value = value.value
         if key not in actual:
             return f"{path or 'answer'}: {key!r} is missing from {_short(actual)}"
-        found = _difference(value, actual[key], f"{path}.{key}" if path else str(key))
-        if found:
-            return found
+        nested = _difference(value, actual[key], f"{path}.{key}" if path else str(key))
+        if nested:
+            return nested
     extra = [key for key in actual if key not in expected]
     if extra and ... not in expected:
         return f"{path or 'answer'}: {extra[0]!r} is not expected: {_short(actual)}"

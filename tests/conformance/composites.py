@@ -1,5 +1,5 @@
-"""Composite messages: an ICD with odd ones, and what their parts are by the reference
-codec.
+"""Composite messages: an ICD with unusual ones, and their parts according to the
+reference codec.
 """
 
 from __future__ import annotations
@@ -94,34 +94,34 @@ messages:
 
 
 def write(folder: Path) -> Path:
-    """The ICDs; the folder."""
+    """Write the ICDs and return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in (("base", BASE), ("demo", DEMO)):
         (folder / f"{name}.yaml").write_text(text, "utf-8")
     return folder
 
 
-class Given(NamedTuple):
-    """A part of a composite message, and its frame."""
+class PartFrame(NamedTuple):
+    """A part of a composite message with its frame."""
 
     part: Message
-    index: int  # of those of this message
+    index: int  # among equal parts of the message
     frame: bytes
 
 
-class Case(NamedTuple):
-    """A frame of a composite message and of its parts."""
+class CompositeCase(NamedTuple):
+    """A frame of a composite message with the frames of its parts."""
 
     message: Message
     frame: bytes
-    parts: tuple[Given, ...]
+    parts: tuple[PartFrame, ...]
 
 
-def cases(icd: Icd, count: int = 4) -> Iterator[Case]:
-    """``count`` random frames for each composite message."""
+def cases(icd: Icd, count: int = 4) -> Iterator[CompositeCase]:
+    """Yield ``count`` random frames of each composite message."""
     random_bytes = random.Random(14).randbytes
     for node in icd.nodes:
-        known = {one.name: one for one in icd.messages_of(node)}
+        messages_by_name = {message.name: message for message in icd.messages_of(node)}
         for message in node.messages:
             for _ in range(count if message.contains else 0):
                 frame = random_bytes(message.length)
@@ -129,20 +129,20 @@ def cases(icd: Icd, count: int = 4) -> Iterator[Case]:
                 values = {
                     field.at: raw[field.name] for field in raw_fields_in(message.layout)
                 }
-                given: list[Given] = []
-                for one in message.contains:
-                    part = known[one.message]
+                parts: list[PartFrame] = []
+                for placement in message.contains:
+                    part = messages_by_name[placement.message]
                     if raw_fields_in(part.layout):
-                        index = sum(other.part is part for other in given)
+                        index = sum(other.part is part for other in parts)
                         theirs = {
-                            field.name: values[one.at + field.at]
+                            field.name: values[placement.at + field.at]
                             for field in raw_fields_in(part.layout)
                         }
-                        given.append(
-                            Given(
+                        parts.append(
+                            PartFrame(
                                 part,
                                 index,
                                 codec.encode(icd.node(part.node), part, theirs),
                             )
                         )
-                yield Case(message, frame, tuple(given))
+                yield CompositeCase(message, frame, tuple(parts))

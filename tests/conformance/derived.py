@@ -13,28 +13,33 @@ _ALONE = ("count", "when", "bitfields", "struct", "up_to")
 
 @st.composite
 def derived(draw, fields: list[dict]) -> dict:
-    """The key ``derived`` of a message of these fields; none where there is no number."""
+    """Draw the key ``derived`` for a message with these fields; empty if no field is a
+    number.
+    """
     numbers = [
-        one
-        for one in fields
-        if one.get("type") in ("uint", "int", "float")
-        and not any(k in one for k in _ALONE)
+        field
+        for field in fields
+        if field.get("type") in ("uint", "int", "float")
+        and not any(k in field for k in _ALONE)
     ]
     if not numbers or draw(st.booleans()):
         return {}
-    powers = [one["name"] for one in numbers if _is_exponent(one)]
-    names = [one["name"] for one in numbers]
-    taken = {
-        part["name"] for one in fields for part in (one, *one.get("bitfields", ()))
+    powers = [field["name"] for field in numbers if _is_exponent(field)]
+    names = [field["name"] for field in numbers]
+    identifiers = {
+        part["name"]
+        for field in fields
+        for part in (field, *field.get("bitfields", ()))
     }
     rows: list[dict] = []
     for number in range(draw(st.integers(1, 4))):
         text, used = draw(_expression(names, powers))
         try:
-            found = set(parse(text, taken | set(names)).fields)
+            references = set(parse(text, identifiers | set(names)).fields)
         except FormulaError:
-            continue  # a name has what reads as something else, or it divides by zero
-        if found == used:
+            # A name contains text with another meaning, or the formula divides by zero.
+            continue
+        if references == used:
             unit = draw(st.sampled_from(({}, {"unit": "deg"}, {"unit": "m/s"})))
             rows.append(
                 {
@@ -59,7 +64,7 @@ def _is_exponent(field: dict) -> bool:
 def _expression(
     draw, names: list[str], powers: list[str], depth: int = 3
 ) -> tuple[str, set[str]]:
-    """A formula, and the names in it."""
+    """Draw a formula and the names in it."""
     kind = draw(st.integers(0, 6)) if depth else draw(st.integers(0, 1))
     if kind == 0:
         return (
@@ -91,5 +96,5 @@ def _expression(
         )
     if kind == 3:
         return f"-({left})", used
-    right, others = draw(_expression(names, powers, depth - 1))
-    return f"({left}) {draw(st.sampled_from('+-*/'))} ({right})", used | others
+    right, right_names = draw(_expression(names, powers, depth - 1))
+    return f"({left}) {draw(st.sampled_from('+-*/'))} ({right})", used | right_names

@@ -1,4 +1,4 @@
-"""Talks to a testee: many requests at once, each answered by one line."""
+"""Talk to a testee: send many requests and read one line of answer for each."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from typing import Protocol
 
 
 class Answering(Protocol):
-    """What requests can be put to."""
+    """Interface of everything that answers requests."""
 
     def ask(self, lines: Sequence[bytes]) -> list[bytes | None]:
-        """The answer to each line; None where there was none."""
+        """Return the answer to each line, or ``None`` where no answer came."""
 
     def close(self) -> int:
-        """The exit status."""
+        """End the testee and return its exit status."""
 
     def complaint(self) -> str:
-        """What was written to standard error."""
+        """Return what was written to standard error."""
 
 
 class InProcess:
-    """A testee that is a function of this program."""
+    """A testee that is a function of this process."""
 
     def __init__(self, answer: Callable[[bytes], dict]) -> None:
         self.answer = answer
@@ -43,9 +43,8 @@ class InProcess:
 
 
 class Testee:
-    """A running testee.
-
-    One that dies or falls silent is started again for the next requests.
+    """A running testee. If it dies or does not answer, it is restarted for the next
+    requests.
     """
 
     __test__ = False  # not a test class
@@ -57,16 +56,18 @@ class Testee:
         self.deaths = 0
 
     def ask(self, lines: Sequence[bytes]) -> list[bytes | None]:
-        """The answer to each line (without its newline); None for each that was not
-        answered because the testee died.
+        """Return the answer to each line without its newline. A line is answered with
+        ``None`` if the testee died.
         """
         if self.process is None:
             self.process = subprocess.Popen(
                 self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, bufsize=1 << 18,
+                # A session of its own, so that a kill reaches the program behind the front.
                 start_new_session=True,
             )  # fmt: skip
         process = self.process
         assert process.stdin and process.stdout
+        # A thread writes: with full pipes both sides would wait for each other.
         writer = threading.Thread(
             target=self._write, args=(process, lines), daemon=True
         )
@@ -76,6 +77,7 @@ class Testee:
         answers: list[bytes | None] = []
         for _ in lines:
             answer = process.stdout.readline()
+            # An incomplete line is the last output of a testee that died.
             if not answer.endswith(b"\n"):
                 break
             answers.append(answer[:-1])
@@ -96,11 +98,13 @@ class Testee:
             pass
 
     def close(self) -> int:
-        """Ends the testee's input; its exit status (0 for one that was never started)."""
+        """Close the testee's input and return its exit status (0 if it was never
+        started).
+        """
         return self._end(kill=False)
 
     def complaint(self) -> str:
-        """The last that it wrote to its standard error."""
+        """Return the last lines that the testee wrote to standard error."""
         self.errors.seek(0)
         return self.errors.read()[-2000:].decode("utf-8", "replace")
 
@@ -126,6 +130,6 @@ class Testee:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """The front, and the program that it asks."""
+    """Kill the front and the program that it has started."""
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""The ICDs under test and their vectors."""
+"""The ICDs under test and their test vectors."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ COMMITTED = ROOT / "generated" / "vectors"
 
 
 def icd_of(paths: list[Path] | None = None) -> Icd:
-    """The checked ICDs of ``paths``, by default those of the repository.
-
-    Raises `ValueError` with what is wrong.
+    """Return the checked ICDs of ``paths``, by default those of the repository. Raises
+    `ValueError` with the findings.
     """
     loaded = load(paths or [SHIPPED])
     if not loaded.ok:
@@ -36,19 +35,19 @@ def icd_of(paths: list[Path] | None = None) -> Icd:
 
 @cache
 def shipped() -> Icd:
-    """The ICDs of the project, errata applied."""
-    return read(SHIPPED)
+    """Return the ICDs of the project with errata applied."""
+    return read_unchecked(SHIPPED)
 
 
-def read(*paths: Path) -> Icd:
-    """ICDs without the rules: tests give odd ones."""
+def read_unchecked(*paths: Path) -> Icd:
+    """Read ICDs without applying the rules, because some tests use invalid ones."""
     loaded = load(list(paths), check=False)
     assert not loaded.findings, loaded.findings
     return loaded.icd
 
 
 def vectors_of(icd: Icd) -> dict[str, dict]:
-    """The content of each node's vector file, made now."""
+    """Generate the content of each node's vector file."""
     return {
         node.name: json.loads(vector_file_text(make_vectors(icd, node)))
         for node in icd.nodes
@@ -56,9 +55,9 @@ def vectors_of(icd: Icd) -> dict[str, dict]:
 
 
 def read_vectors(folder: Path) -> dict[str, dict]:
-    """The content of each vector file of a folder, by node."""
-    found = (
+    """Read the vector files of a folder, by node."""
+    files = (
         json.loads(path.read_text(encoding="utf-8"))
         for path in sorted(folder.glob("*.json"))
     )
-    return {data["node"]: data for data in found if "icdgen_vectors" in data}
+    return {data["node"]: data for data in files if "icdgen_vectors" in data}

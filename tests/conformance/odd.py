@@ -1,5 +1,5 @@
-"""Small ICDs of what the shipped ones do not have: other bit orders, odd widths, scaled
-64-bit fields, odd names.
+"""Small ICDs with features that the shipped ones lack: other bit orders, unusual
+widths, scaled 64-bit fields, difficult names.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ _VARIABLE = ("common", "apart", "open", "mux")
 
 
 def write(folder: Path) -> Path:
-    """The folder, with the ICDs in it."""
+    """Write the ICDs into the folder and return it."""
     shutil.copytree(FOLDER, folder, dirs_exist_ok=True)
     return folder
 
 
 def variable(folder: Path) -> list[Path]:
-    """Files of messages of variable length, shared ids and conditions: odd ones, and
-    devices of others.
+    """Return files with variable-length messages, shared ids and conditions: unusual
+    ones, and real devices.
     """
     write(folder)
     devices = ROOT / "examples" / "devices"

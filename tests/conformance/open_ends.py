@@ -1,10 +1,10 @@
-"""Draws the end of a message of variable length."""
+"""Hypothesis strategies for the variable-length end of a message."""
 
 from __future__ import annotations
 
 from hypothesis import strategies as st
 
-_PLUS = (0, 0, 0, 1, 2, -1, -4)  # what is added to what a field says
+_PLUS = (0, 0, 0, 1, 2, -1, -4)  # constants added to the value of a counter
 
 
 @st.composite
@@ -15,10 +15,11 @@ def open_end(
     elements: st.SearchStrategy,
     structs: list[dict],
 ) -> dict:
-    """Elements or structs, bytes or text: as many as a field says, or as the frame
-    ends.
+    """Draw a variable-length array of elements or structs, or variable-length bytes or
+    text.
 
-    ``place``: where, and its names.
+    Its length comes from a counter field or from the end of the frame. ``place`` is its
+    position and its names.
     """
     counters = [field for field in fields if _counts(field)]
     counter = draw(st.sampled_from([None, *counters]))
@@ -33,7 +34,9 @@ def open_end(
         element = {"struct": draw(st.sampled_from(structs))["name"]}
     else:
         element = draw(
-            elements.filter(lambda one: one["type"] != "bool" and one["bits"] % 8 == 0)
+            elements.filter(
+                lambda element: element["type"] != "bool" and element["bits"] % 8 == 0
+            )
         )
     most = draw(st.integers(1, 2 if "struct" in element else 9))
     return place | element | _counted(draw, "count", counter, most)
@@ -47,25 +50,26 @@ def open_parts(
     elements: st.SearchStrategy,
     structs: list[dict],
 ) -> list[dict]:
-    """One, or several behind each other, all but the last counted by fields; and fields
-    of fixed size behind some of them.
+    """Draw one or several variable-length fields in a row, of which all but the last
+    have counters.
 
-    ``place``: of the first; its name is that of all.
+    Fields of fixed size may follow some of them. ``place`` is the position of the first
+    one, and its name is the prefix of all names.
     """
-    free = [one for one in fields if _counts(one)]
-    found: list[dict] = []
+    free = [field for field in fields if _counts(field)]
+    parts: list[dict] = []
     for number in range(
         0 if draw(st.integers(0, 2)) else min(len(free), draw(st.integers(1, 2)))
     ):
-        one = open_end(_named(place, number, found), free, elements, structs)
-        part = draw(one.filter(lambda part: _counter(part) != "rest"))
-        # a field counts one part
-        free = [one for one in free if one["name"] != _counter(part)]
-        found.append(part)
-        found += draw(fields_behind(place, number, found, elements, structs))
-    end = _named(place, 9, found) if found else place
-    found.append(draw(open_end(end, free, elements, structs)))
-    return found + draw(fields_behind(place, 9, found, elements, structs))
+        strategy = open_end(_named(place, number, parts), free, elements, structs)
+        part = draw(strategy.filter(lambda part: _counter(part) != "rest"))
+        # each counter counts a single field
+        free = [field for field in free if field["name"] != _counter(part)]
+        parts.append(part)
+        parts += draw(fields_behind(place, number, parts, elements, structs))
+    end = _named(place, 9, parts) if parts else place
+    parts.append(draw(open_end(end, free, elements, structs)))
+    return parts + draw(fields_behind(place, 9, parts, elements, structs))
 
 
 @st.composite
@@ -77,21 +81,24 @@ def fields_behind(
     elements: st.SearchStrategy,
     structs: list[dict],
 ) -> list[dict]:
-    """None, or a few fields of fixed size behind a part.
+    """Draw up to a few fields of fixed size after a variable-length field.
 
-    ``place`` and ``number``: of the part; their names begin with its name.
+    ``place`` and ``number`` are those of the variable-length field; the new names start
+    with its name.
     """
-    found: list[dict] = []
-    whole = elements.filter(lambda one: one["bits"] * one.get("count", 1) % 8 == 0)
+    fields: list[dict] = []
+    whole_bytes = elements.filter(
+        lambda element: element["bits"] * element.get("count", 1) % 8 == 0
+    )
     for index in range(draw(st.sampled_from((0, 0, 1, 1, 2, 3)))):
-        at = _named(place, 10 * (number + 1) + index, [*before, *found])
+        at = _named(place, 10 * (number + 1) + index, [*before, *fields])
         if structs and draw(st.integers(0, 2)) == 0:
             count = draw(st.sampled_from(({}, {"count": 1}, {"count": 2})))
             struct = draw(st.sampled_from(structs))["name"]
-            found.append({**at, "struct": struct, **count})
+            fields.append({**at, "struct": struct, **count})
         else:
-            found.append({**at, **draw(whole)})
-    return found
+            fields.append({**at, **draw(whole_bytes)})
+    return fields
 
 
 @st.composite
@@ -103,34 +110,36 @@ def nested_end(
     inner: list[dict],
     elements: st.SearchStrategy,
 ) -> tuple[list[dict], dict]:
-    """Counters behind ``length`` bytes, and an array of structs with arrays that one of
-    them counts; and the struct.
+    """Draw counters after ``length`` bytes, and an array of structs whose inner arrays
+    one of them counts; and the struct.
 
-    ``names`` are for both counters and the array, ``inner`` for the fields that come
-    behind those of ``struct``.
+    ``names`` are for the two counters and the array, ``inner`` for the fields that
+    follow those of ``struct``.
     """
     count, inner_count, end = names
     counters = [
-        {"at": 8 * (length + index), "bits": 8, "type": "uint", **one}
-        for index, one in enumerate((count, inner_count))
+        {"at": 8 * (length + index), "bits": 8, "type": "uint", **field}
+        for index, field in enumerate((count, inner_count))
     ]
     fields: list[dict] = []
     for name in inner:
         element = draw(
             elements.filter(
-                lambda one: (
-                    one["type"] != "bool" and one["bits"] % 8 == 0 and one["bits"]
+                lambda element: (
+                    element["type"] != "bool"
+                    and element["bits"] % 8 == 0
+                    and element["bits"]
                 )
             )
         )
         before = {"after": fields[-1]["name"]} if fields else {}
-        there = (
+        presence = (
             _counted(draw, "count", counters[1], draw(st.integers(1, 4)))
             if not fields or draw(st.booleans())
             else {}
         )
         fields.append(
-            {"at": 8 * struct["length"], **before, **name, **element, **there}
+            {"at": 8 * struct["length"], **before, **name, **element, **presence}
         )
     part = {
         "at": 8 * (length + 2),
@@ -141,34 +150,36 @@ def nested_end(
     # Several arrays have one counter: there must be a value that all can have.
     lows, highs = zip(
         *(
-            (-plus, one["up_to"] - plus)
-            for one in fields
-            if "up_to" in one
-            for plus in [_plus(one)]
+            (-plus, field["up_to"] - plus)
+            for field in fields
+            if "up_to" in field
+            for plus in [_plus(field)]
         ),
         strict=True,
     )
     if max(0, *lows) > min(highs):
-        for one in fields[1:]:
-            if "up_to" in one:
-                one["count"], one["up_to"] = fields[0]["count"], fields[0]["up_to"]
+        for field in fields[1:]:
+            if "up_to" in field:
+                field["count"], field["up_to"] = fields[0]["count"], fields[0]["up_to"]
     return [*counters, part], {**struct, "fields": [*struct["fields"], *fields]}
 
 
 def _plus(part: dict) -> int:
-    """What is added to what a counter says."""
-    said = part["count"]
-    return said["plus"] if isinstance(said, dict) else 0
+    """Return the constant that is added to the value of a counter."""
+    count = part["count"]
+    return count["plus"] if isinstance(count, dict) else 0
 
 
 def _counter(part: dict) -> str:
-    """What says how many elements it has: the name of a field, or `rest`."""
-    said = part.get("size", part.get("count"))
-    return said["field"] if isinstance(said, dict) else said
+    """Return what determines the number of elements: the name of a field, or `rest`."""
+    count = part.get("size", part.get("count"))
+    return count["field"] if isinstance(count, dict) else count
 
 
 def _named(place: dict, number: int, before: list[dict]) -> dict:
-    """The place of another part; a number makes its name another."""
+    """Return the place of another variable-length field. A number makes its name
+    unique.
+    """
     named = {
         key: f"{value} {number}" if key in ("name", "identifier") else value
         for key, value in place.items()
@@ -177,21 +188,25 @@ def _named(place: dict, number: int, before: list[dict]) -> dict:
 
 
 def _counted(draw, key: str, counter: dict | None, most: int) -> dict:
-    """What says how many there are, and the most of them, which the counter can say."""
+    """Return how the number of elements is given, and the largest number that the
+    counter can represent.
+    """
     if counter is None:
         return {key: "rest", "up_to": most}
     plus = draw(st.sampled_from(_PLUS))
     largest = (1 << counter["bits"]) - 1
     plus = plus if largest + plus > 0 and plus <= most else 0
-    said = (
+    count = (
         {"field": counter["name"], "plus": plus}
         if plus or draw(st.integers(0, 5)) == 0
         else counter["name"]
     )
-    return {key: said, "up_to": min(most, largest + plus)}
+    return {key: count, "up_to": min(most, largest + plus)}
 
 
 def _counts(field: dict) -> bool:
-    """Whether a field can say how many elements there are."""
-    others = ("formula", "points", "const", "count", "view", "bitfields")
-    return field.get("type") == "uint" and not any(key in field for key in others)
+    """Return whether a field can be a counter."""
+    excluded_keys = ("formula", "points", "const", "count", "view", "bitfields")
+    return field.get("type") == "uint" and not any(
+        key in field for key in excluded_keys
+    )

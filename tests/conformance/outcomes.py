@@ -37,7 +37,7 @@ from tests.conformance.compare import difference
 from tests.conformance.driver import Testee
 from tests.conformance.icds import LINKS, ROOT, icd_of
 from tests.conformance.languages import SELFTEST, all_languages
-from tests.conformance.run import chosen
+from tests.conformance.run import selected_languages
 
 EXAMPLES = [ROOT / "examples" / "links", LINKS]
 TIMES = {
@@ -74,7 +74,7 @@ STEPS = (
     200,
     3000,
 )
-HALF = 1 << 31  # times that a counter of 32 bits could take for negative
+HALF = 1 << 31  # times with the sign bit of 32 bits
 Row = dict[str, object]
 
 if TYPE_CHECKING:
@@ -114,6 +114,7 @@ class Script:
         size = self.source.choice((row.least, row.most, row.most))
         if self.source.random() < 0.05:
             size = self.source.randrange(row.most + 2)
+        # Changing the lowest bit of an id gives another message or none.
         started: Row = {
             "telecommand": row.id ^ (self.source.random() < 0.02),
             "bytes": self.data(size).hex(),
@@ -144,6 +145,7 @@ class Script:
 
     def data(self, size: int) -> bytes:
         """Return data that are often equal to those of other messages."""
+        # A response may repeat data of its telecommand, which only matters if equal.
         if self.source.random() < 0.7:
             return bytes(self.source.choices((0, 1), k=size))
         return self.source.randbytes(size)
@@ -178,9 +180,9 @@ class Script:
     def response(self, exchange: Exchange, started: Row) -> bytes:
         """Return a response to a telecommand, sometimes with a foreign echo."""
         # Otherwise most requests would be refused.
-        kept = [row for row in exchange.responses if row.verdict not in (NAK, BUSY)]
+        accepted = [row for row in exchange.responses if row.verdict not in (NAK, BUSY)]
         response = self.source.choice(
-            kept if kept and self.source.random() < 0.4 else exchange.responses
+            accepted if accepted and self.source.random() < 0.4 else exchange.responses
         )
         if response.packet is not None:
             return self._packet(exchange, response, started)
@@ -279,12 +281,16 @@ def cases(icd: Icd, seed: int, count: int) -> list[tuple[dict, dict]]:
     return [(request, reference.answer(icd, request)) for request in chosen_requests]
 
 
-def differences(testee: Testee, asked: list[tuple[dict, dict]]) -> Iterator[str]:
+def differences(
+    testee: Testee, expected_answers: list[tuple[dict, dict]]
+) -> Iterator[str]:
     """Yield each script that a language answers differently, and the first
     difference.
     """
-    lines = [json.dumps(request).encode() for request, _ in asked]
-    for (request, expected), line in zip(asked, testee.ask(lines), strict=True):
+    lines = [json.dumps(request).encode() for request, _ in expected_answers]
+    for (request, expected), line in zip(
+        expected_answers, testee.ask(lines), strict=True
+    ):
         what = difference(expected, line)
         if what:
             yield f"{_first_step(expected, line) or what}\n  in {json.dumps(request)}"
@@ -303,7 +309,9 @@ def _first_step(expected: dict, line: bytes | None) -> str | None:
 
 def main(arguments: list[str] | None = None) -> int:
     languages = {
-        name: one for name, one in all_languages().items() if one.kind != SELFTEST
+        name: language
+        for name, language in all_languages().items()
+        if language.kind != SELFTEST
     }
     parser = argparse.ArgumentParser(
         prog="python -m tests.conformance.outcomes",
@@ -323,17 +331,17 @@ def main(arguments: list[str] | None = None) -> int:
     )
     options = parser.parse_args(arguments)
     icd = icd_of(options.icds or EXAMPLES)
-    asked = cases(icd, options.seed, options.scripts)
+    scripts = cases(icd, options.seed, options.scripts)
     failed = False
-    for language in chosen(parser, options.lang, languages):
+    for language in selected_languages(parser, options.lang, languages):
         try:
             testee = Testee(build(language, icd))
         except BuildError as error:
             print(error, file=sys.stderr)
             return 2
-        different = list(differences(testee, asked))
+        different = list(differences(testee, scripts))
         failed = bool(testee.close()) or bool(different) or failed
-        print(f"{language.name}: {len(asked)} scripts, {len(different)} differ")
+        print(f"{language.name}: {len(scripts)} scripts, {len(different)} differ")
         print(*different[: options.show], testee.complaint(), sep="\n")
     return int(failed)
 

@@ -1,9 +1,10 @@
-"""``python -m tests.conformance.physical``: the physical value of every raw value of
-every scaled field, in every language.
+"""Compare the physical value of every raw value of every scaled field in every
+language.
 
-All values of fields of up to 16 bits; of wider ones the extremes and a million random
-ones. Each double must be that of the reference codec to the last bit, and setting it
-must give the raw value back. Ends with status 0 if all of that holds.
+Run ``python -m tests.conformance.physical``. It tests all values of fields of up to 16
+bits; for wider fields the extremes and a million random values. Each double must equal
+that of the reference codec to the last bit, and setting it must return the raw value.
+Ends with status 0 if everything agrees.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ CHUNK = 65536
 
 @dataclass
 class Total:
-    """What came of one language."""
+    """Result of one language."""
 
     name: str
     fields: int = 0
@@ -46,8 +47,8 @@ class Total:
 
 @dataclass(frozen=True)
 class Chunk:
-    """Raw values of one kind of field, as the sweep's request gives them, and what must
-    come back.
+    """Raw values of one kind of field in the form of a sweep request, and the expected
+    answer.
     """
 
     request: dict
@@ -64,18 +65,22 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, NodePlace]]:
                     yield message, field
 
 
-def chunks(field: NodePlace, count: int, whole: int, near: int = 1000) -> list[Chunk]:
-    """Everything to ask of a field; fields of one kind share it."""
-    return _chunks(field.scale, field.curve, field.type, field.bits, count, whole, near)
+def chunks(
+    field: NodePlace, count: int, exhaustive_bits: int, near: int = 1000
+) -> list[Chunk]:
+    """Return all raw values to test for a field. Fields of one kind share them."""
+    return _chunks(
+        field.scale, field.curve, field.type, field.bits, count, exhaustive_bits, near
+    )
 
 
 @cache
 def _chunks(
-    scale, curve, type_: str, bits: int, count: int, whole: int, near: int
+    scale, curve, type_: str, bits: int, count: int, exhaustive_bits: int, near: int
 ) -> list[Chunk]:
     field = Scalar(name="any", at=0, bits=bits, type=type_, scale=scale, curve=curve)
     low, high = field.raw_min, field.raw_max
-    if bits <= whole:
+    if bits <= exhaustive_bits:
         return [_chunk(field, {"from": low, "to": high}, tuple(range(low, high + 1)))]
     source = random.Random(f"{scale or curve}/{type_}/{bits}")
     edges = [
@@ -96,10 +101,10 @@ def _chunks(
 
 
 def _chunk(field: NodePlace, request: dict, raw: tuple[int, ...]) -> Chunk:
-    doubles = [codec.physical_double(field, one) for one in raw]
+    doubles = [codec.physical_double(field, value) for value in raw]
     failures = sum(
-        not comes_back(field, one, value)
-        for one, value in zip(raw, doubles, strict=True)
+        not comes_back(field, raw_value, value)
+        for raw_value, value in zip(raw, doubles, strict=True)
     )
     return Chunk(request, raw, "".join(map(bits_of, doubles)), failures)
 
@@ -112,7 +117,7 @@ def sweep(
     chunk: Chunk,
     notes: list[str],
 ) -> None:
-    """One request, compared."""
+    """Send one sweep request and compare the answer."""
     about = {
         "node": message.node,
         "kind": message.kind,
@@ -135,13 +140,13 @@ def sweep(
         return
     if answer["physical"] != chunk.physical:
         for index, raw in enumerate(chunk.raw):
-            expected, found = (
+            expected, actual = (
                 text[index * 16 : index * 16 + 16]
                 for text in (chunk.physical, answer["physical"])
             )
-            if expected != found:
+            if expected != actual:
                 total.differences += 1
-                notes.append(f"{where}: raw {raw} is {found}, not {expected}")
+                notes.append(f"{where}: raw {raw} is {actual}, not {expected}")
     total.not_back += answer["failures"]
     if answer["failures"] != chunk.failures:
         total.differences += abs(answer["failures"] - chunk.failures)
@@ -151,12 +156,13 @@ def sweep(
 
 
 def run(
-    names: list[str], icd: Icd, count: int, whole: int = 16, near: int = 1000
+    names: list[str], icd: Icd, count: int, exhaustive_bits: int = 16, near: int = 1000
 ) -> tuple[list[Total], list[str]]:
-    """The totals, and the first differences in words. Raises `BuildError`.
+    """Return the totals and a description of the first differences. Raises
+    `BuildError`.
 
-    Fields of up to ``whole`` bits are asked for all their values, wider ones for
-    ``count`` random ones and those ``near`` 0 and the ends of the range.
+    All values of fields of up to ``exhaustive_bits`` bits are tested; of wider fields
+    ``count`` random values and those ``near`` 0 and the ends of the range.
     """
     languages = all_languages()
     totals, notes = [Total(name) for name in names], []
@@ -164,10 +170,10 @@ def run(
     for message, field in scaled_fields(icd):
         for total, testee in zip(totals, testees, strict=True):
             total.fields += 1
-            for chunk in chunks(field, count, whole, near):
-                found: list[str] = []
-                sweep(testee, total, message, field, chunk, found)
-                notes += [f"{total.name}: {note}" for note in found[:5]]
+            for chunk in chunks(field, count, exhaustive_bits, near):
+                differences: list[str] = []
+                sweep(testee, total, message, field, chunk, differences)
+                notes += [f"{total.name}: {note}" for note in differences[:5]]
     for testee in testees:
         testee.close()
     return totals, notes

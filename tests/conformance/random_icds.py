@@ -1,7 +1,7 @@
-"""``python -m tests.conformance.random_icds --icds 200``: random valid ICDs, all
-languages, compared with the reference codec.
+"""Compare all languages with the reference codec on random valid ICDs.
 
-Ends with status 0 if every ICD builds in every language and no answer differs.
+Run ``python -m tests.conformance.random_icds --icds 200``. Ends with status 0 if every
+ICD builds in every language and no answer differs.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from tests.conformance.icds import vectors_of
 from tests.conformance.languages import Language, all_languages
 from tests.conformance.run import Result, run
 from tests.conformance.strategies import icds
-from tests.conformance.wholes import with_wholes
+from tests.conformance.wholes import with_composites
 
 
 class Differs(AssertionError):
-    """A language does not agree with the reference codec; the message says where, and
-    holds the ICDs.
+    """A language does not agree with the reference codec. The message names the place
+    and contains the ICDs.
     """
 
 
 def written(trees: dict[str, dict], folder: Path) -> Icd:
-    """The checked ICDs of the trees; identifiers and formulas that the rules refuse are
+    """Write and check the ICDs. Identifiers and formulas that the rules refuse are
     replaced. Raises `Differs`.
     """
     for name, tree in trees.items():
@@ -56,7 +56,7 @@ def written(trees: dict[str, dict], folder: Path) -> Icd:
 
 
 def _mend(file: Path, number: int, name: str) -> None:
-    """Replaces the identifier or the formula that stands in a line."""
+    """Replace the identifier or the formula in a line."""
     lines = file.read_text(encoding="utf-8").split("\n")
     key, colon, value = lines[number - 1].partition(": ")
     harmless = {"identifier": name, "formula": "raw*0.01"}.get(key.strip().strip('"'))
@@ -70,10 +70,7 @@ def _mend(file: Path, number: int, name: str) -> None:
 def compare(
     trees: dict[str, dict], languages: list[Language], frames: int = 5
 ) -> list[Result]:
-    """Generates, builds and drives every language.
-
-    Raises `Differs` and `BuildError`.
-    """
+    """Generate, build and run every language. Raises `Differs` and `BuildError`."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "icd").mkdir()
@@ -94,9 +91,8 @@ def check(
     say=lambda text: None,
     shrink: bool = False,
 ) -> dict[str, Result]:
-    """Checks ``count`` random ICDs; the sum of the results by language.
-
-    Raises what `compare` raises, of the smallest ICD found.
+    """Check ``count`` random ICDs and return the sum of the results by language. Raises
+    the errors of `compare` for the smallest failing ICD.
     """
     languages = [all_languages()[name] for name in names]
     totals = {name: Result(name) for name in names}
@@ -111,8 +107,8 @@ def check(
         phases=phases,
         suppress_health_check=list(HealthCheck),
     )
-    @given(with_wholes(icds()))
-    def one(trees: dict[str, dict]) -> None:
+    @given(with_composites(icds()))
+    def compare_languages(trees: dict[str, dict]) -> None:
         nonlocal done
         for result in compare(trees, languages):
             total = totals[result.name]
@@ -121,7 +117,7 @@ def check(
         done += 1
         say(f"{done} ICDs")
 
-    one()
+    compare_languages()
     return totals
 
 

@@ -1,7 +1,7 @@
-"""A testee over the reference codec: the protocol of ``README.md`` in its plainest
-form.
+"""A testee based on the reference codec: the simplest implementation of the protocol in
+``README.md``.
 
-``python -m tests.conformance.reference [ICD ...]``
+Run ``python -m tests.conformance.reference [ICD ...]``.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ MOST_VALUES = 65536
 
 
 class Refusal(Exception):
-    """An answer of ``"ok": false``."""
+    """An answer with ``"ok": false``."""
 
     def __init__(self, error: str, **more: object) -> None:
         self.answer = {"ok": False, "error": error, **more}
 
 
 class Reference:
-    """Answers requests for a set of ICDs."""
+    """Answers requests about a set of ICDs."""
 
     def __init__(self, icd: Icd) -> None:
         self.icd = icd
@@ -59,8 +59,8 @@ class Reference:
             return {"ok": False, "error": "request", "detail": str(error)}
 
     def message(self, request: dict) -> tuple[Node, Any]:
-        """The message that is meant and the node that declares it; all of a shared id,
-        where a frame is to tell.
+        """Return the node that declares the message, and the message. For a shared id
+        the list contains all candidates, so that a frame can decide.
         """
         name, kind, id = (
             key(request, "node", str),
@@ -77,32 +77,36 @@ class Reference:
         node = self.node(name)
         named = key(request, "message", str) if "message" in request else None
         for pick in picks[kind]:
-            found = [
+            candidates = [
                 message
                 for message in self.icd.messages_of(node)
                 if getattr(message, pick) == id
             ]
-            if len(found) > 1 and named is None:
+            if len(candidates) > 1 and named is None:
                 if request["op"] != "decode":
                     raise Refusal(
                         "request",
                         detail="several messages have the id, and `message` names none",
                     )
-                return node, found
-            found = [message for message in found if named in (None, message.name)]
-            if found:
-                return self.icd.node(found[0].node), found[0]
+                return node, candidates
+            candidates = [
+                message for message in candidates if named in (None, message.name)
+            ]
+            if candidates:
+                return self.icd.node(candidates[0].node), candidates[0]
         raise Refusal("unknown-id")
 
     def dispatched(self, messages: list[Message], frame: bytes) -> dict:
-        """Which of the messages of an id a frame is."""
-        found = codec.message_of_frame(self.icd, messages, frame)
-        if found is None:
+        """Return which of the messages of an id a frame is."""
+        message = codec.message_of_frame(self.icd, messages, frame)
+        if message is None:
             raise Refusal("unknown-id")
-        node = self.icd.node(found.node)
+        node = self.icd.node(message.node)
         return {
-            "message": found.name,
-            "bytes": codec.encode(node, found, codec.decode(node, found, frame)).hex(),
+            "message": message.name,
+            "bytes": codec.encode(
+                node, message, codec.decode(node, message, frame)
+            ).hex(),
         }
 
     def node(self, name: str) -> Node:
@@ -127,8 +131,8 @@ class Reference:
             ) from None
 
     def encode(self, request: dict) -> dict:
-        given, physical = request.get("raw", {}), request.get("physical", {})
-        if not isinstance(given, dict) or not isinstance(physical, dict):
+        raw_values, physical = request.get("raw", {}), request.get("physical", {})
+        if not isinstance(raw_values, dict) or not isinstance(physical, dict):
             raise Refusal("request")
         node, message = self.message(request)
         fields = {
@@ -136,7 +140,7 @@ class Reference:
             for field in frame_fields(message.layout, node.orders)
             if field.is_raw
         }
-        for name in given:
+        for name in raw_values:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
         for name in physical:
@@ -150,10 +154,10 @@ class Reference:
             elif field.name in physical:
                 value = struct.unpack(">d", hex_bytes(physical[field.name], 8))[0]
                 raw[field.name] = fitting(field, codec.raw_from_physical, value)
-            elif field.conditions and given.get(field.name) is None:
+            elif field.conditions and raw_values.get(field.name) is None:
                 continue
-            elif field.name in given:
-                raw[field.name] = raw_value(field, given[field.name])
+            elif field.name in raw_values:
+                raw[field.name] = raw_value(field, raw_values[field.name])
             else:
                 raise Refusal("missing-field", field=field.name)
         for part in message.layout.counted_parts:
@@ -217,17 +221,17 @@ class Reference:
         )
         if field is None or not settable(field):
             raise Refusal("unknown-field", field=name)
-        found, failures = [], 0
+        doubles, failures = [], 0
         for raw in values:
             fitting(field, codec.check_raw, raw)
             physical = codec.physical_double(field, raw)
-            found.append(bits_of(physical))
+            doubles.append(bits_of(physical))
             failures += not comes_back(field, raw, physical)
-        return {"physical": "".join(found), "failures": failures}
+        return {"physical": "".join(doubles), "failures": failures}
 
 
 def comes_back(field: FrameField, raw: int, physical: float) -> bool:
-    """Whether setting the physical value gives the raw one again."""
+    """Return whether setting the physical value returns the same raw value."""
     try:
         return codec.raw_from_physical(field, physical) == raw
     except codec.CodecError:
@@ -235,7 +239,7 @@ def comes_back(field: FrameField, raw: int, physical: float) -> bool:
 
 
 def key(request: dict, name: str, type_: type):
-    """The value of a key that must be there and of that type."""
+    """Return the value of a required key, which must have the given type."""
     value = request.get(name)
     if type(value) is not type_:
         raise Refusal(
@@ -254,22 +258,24 @@ def hex_bytes(text: object, size: int | None = None) -> bytes:
     return bytes.fromhex(text)
 
 
-def raw_value(field: FrameField, given: object) -> int | bytes:
-    """A raw value as it came in a request."""
+def raw_value(field: FrameField, value: object) -> int | bytes:
+    """Return a checked raw value from a request."""
     if field.type == "float":
-        return int.from_bytes(hex_bytes(given, field.bits // 8), "big")
+        return int.from_bytes(hex_bytes(value, field.bits // 8), "big")
     if field.is_bytes:
-        value: int | bytes = hex_bytes(given)
-    elif type(given) is int or (field.type == "bool" and type(given) is bool):
-        value = given  # type: ignore[assignment]
+        raw: int | bytes = hex_bytes(value)
+    elif type(value) is int or (field.type == "bool" and type(value) is bool):
+        raw = value  # type: ignore[assignment]
     else:
         raise Refusal("request", detail=f"a value of {field.name!r} has the wrong type")
-    fitting(field, codec.check_raw, value)
-    return value
+    fitting(field, codec.check_raw, raw)
+    return raw
 
 
 def fitting(field: FrameField, call, value):
-    """What ``call`` makes of the value; a refusal where it does not fit."""
+    """Return the result of ``call`` for the value. Raises `Refusal` if the value is out
+    of range.
+    """
     try:
         return call(field, value)
     except codec.CodecError as error:
@@ -277,24 +283,24 @@ def fitting(field: FrameField, call, value):
 
 
 def settable(field: FrameField) -> bool:
-    """Whether a physical value sets it."""
+    """Return whether the field can be set by a physical value."""
     return (field.has_formula and field.is_invertible) or field.type == "text"
 
 
 def limits(field: FrameField) -> dict[str, str]:
-    """The limits of a field, as doubles."""
-    found = {
+    """Return the limits of a field as doubles."""
+    bounds = {
         key: getattr(field.limits, key) for key in ("min", "max", "above", "below")
     }
     return {
         key: bits_of(value.numerator / value.denominator)
-        for key, value in found.items()
+        for key, value in bounds.items()
         if value is not None
     }
 
 
 def shown(field: FrameField, value: int | bytes | None) -> object:
-    """A raw value as it stands in an answer; null where the field is not there."""
+    """Return a raw value in the form of an answer; null if the field is absent."""
     if value is None:
         return None
     if isinstance(value, bytes):
@@ -305,8 +311,8 @@ def shown(field: FrameField, value: int | bytes | None) -> object:
 
 
 def physical_value(field: FrameField, raw: int | bytes | None) -> str | None:
-    """A physical value as it stands in an answer: a text in hex, null where the bytes
-    are none or the field is not there.
+    """Return a physical value in the form of an answer: text in hex, null if the bytes
+    are no text or the field is absent.
     """
     if raw is None:
         return None
@@ -317,7 +323,7 @@ def physical_value(field: FrameField, raw: int | bytes | None) -> str | None:
 
 
 def named(enum: Enum, value: int | None) -> str | None:
-    """The name of a value."""
+    """Return the enum member name of a value."""
     if value is None:
         return None
     member = enum.member_of(value)
@@ -325,7 +331,7 @@ def named(enum: Enum, value: int | None) -> str | None:
 
 
 def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
-    """The answer to decode and encode."""
+    """Return the answer to decode and encode requests."""
     fields = frame_fields(message.layout, node.orders)
     answer: dict = {
         "raw": {field.name: shown(field, raw.get(field.name)) for field in fields},

@@ -1,6 +1,5 @@
-"""Requests that no testee may die of, and the refusal that each demands.
-
-They need a node with any message.
+"""Requests that must not crash a testee, with the expected refusal. They need a node
+with any message.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ ANY_REFUSAL = {"ok": False, "error": ..., ...: ...}
 
 
 def bad_lines() -> Iterator[bytes]:
-    """Lines that are no request at all."""
+    """Lines that are no valid request."""
     yield from (
         b"", b" ", b"{", b"}", b"[]", b"null", b"7", b'"decode"', b"{}", b'{"op"}', b'{"op":}', b'{"op":"decode"', b"{]",
         b'{"op":"decode"} {"op":"decode"}', b'{"op":"decode",}', b"{'op':'decode'}", b'{"op":7}', b'{"op":null}', b"[{}",
@@ -27,7 +26,7 @@ def bad_lines() -> Iterator[bytes]:
 
 
 def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
-    """Requests that are wrong in one point, and their refusals."""
+    """Yield requests with a single mistake each, and the expected refusals."""
     refusal = {"ok": False, "error": "request"}
     zeros = "00" * cases.message["length"]
     decode = cases.request("decode", bytes=zeros)
@@ -87,8 +86,8 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
 
 
 def one_of_each_kind(fields: Iterable[dict]) -> list[dict]:
-    """The first of the fields of which the vectors say the same, but for names and
-    numbers: how a request is refused depends on nothing else.
+    """Return the first of all fields whose vectors differ only in names and numbers. A
+    refusal depends on nothing else.
     """
     kinds: dict[object, dict] = {}
     for field in fields:
@@ -100,10 +99,14 @@ def one_of_each_kind(fields: Iterable[dict]) -> list[dict]:
 def bad_field(
     cases: MessageCases, encode: dict, field: dict
 ) -> Iterator[tuple[dict, dict]]:
-    """Encoding with something wrong about one field."""
+    """Yield encode requests with a mistake in one field."""
     name, refusal = field["name"], {"ok": False, "error": "request"}
-    without = {key: value for key, value in cases.there(field).items() if key != name}
-    is_conditional = name in cases.conditional  # what is not there need not be given
+    without = {
+        key: value
+        for key, value in cases.values_with_field(field).items()
+        if key != name
+    }
+    is_conditional = name in cases.conditional  # absent fields need no value
     if not is_conditional:
         yield (
             {**encode, "raw": without},

@@ -1,7 +1,7 @@
-"""``python -m tests.conformance.run --lang c,python,rust``: golden vectors and random
-frames through every language.
+"""Run golden vectors and random frames through every language.
 
-Ends with status 0 if no answer differs from what the reference codec demands, else 1.
+Run ``python -m tests.conformance.run --lang c,python,rust``. Ends with status 0 if
+every answer equals that of the reference codec, else 1.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ SHOWN = 20  # differences printed of each language
 
 @dataclass
 class Result:
-    """What came of one language."""
+    """Result of one language."""
 
     name: str
     messages: int = 0
@@ -74,7 +74,7 @@ class Batch:
 def batches(
     icd: Icd, files: dict[str, dict], frames: int, seed: int
 ) -> Iterator[Batch]:
-    """Everything that is asked of each testee."""
+    """Yield all requests to each testee."""
     enums = member_names(files)
     yield _bad_lines()
     for node in icd.nodes:
@@ -107,12 +107,12 @@ def batches(
 
 
 def _batch(label: str, cases: Iterator[Case]) -> Iterator[Batch]:
-    found = list(cases)
-    if found:
+    batch_cases = list(cases)
+    if batch_cases:
         yield Batch(
-            [robust.line(c.request) for c in found],
-            [c.answer for c in found],
-            [f"{label}: {c.about}" for c in found],
+            [robust.line(c.request) for c in batch_cases],
+            [c.answer for c in batch_cases],
+            [f"{label}: {c.about}" for c in batch_cases],
         )
 
 
@@ -122,12 +122,12 @@ def _random(
     source = random.Random(f"{seed}/{message.node}/{message.name}")
     node, left = icd.node(message.node), frames
     fields = frame_fields(message.layout, node.orders)
-    known = {field.name: field for field in fields}
+    fields_by_name = {field.name: field for field in fields}
     parts = message.layout.parts
     while left:
         count = min(left, 500)
         left -= count
-        found: list[Case] = []
+        vector_cases: list[Case] = []
         for _ in range(count):
             frame = source.randbytes(message.length)
             optional = [field for field in fields if field.conditions]
@@ -141,8 +141,8 @@ def _random(
             elif optional and source.random() < 0.7:
                 field = source.choice(optional)
                 values = {
-                    known[one.field]: source.choice(one.values)
-                    for one in field.conditions
+                    fields_by_name[condition.field]: source.choice(condition.values)
+                    for condition in field.conditions
                 }
                 frame = codec.frame_of(frame, values)
             row = frame_vector(node, message, "random frame", frame)
@@ -152,8 +152,8 @@ def _random(
                 "doubles": [row.doubles.get(f.name) for f in fields if f.has_formula],
                 "texts": list(row.texts.values()),
             }  # fmt: skip
-            found += cases.frame(vector)
-        for batch in _batch(f"{node.name} {message.name!r}", iter(found)):
+            vector_cases += cases.frame(vector)
+        for batch in _batch(f"{node.name} {message.name!r}", iter(vector_cases)):
             batch.frames = count
             yield batch
 
@@ -185,17 +185,17 @@ def run(
     seed: int = 1,
     folder: Path | None = None,
 ) -> list[Result]:
-    """Builds every language and drives it. Raises `BuildError`."""
+    """Build and run every language. Raises `BuildError`."""
     return run_batches(languages, icd, batches(icd, files, frames, seed), folder)
 
 
 def run_batches(
     languages: list[Language],
     icd: Icd,
-    asked: Iterable[Batch],
+    batches: Iterable[Batch],
     folder: Path | None = None,
 ) -> list[Result]:
-    """The same, of what is asked already made."""
+    """Build and run every language with prepared batches. Raises `BuildError`."""
     results: list[Result] = []
     testees: list[tuple[Result, Answering]] = []
     for language in languages:
@@ -210,7 +210,7 @@ def run_batches(
         )
         results.append(Result(language.name))
         testees.append((results[-1], testee))
-    for batch in asked if testees else ():
+    for batch in batches if testees else ():
         for result, testee in testees:
             drive(testee, batch, result)
     for result, testee in testees:
@@ -223,7 +223,7 @@ def run_batches(
 
 
 def drive(testee: Answering, batch: Batch, result: Result) -> None:
-    """Sends a batch and notes every difference."""
+    """Send a batch and record every difference."""
     start = time.perf_counter()
     replies = testee.ask(batch.lines)
     result.seconds += time.perf_counter() - start
@@ -245,7 +245,7 @@ def drive(testee: Answering, batch: Batch, result: Result) -> None:
 
 
 def selftest(language: Language, command: list[str]) -> Result:
-    """Runs a self-test, whose last line is JSON: messages, vectors, checks, failures."""
+    """Run a self-test, whose last line is JSON: messages, vectors, checks, failures."""
     result, start = Result(language.name), time.perf_counter()
     done = subprocess.run(
         command, capture_output=True, text=True, errors="replace", timeout=600
@@ -271,7 +271,7 @@ def selftest(language: Language, command: list[str]) -> Result:
 
 
 def table(results: list[Result]) -> str:
-    """One line a language."""
+    """Return a table of the results with one line per language."""
     head = (
         "language",
         "messages",
@@ -297,22 +297,21 @@ def table(results: list[Result]) -> str:
         max(len(row[column]) for row in (head, *rows)) for column in range(len(head))
     ]
     lines = []
-    for first, *rest in (head, *rows):
+    for first, *cells in (head, *rows):
         numbers = (
-            text.rjust(width) for text, width in zip(rest, widths[1:], strict=True)
+            text.rjust(width) for text, width in zip(cells, widths[1:], strict=True)
         )
         lines.append("  ".join((first.ljust(widths[0]), *numbers)))
     return "\n".join(lines)
 
 
-def chosen(
-    parser: argparse.ArgumentParser, given: str, languages: dict[str, Language]
+def selected_languages(
+    parser: argparse.ArgumentParser, option: str, languages: dict[str, Language]
 ) -> list[Language]:
-    """The languages of ``--lang``.
-
-    Ends the program for one that does not exist or whose tools are not installed.
+    """Return the languages of ``--lang``. Ends the program if one does not exist or its
+    tools are not installed.
     """
-    names = given.split(",")
+    names = option.split(",")
     unknown = [name for name in names if name not in languages]
     if unknown:
         parser.error(f"unknown language {unknown[0]}; there are {', '.join(languages)}")
@@ -322,8 +321,8 @@ def chosen(
     return [languages[name] for name in names]
 
 
-def told(results: list[Result]) -> int:
-    """Prints the results; the status that they end with."""
+def print_results(results: list[Result]) -> int:
+    """Print the results and return the exit status."""
     for result in results:
         for text in result.shown:
             print(f"{result.name}: {text}")
@@ -362,7 +361,7 @@ def main(arguments: list[str] | None = None) -> int:
         "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
     )
     options = parser.parse_args(arguments)
-    asked = chosen(parser, options.lang, languages)
+    selected = selected_languages(parser, options.lang, languages)
     try:
         icd = icd_of(options.icds)
         committed = options.vectors or (
@@ -372,11 +371,11 @@ def main(arguments: list[str] | None = None) -> int:
         absent = [node.name for node in icd.nodes if node.name not in files]
         if absent:
             raise ValueError(f"{committed} has no vectors of {absent[0]}")
-        results = run(asked, icd, files, options.frames, options.seed)
+        results = run(selected, icd, files, options.frames, options.seed)
     except (BuildError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    return told(results)
+    return print_results(results)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-"""A Hypothesis strategy for messages that share an id, and that their lengths or
-constants tell apart.
+"""A Hypothesis strategy for multiplexed messages, which are distinguished by their
+length or by constants.
 """
 
 from __future__ import annotations
@@ -12,23 +12,25 @@ WAYS = ("lengths", "constants", "constants", "general")
 
 
 @st.composite
-def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
-    """The message, changed where it must be, and one to three more of its id.
+def sharing(draw, first: dict, names, fields_strategy, open_end) -> list[dict]:
+    """Draw one to three variants that share the message's id; return them with the
+    message, which changes if needed.
 
-    ``made`` draws fields and a length, ``open_end`` of these what is behind them.
+    ``fields_strategy`` draws fields and a length, ``open_end`` the variable-length
+    field after them.
     """
-    way, others = draw(st.sampled_from(WAYS)), []
+    way, variants = draw(st.sampled_from(WAYS)), []
     for _ in range(draw(st.integers(1, 3))):
-        fields, length = draw(made)
+        fields, length = draw(fields_strategy)
         if draw(st.integers(0, 3)) == 0:
             fields = [*fields, draw(open_end(fields, length))]
-        kept = {
+        kept_keys = {
             key: first[key]
             for key in ("byte_order", "bit_order", "kind", "id")
             if key in first
         }
-        others.append(
-            {**names.one("variant"), **kept, "length": length}
+        variants.append(
+            {**names.unique_names("variant"), **kept_keys, "length": length}
             | ({"fields": fields} if fields else {})
         )
         if (
@@ -36,22 +38,24 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
             and not any("up_to" in field for field in fields)
             and draw(st.integers(0, 4)) == 0
         ):
-            others[-1]["may_end_early"] = "zeros"
-    group = [first, *others]
+            variants[-1]["may_end_early"] = "zeros"
+    group = [first, *variants]
     for message in group:
         message["shares_id"] = True
     if way == "lengths":
-        taken: set[int] = set()
+        used_lengths: set[int] = set()
         for message in group:
             _close(message)
             _grow(
                 message,
-                next(n for n in range(300) if message["length"] + n not in taken),
+                next(
+                    n for n in range(300) if message["length"] + n not in used_lengths
+                ),
             )
-            taken.add(message["length"])
+            used_lengths.add(message["length"])
         return group
     if any("struct" in field for field in first.get("fields", ())):
-        way = "constants"  # what stands in structs keeps its constants
+        way = "constants"  # fields of structs keep their constants
     bits = draw(st.integers(2, 20))
     size = (bits + 7) // 8
     values = draw(
@@ -66,14 +70,14 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
     kind = draw(st.sampled_from(("uint", "int")))
     for message, value in zip(group, values, strict=True):
         const = value - (value >> bits - 1 << bits) if kind == "int" else value
-        taken = {
+        used_lengths = {
             part["name"]
             for field in message.get("fields", ())
             for part in (field, *field.get("bitfields", ()))
         }
         selector = {
             **place,
-            **replace(names, seen=taken).one("selector"),
+            **replace(names, seen=used_lengths).unique_names("selector"),
             "type": kind,
             "const": const,
         }
@@ -87,9 +91,8 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
                 for field in moved
             ]
             del selector["const"]
-        parts = iter(
-            [field for field in moved if _is_open(field)]
-        )  # open parts are written as they stand
+        # Variable-length fields are written unchanged.
+        parts = iter([field for field in moved if _is_open(field)])
         order = draw(st.permutations([selector, *moved]))
         message["fields"] = [
             next(parts) if _is_open(field) else field for field in order
@@ -102,7 +105,7 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
 
 
 def _close(message: dict) -> None:
-    """Takes away what makes its frames differ in length."""
+    """Remove what gives the frames of a message different lengths."""
     message.pop("may_end_early", None)
     if "fields" in message:
         message["fields"] = [
@@ -113,12 +116,12 @@ def _close(message: dict) -> None:
 
 
 def _is_open(field: dict) -> bool:
-    """Whether it has a variable length, or is behind such a field."""
+    """Return whether a field has a variable length, or follows such a field."""
     return "up_to" in field or "after" in field
 
 
 def _grow(message: dict, size: int) -> None:
-    """Reserves more bytes at the end, unless that is open."""
+    """Reserve more bytes at the end of a message of fixed length."""
     if size and not any("up_to" in field for field in message.get("fields", ())):
         message["reserved"] = message.get("reserved", 0) + size
         message["length"] += size

@@ -1,4 +1,4 @@
-"""Hypothesis strategies for valid ICDs that are as strange as the rules allow."""
+"""Hypothesis strategies for valid ICDs that are as unusual as the rules allow."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class Names:
     draw: object
     seen: set
 
-    def one(self, word: str) -> dict:
-        """``name`` and ``identifier`` of something; the rules may refuse the
+    def unique_names(self, word: str) -> dict:
+        """Draw ``name`` and ``identifier`` of an object. The rules may refuse the
         identifier.
         """
         draw = self.draw
@@ -67,10 +67,10 @@ class Names:
 
 @st.composite
 def icds(draw) -> dict[str, dict]:
-    """One to three ICDs by node name; later ones may include the first."""
+    """Draw one to three ICDs by node name. Later ones may include the first."""
     trees: dict[str, dict] = {}
     names = Names(draw, set())  # a node that includes another must not repeat its names
-    shared = draw(_ids())  # of nodes that speak each other's messages
+    shared = draw(_ids())  # for nodes that include each other's messages
     for number in range(draw(st.integers(1, 3))):
         name = f"n{number}"
         includes = bool(number) and draw(st.booleans())
@@ -90,8 +90,8 @@ def icds(draw) -> dict[str, dict]:
 
 @dataclass(frozen=True)
 class Ids:
-    """The ids of a node: ``bits`` wide, with ``above`` in the bits above the lowest
-    byte; some written as bytes.
+    """Draws the ids of a node: ``bits`` wide, with ``above`` in the bits above the
+    lowest byte. Some are written as bytes.
     """
 
     bits: int
@@ -126,7 +126,9 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
     structs: list[dict] = []
     variable: list[dict] = []  # structs of variable length
     for _ in range(draw(st.sampled_from((0, 0, 1, 2)))):
-        structs.append(draw(_struct(names.one("struct"), enums, structs, orders)))
+        structs.append(
+            draw(_struct(names.unique_names("struct"), enums, structs, orders))
+        )
     messages = []
     for number in range(draw(st.integers(1, 5))):
         own = draw(_own_orders())
@@ -134,7 +136,7 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             _fields(enums if number else enums + enums, orders | own, structs)
         )
         message = {
-            **names.one("message"),
+            **names.unique_names("message"),
             **own,
             "kind": draw(
                 st.sampled_from(("telecommand", "telemetry", "configuration"))
@@ -152,7 +154,7 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         message["length"] = length
         if draw(st.integers(0, 2)) == 0:
             alternatives = draw(_alternatives(fields, length, enums, orders | own))
-            ends = (one["at"] + one["bits"] + 7 for one in alternatives)
+            ends = (field["at"] + field["bits"] + 7 for field in alternatives)
             fields, message["length"] = (
                 [*fields, *alternatives],
                 max([length, *(end // 8 for end in ends)]),
@@ -163,23 +165,29 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         ):
             place = {
                 "at": 8 * message["length"],
-                **Names(draw, {field["name"] for field in fields}).one("end"),
+                **Names(draw, {field["name"] for field in fields}).unique_names("end"),
             }
             fields = [*fields, *draw(open_parts(place, fields, _field(enums), structs))]
         elif (
             not any("when" in field for field in fields)
             and draw(st.integers(0, 3)) == 0
         ):
-            struct = draw(_struct(names.one("struct"), enums, structs, orders))
+            struct = draw(_struct(names.unique_names("struct"), enums, structs, orders))
             own_names = Names(draw, {field["name"] for field in fields})
             inner_names = Names(draw, {field["name"] for field in struct["fields"]})
-            named = [own_names.one(name) for name in ("count", "inner count", "groups")]
-            inner = [inner_names.one("behind") for _ in range(draw(st.integers(1, 4)))]
+            named = [
+                own_names.unique_names(name)
+                for name in ("count", "inner count", "groups")
+            ]
+            inner = [
+                inner_names.unique_names("behind")
+                for _ in range(draw(st.integers(1, 4)))
+            ]
             ends, struct = draw(
                 nested_end(message["length"], named, struct, inner, _field(enums))
             )
             message["length"] += 2
-            place = {"at": 8 * message["length"], **own_names.one("behind")}
+            place = {"at": 8 * message["length"], **own_names.unique_names("behind")}
             ends += draw(fields_behind(place, 0, ends, _field(enums), structs))
             fields = [*fields, *ends]
             variable.append(struct)
@@ -191,12 +199,12 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         if fields:
             message["fields"] = fields
         if "id" in message and draw(st.integers(0, 3)) == 0:
-            made = _fields(enums, orders | own, structs)
+            fields_and_length = _fields(enums, orders | own, structs)
             messages += draw(
                 sharing(
                     message,
                     names,
-                    made,
+                    fields_and_length,
                     partial(_open_end, enums=enums, structs=structs),
                 )
             )
@@ -204,7 +212,9 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             messages.append(message)
     for message in messages:
         message |= draw(derived(message.get("fields", ())))
-    messages.append(_uses_all(names.one("message"), enums, structs, ids(first_id + 59)))
+    messages.append(
+        _uses_all(names.unique_names("message"), enums, structs, ids(first_id + 59))
+    )
     node = {
         "name": name,
         "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))),
@@ -223,13 +233,12 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
 
 @st.composite
 def _struct(
-    draw, names: dict, enums: list[dict], others: list[dict], orders: dict
+    draw, names: dict, enums: list[dict], nested: list[dict], orders: dict
 ) -> dict:
-    """A struct, others in it; ``orders`` are those of its node.
-
-    Where it stands, bits may be counted in another way.
+    """Draw a struct that may contain others. ``orders`` are those of its node; a
+    message that uses the struct may have another bit order.
     """
-    fields, length = draw(_fields(enums, orders, others, in_struct=True))
+    fields, length = draw(_fields(enums, orders, nested, in_struct=True))
     if not fields:
         fields, length = [{"at": 3, "bits": 2, "name": "only", "type": "uint"}], 1
     return {
@@ -242,8 +251,8 @@ def _struct(
 def _uses_all(
     names: dict, enums: list[dict], structs: list[dict], id: int | list[int]
 ) -> dict:
-    """A message with a field of each enumeration and of each struct, so that none is
-    unused.
+    """Return a message with a field of each enumeration and of each struct, so that
+    none is unused.
     """
     fields, at = [], 3
     for number, enum in enumerate(enums):
@@ -272,8 +281,8 @@ def _uses_all(
 
 
 def _needed(enum: dict) -> int:
-    """Bits of the narrowest field that holds every member; a negative one makes all of
-    them signed.
+    """Return the bits of the narrowest field for every member. A negative member makes
+    the field signed.
     """
     values = [
         value
@@ -312,28 +321,30 @@ def _enum(draw, names: Names, name: str) -> dict:
             if room > 0 and draw(st.integers(0, 4)) == 0
             else {}
         )
-        members.append({"value": value, **reach, **names.one("member")})
+        members.append({"value": value, **reach, **names.unique_names("member")})
     return {"name": name, "members": members}
 
 
 @st.composite
 def _own_orders(draw) -> dict:
-    """Orders of a message or a field over those around it; mostly none."""
-    found = {}
+    """Draw byte and bit order of a message or a field that differ from the enclosing
+    ones; usually empty.
+    """
+    orders = {}
     if draw(st.integers(0, 3)) == 0:
-        found["byte_order"] = draw(st.sampled_from(("little", "big")))
+        orders["byte_order"] = draw(st.sampled_from(("little", "big")))
     if draw(st.integers(0, 3)) == 0:
-        found["bit_order"] = draw(st.sampled_from(("lsb0", "msb0")))
-    return found
+        orders["bit_order"] = draw(st.sampled_from(("lsb0", "msb0")))
+    return orders
 
 
 def _width(field: dict) -> int:
-    """The bits of a field, or of all elements of an array."""
+    """Return the bits of a field, or of all elements of an array."""
     return field["bits"] * field.get("count", 1)
 
 
 def _bits_of(field: dict, orders: dict) -> int:
-    """The bits of the frame that a field has: bit w of byte b is bit 8 * b + w."""
+    """Return the bits of the frame that a field uses: bit w of byte b is bit 8 * b + w."""
     places = (divmod(at, 8) for at in range(field["at"], field["at"] + _width(field)))
     return sum(
         1 << 8 * byte + (bit if orders["bit_order"] == "lsb0" else 7 - bit)
@@ -345,8 +356,8 @@ def _bits_of(field: dict, orders: dict) -> int:
 def _fields(
     draw, enums: list[dict], orders: dict, structs: list[dict], in_struct: bool = False
 ) -> tuple[list[dict], int]:
-    """Fields one after another with gaps of reserved bits, and their bytes; ``orders``
-    are those of the message.
+    """Draw consecutive fields with gaps of reserved bits, and their length in bytes.
+    ``orders`` are those of the message.
     """
     fields: list[dict] = []
     names = Names(draw, set())
@@ -361,9 +372,8 @@ def _fields(
             else {}
         )
         if in_struct:
-            own.pop(
-                "bit_order", None
-            )  # of other messages it might be the same, and fields overlap
+            # In other messages the identifier may be the same, and the fields overlap.
+            own.pop("bit_order", None)
         straight = tuple({**orders, **own}.values()) in (
             ("little", "lsb0"),
             ("big", "msb0"),
@@ -375,7 +385,13 @@ def _fields(
             at = (at + 7) // 8 * 8 if field["type"] in ("bytes", "text") else at
         used |= _bits_of({"at": at, **field}, orders | own)
         fields.append(
-            {"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own}
+            {
+                "at": at,
+                "bits": field.pop("bits"),
+                **names.unique_names("field"),
+                **field,
+                **own,
+            }
         )
         if (
             is_plain
@@ -395,7 +411,7 @@ def _fields(
             fields.append(
                 {
                     "at": at,
-                    **names.one("part"),
+                    **names.unique_names("part"),
                     "struct": struct["name"],
                     **({"count": count} if count else {}),
                 }
@@ -409,8 +425,8 @@ def _fields(
 def _alternatives(
     draw, fields: list[dict], length: int, enums: list[dict], orders: dict
 ) -> list[dict]:
-    """Fields that are there or not by the value of another, some of them in the same
-    bits; and that one, if there is none.
+    """Draw optional fields that depend on another field, some of them in the same bits.
+    Adds the other field if there is none.
     """
     selectors = [field for field in fields if _decides(field)]
     room = length + draw(st.integers(1, 9))
@@ -429,23 +445,23 @@ def _alternatives(
             for part in (field, *field.get("bitfields", ()))
         },
     )
-    made = (
+    first_fields = (
         []
         if selectors
         else [
             {
                 "at": 8 * length,
-                **names.one("selector"),
+                **names.unique_names("selector"),
                 "bits": draw(st.integers(1, 8)),
                 "type": "uint",
             }
         ]
     )
-    used |= _bits_of(made[0], orders) if made else 0
-    selector = draw(st.sampled_from(selectors or made))
+    used |= _bits_of(first_fields[0], orders) if first_fields else 0
+    selector = draw(st.sampled_from(selectors or first_fields))
     most = min(7, (1 << selector["bits"] - (selector["type"] == "enum")) - 1)
     values = draw(st.lists(st.integers(0, most), min_size=1, max_size=4, unique=True))
-    found: list[dict] = []
+    alternatives: list[dict] = []
     for near in draw(
         st.lists(
             st.integers(0, 8 * room - 1) | st.integers(8 * length, 8 * room - 1),
@@ -462,32 +478,34 @@ def _alternatives(
                 if field["type"] == "bool"
                 else ("count",)
             )
-            field = {key: given for key, given in field.items() if key not in dropped}
+            field = {key: value for key, value in field.items() if key not in dropped}
             at = max(0, min(near, 8 * room - field["bits"]))
             when = {selector["name"]: draw(st.sampled_from((value, [value])))}
             place = {
                 "at": at,
                 "bits": field.pop("bits"),
-                **names.one("alternative"),
+                **names.unique_names("alternative"),
                 **field,
                 "when": when,
             }
-            taken = used
-            for other in found:
+            used_bits = used
+            for other in alternatives:
                 same = _listed(other["when"]) == _listed(when)
-                taken |= _bits_of(other, {**orders, **other}) if same else 0
-            if not _bits_of(place, {**orders, **place}) & taken:
-                found.append(place)
-    return [*made, *found]
+                used_bits |= _bits_of(other, {**orders, **other}) if same else 0
+            if not _bits_of(place, {**orders, **place}) & used_bits:
+                alternatives.append(place)
+    return [*first_fields, *alternatives]
 
 
 def _listed(when: dict) -> list[list[int]]:
-    return [said if isinstance(said, list) else [said] for said in when.values()]
+    return [
+        values if isinstance(values, list) else [values] for values in when.values()
+    ]
 
 
 def _decides(field: dict) -> bool:
-    """Whether other fields may depend on its value."""
-    others = (
+    """Return whether other fields may depend on the value of a field."""
+    excluded_keys = (
         "formula",
         "points",
         "const",
@@ -498,7 +516,7 @@ def _decides(field: dict) -> bool:
         "special",
     )
     return field.get("type") in ("uint", "bool", "enum") and not any(
-        key in field for key in others
+        key in field for key in excluded_keys
     )
 
 
@@ -506,10 +524,10 @@ def _decides(field: dict) -> bool:
 def _open_end(
     draw, fields: list[dict], length: int, enums: list[dict], structs: list[dict]
 ) -> dict:
-    """What ends a message of variable length, behind ``length`` bytes."""
+    """Draw the end of a variable-length message, after ``length`` bytes."""
     place = {
         "at": 8 * length,
-        **Names(draw, {field["name"] for field in fields}).one("end"),
+        **Names(draw, {field["name"] for field in fields}).unique_names("end"),
     }
     return draw(open_end(place, fields, _field(enums), structs))
 
@@ -518,8 +536,8 @@ def _open_end(
 def _views(
     draw, fields: list[dict], used: int, names: Names, enums: list[dict], orders: dict
 ) -> list[dict]:
-    """Views of bits that fields have, where a place that was drawn has no others."""
-    found = []
+    """Draw overlay fields of used bits. A position gets at most one overlay field."""
+    views = []
     for _ in range(draw(st.sampled_from((0, 0, 1, 3))) if fields else 0):
         place = draw(st.sampled_from(fields))
         at = place["at"] + draw(st.integers(0, _width(place) - 1) | st.just(0))
@@ -536,21 +554,21 @@ def _views(
         ):
             field.pop(key, None)
         if not _bits_of({"at": at, **field}, {**orders, **field}) & ~used:
-            found.append(
+            views.append(
                 {
                     "at": at,
                     "bits": field.pop("bits"),
-                    **names.one("view"),
+                    **names.unique_names("view"),
                     **field,
                     "view": True,
                 }
             )
-    return found
+    return views
 
 
 @st.composite
 def _division(draw, names: Names, bits: int) -> list[dict]:
-    """Parts that make up a value, in any order."""
+    """Draw the parts of a split field, in any order."""
     cuts = sorted(draw(st.sets(st.integers(0, bits), max_size=4)) | {0, bits})
     parts = []
     for start, end in pairwise(cuts):
@@ -559,7 +577,12 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
                 ("uint", "int", "bool") if end - start == 1 else ("uint", "int")
             )
         )
-        part = {"at": start, "bits": end - start, **names.one("part"), "type": kind}
+        part = {
+            "at": start,
+            "bits": end - start,
+            **names.unique_names("part"),
+            "type": kind,
+        }
         if kind != "bool" and draw(st.booleans()):
             part |= {"unit": "deg", "formula": draw(_formula())}
         parts.append(part)
@@ -594,7 +617,7 @@ def _field(draw, enums: list[dict]) -> dict:
             )
         )
         named = (
-            {"special": [_meaning(one, index) for index, one in enumerate(values)]}
+            {"special": [_meaning(value, index) for index, value in enumerate(values)]}
             if values
             else {}
         )
@@ -621,8 +644,8 @@ def _field(draw, enums: list[dict]) -> dict:
     if draw(st.booleans()):
         ends = (-(1 << bits - 1), 1 << bits - 1) if kind == "int" else (0, 1 << bits)
         chosen = draw(st.integers(0, 7))
-        said = {"formula": draw(_curve() if chosen == 2 else _formula())}
-        field |= said if chosen > 1 else draw(_table(*ends))
+        scale_keys = {"formula": draw(_curve() if chosen == 2 else _formula())}
+        field |= scale_keys if chosen > 1 else draw(_table(*ends))
     if draw(st.booleans()):
         field["unit"] = draw(st.sampled_from(("deg", "m/s^2", "%", "V")))
     low, high = (
@@ -655,7 +678,9 @@ def _meaning(value: float | str, index: int) -> dict:
 
 @st.composite
 def _formula(draw) -> str:
-    """Factors and offsets, plain and extreme; the rules bound what they may come to."""
+    """Draw factors and offsets, simple and extreme ones; the rules limit the resulting
+    range.
+    """
     if draw(st.integers(0, 3)) == 0:
         return draw(_long_formula())
     top = draw(
@@ -688,7 +713,7 @@ def _formula(draw) -> str:
 
 @st.composite
 def _curve(draw) -> str:
-    """Lines and polynomials, many of which rise or fall all along."""
+    """Draw lines and polynomials, many of which are monotonic."""
     simple = (
         "raw*57.295779513",
         "raw/3 - 1",
@@ -706,8 +731,8 @@ def _curve(draw) -> str:
 
 @st.composite
 def _table(draw, low: float, high: float) -> dict:
-    """Points within and beyond the raw values, many of whose physical values rise or
-    fall all along.
+    """Draw points inside and outside the raw range, many with monotonic physical
+    values.
     """
     # Points that lie closer are too steep for a double: a finding, and no ICD.
     between = st.floats(1.5 * low - 9, 1.5 * high + 9).map(
@@ -736,15 +761,15 @@ def _table(draw, low: float, high: float) -> dict:
 
 
 def _spelled(number: float) -> float | str:
-    """A text where it has an exponent, as readers of YAML differ about numbers with
-    one.
+    """Return a number with an exponent as text, because YAML parsers disagree about
+    such numbers.
     """
     return repr(number) if "e" in repr(number) else number
 
 
 @st.composite
 def _long_formula(draw) -> str:
-    """Factors of many digits, with and without an offset over another denominator."""
+    """Draw factors of many digits, with and without an offset over another denominator."""
     sign = draw(st.sampled_from(("", "-")))
     digits = draw(st.integers(1, 10**20 - 1))
     factor = draw(

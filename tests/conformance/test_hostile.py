@@ -35,7 +35,7 @@ def icd():
 
 @pytest.fixture(scope="module")
 def conversations(icd) -> list[tuple[str, dict, dict]]:
-    """Description, request and response of each conversation."""
+    """Return description, request and response of each conversation."""
     link = link_of(icd, facts.of(icd, icd.node("board")))
     recorded = []
     for row in PROCEDURES:
@@ -49,15 +49,15 @@ def conversations(icd) -> list[tuple[str, dict, dict]]:
     return recorded
 
 
-def different(icd, recorded: list[tuple[str, dict, dict]], name: str) -> list:
-    """Return what a language answers differently."""
+def differences_of(icd, recorded: list[tuple[str, dict, dict]], name: str) -> list:
+    """Return the answers of a language that differ."""
     testee = Testee(build(all_languages()[name], icd))
     answers = testee.ask([json.dumps(request).encode() for _, request, _ in recorded])
     assert testee.close() == 0, testee.complaint()
     return [
-        (about, found)
+        (about, difference_text)
         for (about, _, good), answer in zip(recorded, answers, strict=True)
-        if (found := difference(good, answer))
+        if (difference_text := difference(good, answer))
     ]
 
 
@@ -69,14 +69,16 @@ def test_the_conversations_end_in_every_way(conversations):
 
 
 @pytest.mark.parametrize("name", ["python", "c-sanitizers"])
-def test_a_hostile_device_is_given_up_at_the_same_step(icd, conversations, name):
-    assert different(icd, conversations, name) == []
+def test_every_language_gives_up_on_a_hostile_device_at_the_same_step(
+    icd, conversations, name
+):
+    assert differences_of(icd, conversations, name) == []
 
 
 @pytest.fixture(scope="module")
 def clients(icd) -> list[tuple[str, dict, dict]]:
-    """Description, request and response of the client of each session, and of clients
-    with one request.
+    """Return description, request and response of the client of each session, and of
+    clients with one request.
     """
     link = link_of(icd, facts.of(icd, icd.node("board")))
     recorded = []
@@ -96,7 +98,7 @@ def clients(icd) -> list[tuple[str, dict, dict]]:
 @pytest.mark.parametrize("name", ["python", "c-sanitizers", "rust-debug"])
 def test_a_client_does_the_same_with_a_hostile_device(icd, clients, name):
     assert all(answer["ok"] for _, _, answer in clients)
-    assert different(icd, clients, name) == []
+    assert differences_of(icd, clients, name) == []
 
 
 @pytest.mark.parametrize("name", ["python", "c-sanitizers"])
@@ -107,6 +109,6 @@ def test_a_download_above_the_limit_of_the_icd_is_refused(icd, name):
     answers = testee.ask(
         [json.dumps({**request, "inputs": each}).encode() for each in inputs]
     )
-    told = [json.loads(answer or b"{}") for answer in answers]
-    assert told[0]["ok"] and told[1] == {"ok": False, "error": "range"}, told
+    replies = [json.loads(answer or b"{}") for answer in answers]
+    assert replies[0]["ok"] and replies[1] == {"ok": False, "error": "range"}, replies
     testee.close()

@@ -1,5 +1,5 @@
-"""Every language answers every vector as the reference codec does: the shipped ICDs,
-and odd ones.
+"""Every language answers every vector like the reference codec: for the shipped ICDs
+and for unusual ones.
 """
 
 from __future__ import annotations
@@ -26,52 +26,52 @@ SHIPPED = ("c", "c-cortex-m", "javascript", "python", "rust-debug")
 OPTIONAL = {"python3.9"}  # not every machine has an interpreter that old
 
 
-class Asked(NamedTuple):
-    """What every language is asked of these ICDs."""
+class RunInput(NamedTuple):
+    """ICDs with their requests to every language."""
 
     icd: Icd
     batches: list[Batch]
     vectors: int
 
 
-def asked(icd: Icd, frames: int) -> Asked:
+def run_input(icd: Icd, frames: int) -> RunInput:
     files = vectors_of(icd)
     vectors = sum(
         len(message["vectors"])
         for data in files.values()
         for message in data["messages"]
     )
-    return Asked(icd, list(batches(icd, files, frames, 1)), vectors)
+    return RunInput(icd, list(batches(icd, files, frames, 1)), vectors)
 
 
 @pytest.fixture(scope="module")
 def shipped():
-    return asked(icd_of(), 2)
+    return run_input(icd_of(), 2)
 
 
 @pytest.fixture(scope="module")
-def strange(tmp_path_factory):
-    return asked(icd_of([odd.write(tmp_path_factory.mktemp("icd"))]), 8)
+def odd_icds(tmp_path_factory):
+    return run_input(icd_of([odd.write(tmp_path_factory.mktemp("icd"))]), 8)
 
 
-def agree(language, asked):
+def agree(language, run_input):
     assert not language.missing(), (
         f"scripts/test installs {', '.join(language.missing())}"
     )
-    (result,) = run_batches([language], asked.icd, asked.batches)
+    (result,) = run_batches([language], run_input.icd, run_input.batches)
     assert result.differences == 0, "\n".join(result.shown)
-    assert result.vectors >= asked.vectors
+    assert result.vectors >= run_input.vectors
 
 
 # Left to `python -m tests.conformance.run`: what takes minutes to build, and variants
 # of which others here are as well.
 LEFT = {"rust", "c-clang", "c-portable", "c-selftest-no-double"}
-ODD = [one.name for one in LANGUAGES if one.name not in OPTIONAL | LEFT]
+ODD = [language.name for language in LANGUAGES if language.name not in OPTIONAL | LEFT]
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_a_language_agrees_with_the_reference_codec_on_odd_icds(strange, name):
-    agree(all_languages()[name], strange)
+def test_a_language_agrees_with_the_reference_codec_on_odd_icds(odd_icds, name):
+    agree(all_languages()[name], odd_icds)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -79,14 +79,18 @@ def test_a_language_agrees_with_the_reference_codec_on_the_shipped_icds(shipped,
     agree(all_languages()[name], shipped)
 
 
-def test_physical_values_are_the_same_to_the_last_bit(strange):
+def test_physical_values_are_the_same_to_the_last_bit(odd_icds):
     totals, notes = physical.run(
-        ["c", "javascript", "python", "rust-debug"], strange.icd, 100, whole=10, near=50
+        ["c", "javascript", "python", "rust-debug"],
+        odd_icds.icd,
+        100,
+        exhaustive_bits=10,
+        near=50,
     )
     assert notes == []
     scaled = [
         f
-        for node in strange.icd.nodes
+        for node in odd_icds.icd.nodes
         for m in node.messages
         for f in raw_fields_in(m.layout)
         if f.has_formula and f.is_invertible
@@ -103,7 +107,7 @@ def test_random_icds_agree_in_all_languages():
     )
 
 
-def test_a_language_of_another_package_joins_by_its_entry_point(tmp_path, monkeypatch):
+def test_another_package_can_add_a_language_by_an_entry_point(tmp_path, monkeypatch):
     (tmp_path / "icdgen_other.py").write_text(
         "from tests.conformance.languages import Language\n"
         'LANGUAGES = [Language("other", ("c",), ("env true", "env false"), lambda source, out: [])]\n'
@@ -118,7 +122,6 @@ def test_a_language_of_another_package_joins_by_its_entry_point(tmp_path, monkey
     )
     monkeypatch.syspath_prepend(str(tmp_path))
     other = all_languages()["other"]
-    assert other.missing() == [
-        "env"
-    ]  # a tool is there if the command that says its version ends well
+    # A tool is installed if the command that prints its version ends with status 0.
+    assert other.missing() == ["env"]
     assert "c" in all_languages()

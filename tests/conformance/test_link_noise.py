@@ -1,5 +1,5 @@
-"""Decoders of framed links in noise: long noise costs nothing but itself, and where a
-stream is cut does not matter.
+"""Decoders of framed links in noise: long noise costs only its own bytes, and
+the position of a cut does not matter.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ MARKERS = bytes((0x00, 0x55, 0x62, 0x7D, 0x7E, 0xB5, 0xC0, 0xDB, 0xDC, 0xFD, 0xF
 
 @pytest.fixture(scope="module", params=["python", "c-sanitizers", "rust-debug"])
 def testee(request):
-    one = Testee(build(all_languages()[request.param], ICD))
-    yield one
-    assert one.close() == 0, one.complaint()
+    process = Testee(build(all_languages()[request.param], ICD))
+    yield process
+    assert process.close() == 0, process.complaint()
 
 
 @cache
@@ -45,7 +45,7 @@ def link_to(node: str):
 def messages(
     node: str, source: random.Random, count: int
 ) -> tuple[bytes, list[tuple[int, str]]]:
-    """Messages as they are sent, and their ids and data as they must come out."""
+    """Return encoded messages, and the ids and data that a decoder must return."""
     form, line, sent = form_of(node), b"", []
     for number in range(count):
         row = source.choice(form.rows("telemetry"))
@@ -56,8 +56,8 @@ def messages(
     return line, sent
 
 
-def asked(testee: Testee, node: str, *streams: list[bytes]) -> list[dict]:
-    rows = ({"op": "stream_events", "node": node, "direction": "telemetry", "chunks": [one.hex() for one in chunks]}
+def answers_to(testee: Testee, node: str, *streams: list[bytes]) -> list[dict]:
+    rows = ({"op": "stream_events", "node": node, "direction": "telemetry", "chunks": [chunk.hex() for chunk in chunks]}
             for chunks in streams)  # fmt: skip
     return [
         json.loads(answer or b"{}")
@@ -65,7 +65,8 @@ def asked(testee: Testee, node: str, *streams: list[bytes]) -> list[dict]:
     ]
 
 
-def came(answer: dict) -> list[tuple[int, str]]:
+def decoded_messages(answer: dict) -> list[tuple[int, str]]:
+    """Return id and data of each message in an answer."""
     return [
         (event["id"], event["bytes"])
         for event in answer["events"]
@@ -74,9 +75,9 @@ def came(answer: dict) -> list[tuple[int, str]]:
 
 
 @cache
-def found(node: str, line: bytes) -> tuple[list[tuple[int, str]], int, int]:
-    """What the decoder of the Python runtime makes of it: messages, bytes discarded and
-    pending.
+def reference_result(node: str, line: bytes) -> tuple[list[tuple[int, str]], int, int]:
+    """Return messages, discarded and pending bytes according to the decoder of the
+    Python runtime.
     """
     decoder = StreamDecoder(link_to(node))
     events = [event for event in decoder.feed(line) if event.event == "message"]
@@ -100,24 +101,30 @@ def test_noise_before_messages_loses_none_of_them(testee, node):
         + line
         + bytes(form_of(node).longest_line)
     )
-    (answer,) = asked(testee, node, [padded])
-    assert (came(answer), answer["discarded"], answer["pending"]) == found(node, padded)
+    (answer,) = answers_to(testee, node, [padded])
+    assert (
+        decoded_messages(answer),
+        answer["discarded"],
+        answer["pending"],
+    ) == reference_result(node, padded)
     # Where neither sync nor checksum tells noise from a message, it may take the
     # beginning of what follows with it.
     lost = 2 if node == "payload" else 0
-    assert came(answer)[-(len(sent) - lost) :] == sent[lost:]
+    assert decoded_messages(answer)[-(len(sent) - lost) :] == sent[lost:]
 
 
 @pytest.mark.parametrize("node", NODES)
-def test_every_place_at_which_a_stream_can_be_cut(testee, node):
+def test_a_stream_may_be_cut_at_any_byte(testee, node):
     source = random.Random(f"{node} cut")
     short = min(form_of(node).rows("telemetry"), key=lambda row: row.most)
     data = source.randbytes(short.most - 1) + b"\1"
-    one = stream_encode(link_to(node), short.id, data, "telemetry")
-    line = bytes(source.choices(MARKERS, k=6)) + one + one[:-1] + one + one
-    whole, *cut = asked(
+    encoded = stream_encode(link_to(node), short.id, data, "telemetry")
+    line = (
+        bytes(source.choices(MARKERS, k=6)) + encoded + encoded[:-1] + encoded + encoded
+    )
+    uncut, *cut = answers_to(
         testee, node, [line], *([line[:at], line[at:]] for at in range(len(line) + 1))
     )
-    assert whole["ok"] and all(answer == whole for answer in cut)
-    (single,) = asked(testee, node, [bytes([byte]) for byte in line])
-    assert single == whole
+    assert uncut["ok"] and all(answer == uncut for answer in cut)
+    (single,) = answers_to(testee, node, [bytes([byte]) for byte in line])
+    assert single == uncut

@@ -1,5 +1,5 @@
-"""Framed links: every language answers as the reference does,
-of examples and of odd links.
+"""Framed links: every language answers examples and unusual links like the reference
+implementation.
 """
 
 from __future__ import annotations
@@ -40,12 +40,14 @@ def test_changed_requests_about_framed_links_are_answered_like_the_reference(
     links, name
 ):
     icd, files = links
-    asked = list(wire_changed.requests(icd, files, random.Random(7), 2000))
+    expected_answers = list(wire_changed.requests(icd, files, random.Random(7), 2000))
     testee = Testee(build(all_languages()[name], icd))
-    answers = testee.ask([json.dumps(request).encode() for request, _ in asked])
-    told = (
-        (request, difference(good, answer))
-        for (request, good), answer in zip(asked, answers, strict=True)
+    answers = testee.ask(
+        [json.dumps(request).encode() for request, _ in expected_answers]
     )
-    assert [(request, what) for request, what in told if what] == []
+    differences = (
+        (request, difference(good, answer))
+        for (request, good), answer in zip(expected_answers, answers, strict=True)
+    )
+    assert [(request, what) for request, what in differences if what] == []
     assert testee.close() == 0, testee.complaint()

@@ -1,5 +1,5 @@
-"""Random scripts of the client of framed links: all languages report the outcomes that
-the reference implementation reports, and every request ends.
+"""Random scripts of the client of framed links: all languages report the outcomes of
+the reference implementation, and every request ends.
 """
 
 from __future__ import annotations

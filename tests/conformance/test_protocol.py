@@ -1,5 +1,5 @@
-"""The conformance run itself: it agrees with the reference, and it does notice what is
-wrong.
+"""The conformance run agrees with the reference codec, and it detects testees with
+errors.
 """
 
 from __future__ import annotations
@@ -32,30 +32,30 @@ def files(icd):
 
 
 @pytest.fixture(scope="module")
-def asked(icd, files) -> list[Batch]:
+def reference_batches(icd, files) -> list[Batch]:
     return list(batches(icd, files, 2, 1))
 
 
-def score(answer, asked) -> Result:
-    """What the run finds in a testee that answers like this."""
+def score(answer, reference_batches) -> Result:
+    """Return the result of a run of a testee that answers with this function."""
     result = Result("any")
-    for batch in asked:
+    for batch in reference_batches:
         drive(InProcess(answer), batch, result)
     return result
 
 
-def is_found_out(answer, asked) -> bool:
-    """Whether the run finds something; it goes no further then."""
+def is_error_detected(answer, reference_batches) -> bool:
+    """Return whether the run detects a difference. It stops at the first one."""
     result = Result("any")
-    for batch in asked:
+    for batch in reference_batches:
         drive(InProcess(answer), batch, result)
         if result.differences:
             return True
     return False
 
 
-def test_the_reference_answers_every_request_as_it_must(icd, asked):
-    result = score(Reference(icd).answer, asked)
+def test_the_reference_passes_its_own_run(icd, reference_batches):
+    result = score(Reference(icd).answer, reference_batches)
     assert result.differences == 0, result.shown
     assert result.messages >= sum(len(node.messages) for node in icd.nodes)
     assert result.vectors > 100 and result.requests > 3000
@@ -89,18 +89,18 @@ def test_the_reference_answers_every_request_as_it_must(icd, asked):
         lambda a: a.update(node_type=4) if a.get("node_type") == 3 else None,
     ],
 )
-def test_a_testee_that_is_wrong_in_one_point_is_found_out(icd, asked, change):
+def test_the_run_detects_a_testee_with_a_single_error(icd, reference_batches, change):
     reference = Reference(icd)
 
     def answer(line: bytes) -> dict:
-        made = reference.answer(line)
-        change(made)
-        return made
+        changed = reference.answer(line)
+        change(changed)
+        return changed
 
-    assert is_found_out(answer, asked)
+    assert is_error_detected(answer, reference_batches)
 
 
-def test_a_setter_that_truncates_is_found_out(icd, asked, monkeypatch):
+def test_the_run_detects_a_setter_that_truncates(icd, reference_batches, monkeypatch):
     nearest = codec.raw_from_physical
 
     def truncating(field, value):
@@ -111,10 +111,10 @@ def test_a_setter_that_truncates_is_found_out(icd, asked, monkeypatch):
         )
 
     monkeypatch.setattr(codec, "raw_from_physical", truncating)
-    assert is_found_out(Reference(icd).answer, asked)
+    assert is_error_detected(Reference(icd).answer, reference_batches)
 
 
-def test_a_physical_value_computed_by_multiplication_is_found_out(
+def test_the_run_detects_a_physical_value_computed_by_multiplication(
     tmp_path, demo, monkeypatch
 ):
     icd = icd_of([demo])
@@ -134,7 +134,7 @@ def test_a_physical_value_computed_by_multiplication_is_found_out(
     assert total.differences > 1000
 
 
-def test_comparing_is_strict_about_types_and_silent_about_details():
+def test_a_comparison_checks_types_and_ignores_details():
     assert difference({"ok": True, "x": 1}, b'{"ok": true, "x": 1}') is None
     assert difference({"ok": True, "x": 1}, b'{"ok": true, "x": true}')
     assert difference({"ok": True, "x": 1}, b'{"ok": true, "x": 1.0}')
@@ -157,7 +157,7 @@ def test_comparing_is_strict_about_types_and_silent_about_details():
     )
 
 
-def test_a_testee_that_dies_is_noticed_and_started_again():
+def test_a_testee_that_dies_is_restarted():
     program = "import sys\nfor line in sys.stdin:\n  print(line.strip(), flush=True)\n  if 'die' in line: sys.exit('gone')"
     testee = Testee([sys.executable, "-c", program])
     assert testee.ask([b"1", b"die", b"2", b"3"]) == [b"1", b"die", None, None]
@@ -166,13 +166,13 @@ def test_a_testee_that_dies_is_noticed_and_started_again():
     assert testee.close() == 0
 
 
-def test_a_testee_that_falls_silent_does_not_hang_the_run():
+def test_a_testee_that_stops_answering_does_not_hang_the_run():
     testee = Testee([sys.executable, "-c", "import time; time.sleep(60)"], timeout=0.5)
     assert testee.ask([b"1"]) == [None]
     testee.close()
 
 
-def test_code_that_does_not_build_is_an_error_with_the_compilers_words(icd, tmp_path):
+def test_a_failed_build_is_an_error_with_the_output_of_the_compiler(icd, tmp_path):
     def fail(source, out):
         from tests.conformance.build import execute
 
@@ -182,7 +182,7 @@ def test_code_that_does_not_build_is_an_error_with_the_compilers_words(icd, tmp_
         build(Language("any", ("c",), (), fail), icd, tmp_path)
 
 
-def test_what_was_built_from_the_same_source_is_not_built_again(icd, tmp_path):
+def test_a_build_from_the_same_source_comes_from_the_cache(icd, tmp_path):
     built = []
 
     def note(source, out):
@@ -196,15 +196,15 @@ def test_what_was_built_from_the_same_source_is_not_built_again(icd, tmp_path):
     assert built == [True]
 
 
-def test_the_command_prints_what_starts_a_testee(demo, tmp_path, monkeypatch):
+def test_the_command_prints_the_command_line_of_a_testee(demo, tmp_path, monkeypatch):
     monkeypatch.setenv("ICDGEN_BUILD", str(tmp_path / "build"))
-    made = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "tests.conformance.testee", "python", str(demo)],
         cwd=ROOT,
         capture_output=True,
         text=True,
     )
-    assert made.returncode == 0, made.stderr
+    assert result.returncode == 0, result.stderr
     request = {
         "op": "decode",
         "node": "demo",
@@ -213,7 +213,7 @@ def test_the_command_prints_what_starts_a_testee(demo, tmp_path, monkeypatch):
         "bytes": "2efb01",
     }
     answer = subprocess.run(
-        made.stdout,
+        result.stdout,
         shell=True,
         input=json.dumps(request) + "\n",
         capture_output=True,

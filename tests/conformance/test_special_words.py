@@ -1,5 +1,5 @@
-"""A word that is special to a language, its modules, files or build is refused as a
-name, or what is generated compiles.
+"""A word that is special in a language, its modules, files or build is either refused
+as a name, or the generated code compiles.
 """
 
 from __future__ import annotations
@@ -49,37 +49,41 @@ REFUSED_NODES = {
 def icd(
     name: str, messages=("one",), fields=("x",), enumerations=("e",), members=("z",)
 ) -> dict:
-    """An ICD with things of these names."""
+    """Return an ICD with objects of these names."""
     enums = [
-        {"name": one, "members": [{"value": 0, "name": "zero"}]} for one in enumerations
+        {"name": enumeration, "members": [{"value": 0, "name": "zero"}]}
+        for enumeration in enumerations
     ]
     enums.append(
         {
             "name": "holder",
-            "members": [{"value": n, "name": one} for n, one in enumerate(members)],
+            "members": [
+                {"value": n, "name": member} for n, member in enumerate(members)
+            ],
         }
     )
     numbers = [
-        {"at": 8 * n, "bits": 8, "name": one, "type": "uint"}
-        for n, one in enumerate(fields)
+        {"at": 8 * n, "bits": 8, "name": field, "type": "uint"}
+        for n, field in enumerate(fields)
     ]
     users = [
         {"at": 8 * n, "bits": 8, "name": f"user {n}", "type": "enum", "enum": e["name"]}
         for n, e in enumerate(enums)
     ]
     scaled = [field | {"unit": "s", "formula": "raw*0.1"} for field in numbers]
-    found = [
-        {"name": one, "kind": "telemetry", "fields": scaled[:1]} for one in messages
+    messages_of_icd = [
+        {"name": message, "kind": "telemetry", "fields": scaled[:1]}
+        for message in messages
     ]
-    found += [
+    messages_of_icd += [
         {"name": "plain numbers", "kind": "telecommand", "fields": numbers},
         {"name": "scaled numbers", "kind": "telecommand", "fields": scaled},
         {"name": "users", "kind": "telecommand", "fields": users},
     ]
-    for number, message in enumerate(found):
+    for number, message in enumerate(messages_of_icd):
         message |= {"id": number, "length": len(message["fields"])}
     head = {"name": name, "title": "Words", "byte_order": "little", "bit_order": "lsb0"}
-    return {"icdgen": 1, "node": head, "enums": enums, "messages": found}
+    return {"icdgen": 1, "node": head, "enums": enums, "messages": messages_of_icd}
 
 
 def written(folder: Path, trees: dict[str, dict]) -> Path:
@@ -97,27 +101,29 @@ def refused(folder: Path, tree: dict) -> bool:
 
 @pytest.fixture(scope="module", params=("nodes", "names", "enumerations"))
 def folder(request, tmp_path_factory) -> Path:
-    """The folder of what is made of all words that are not refused: as nodes, or as
-    names within one.
+    """Return a folder with code generated from all words that are not refused: as node
+    names, or as names within one node.
     """
     tmp = tmp_path_factory.mktemp("words")
     if request.param == "nodes":
         trees = {word: icd(word) for word in WORDS}
-        found = {word: tree for word, tree in trees.items() if not refused(tmp, tree)}
-        assert REFUSED_NODES.isdisjoint(found)
+        accepted = {
+            word: tree for word, tree in trees.items() if not refused(tmp, tree)
+        }
+        assert REFUSED_NODES.isdisjoint(accepted)
     else:
         kinds = (
             ("enumerations",)
             if request.param == "enumerations"
             else ("messages", "fields", "members")
         )
-        kept = {
+        accepted_names = {
             kind: [w for w in WORDS if not refused(tmp, icd("n", **{kind: [w]}))]
             for kind in kinds
         }
-        found = {"n": icd("n", **kept)}
-    assert len(str(found)) > 10_000  # most words can be used
-    loaded = load([written(tmp / "icd", found)])
+        accepted = {"n": icd("n", **accepted_names)}
+    assert len(str(accepted)) > 10_000  # most words can be used
+    loaded = load([written(tmp / "icd", accepted)])
     assert loaded.ok, [finding.message for finding in loaded.findings]
     for language in ("c", "python", "rust"):
         for path, text in backends.get(language).files(loaded.icd, Renderer(language)):
@@ -137,7 +143,7 @@ def run(*command: str | Path, cwd: Path) -> None:
 @pytest.mark.parametrize(
     "compiler", [("gcc", "c99"), ("clang", "gnu17"), ("g++", "gnu++17")]
 )
-def test_it_compiles_in_c(folder, compiler):
+def test_special_words_compile_in_c(folder, compiler):
     source = folder / ("all.cpp" if compiler[0] == "g++" else "all.c")
     headers = sorted(
         path.relative_to(folder / "c") for path in (folder / "c").rglob("*.h")
@@ -154,11 +160,12 @@ def test_it_compiles_in_c(folder, compiler):
     )
 
 
-def test_cargo_builds_it(folder):
+def test_special_words_compile_in_rust(folder):
     manifest = folder / "rust/Cargo.toml"
+    # Cargo must not use the network.
     text = re.sub(
         r"^[\w-]+ = \{.*optional = true.*\n", "", manifest.read_text(), flags=re.M
-    )  # nothing is fetched
+    )
     manifest.write_text(re.sub(r"\[\"dep:[\w-]+\"\]", "[]", text))
     run(
         "cargo",
@@ -171,7 +178,7 @@ def test_cargo_builds_it(folder):
     )
 
 
-def test_it_can_be_used_in_python(folder):
+def test_special_words_can_be_used_in_python(folder):
     program = """
 import icdgen_messages
 from importlib import import_module
@@ -189,6 +196,6 @@ for name in icdgen_messages.NODES:
 
 @pytest.mark.parametrize("name", ["con", "AUX", "nul", "Com 1", "lpt9"])
 @pytest.mark.parametrize("kind", ["messages", "enumerations"])
-def test_nothing_is_in_a_file_that_windows_cannot_have(tmp_path, kind, name):
+def test_no_file_has_a_name_that_windows_reserves(tmp_path, kind, name):
     loaded_fine = not refused(tmp_path, icd("n", **{kind: [name]}))
     assert loaded_fine == (name == "Com 1")  # com_1

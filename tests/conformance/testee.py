@@ -1,5 +1,5 @@
-"""``python -m tests.conformance.testee LANG``: builds a testee if need be and prints
-the command line that starts it.
+"""Build a testee if needed and print the command line that starts it: ``python -m
+tests.conformance.testee LANG``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ from tests.conformance.languages import TESTEE, all_languages
 
 def main(arguments: list[str] | None = None) -> int:
     languages = {
-        name: one for name, one in all_languages().items() if one.kind == TESTEE
+        name: language
+        for name, language in all_languages().items()
+        if language.kind == TESTEE
     }
     parser = argparse.ArgumentParser(
         prog="python -m tests.conformance.testee", description=__doc__

@@ -1,4 +1,6 @@
-"""A Hypothesis strategy for frames that repeat others: random ICDs with composites."""
+"""A Hypothesis strategy for composite messages: random ICDs with frames that contain
+other messages.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,12 @@ FREE = 29  # ids below that of the last message, which no other has
 
 
 @st.composite
-def with_wholes(draw, trees) -> dict[str, dict]:
-    """The ICDs, some with a frame that repeats one of theirs behind bytes of its own."""
-    found = draw(trees)
-    for tree in found.values():
+def with_composites(draw, trees) -> dict[str, dict]:
+    """Add a composite message to some of the ICDs: bytes of its own, then one of the
+    ICD's messages.
+    """
+    icds = draw(trees)
+    for tree in icds.values():
         parts = [message for message in tree["messages"] if _can_be_repeated(message)]
         if parts and draw(st.booleans()):
             tree["messages"].append(
@@ -24,7 +28,7 @@ def with_wholes(draw, trees) -> dict[str, dict]:
                     )
                 )
             )
-    return found
+    return icds
 
 
 def _can_be_repeated(message: dict) -> bool:
@@ -32,7 +36,7 @@ def _can_be_repeated(message: dict) -> bool:
     return (
         bool(fields)
         and "may_end_early" not in message
-        and not any("when" in one or "up_to" in one for one in fields)
+        and not any("when" in field or "up_to" in field for field in fields)
     )
 
 

@@ -1,7 +1,7 @@
-"""``python -m tests.conformance.wire --lang c,python,rust``: the golden vectors of the
-protocol through every language.
+"""Run the golden vectors of framing through every language.
 
-Ends with status 0 if no answer differs from what the vectors demand, else 1.
+Run ``python -m tests.conformance.wire --lang c,python,rust``. Ends with status 0 if
+every answer equals that of the vectors, else 1.
 """
 
 from __future__ import annotations
@@ -20,19 +20,25 @@ from tests.conformance.driver import Answering, InProcess, Testee
 from tests.conformance.icds import COMMITTED, icd_of
 from tests.conformance.languages import REFERENCE, SELFTEST, Language, all_languages
 from tests.conformance.reference import Reference
-from tests.conformance.run import Batch, Result, chosen, drive, told
+from tests.conformance.run import (
+    Batch,
+    Result,
+    drive,
+    print_results,
+    selected_languages,
+)
 
 VECTORS = COMMITTED / "protocol.json"
 
 
 def vectors_of(icd: Icd) -> dict:
-    """The content of the protocol's vector file, made now."""
+    """Generate the content of the protocol's vector file."""
     return json.loads(protocol.protocol_vectors_text(icd) or '{"nodes": []}')
 
 
 def batches(files: dict) -> Iterator[Batch]:
-    """Everything that is asked of each testee: the cases of a node, and requests that
-    must be refused.
+    """Yield all requests to each testee: the cases of a node, and requests that must be
+    refused.
     """
     for node in files["nodes"]:
         cases = node["cases"]
@@ -44,9 +50,9 @@ def batches(files: dict) -> Iterator[Batch]:
         bad = list(refused(cases))
         answers: list[dict] = [{"ok": False, "error": "request"}] * len(bad)
         yield Batch(
-            [robust.line(one) for one in bad],
+            [robust.line(request) for request in bad],
             answers,
-            [f"bad request {one}" for one in bad],
+            [f"bad request {request}" for request in bad],
         )
     if files["nodes"]:
         nobody = {**files["nodes"][0]["cases"][0]["request"], "node": "nobody"}
@@ -58,7 +64,9 @@ def batches(files: dict) -> Iterator[Batch]:
 
 
 def refused(cases: list[dict]) -> Iterator[dict]:
-    """The first request of each op, with each of its keys missing or of another type."""
+    """Yield the first request of each operation, with each key missing or of another
+    type.
+    """
     optional = {
         "address",
         "senders",
@@ -97,7 +105,7 @@ def refused(cases: list[dict]) -> Iterator[dict]:
 def run(
     languages: list[Language], icd: Icd, files: dict, folder: Path | None = None
 ) -> list[Result]:
-    """Builds every language and drives it. Raises `BuildError`."""
+    """Build and run every language. Raises `BuildError`."""
     results, testees = [], []
     for language in languages:
         reference = language.kind == REFERENCE
@@ -122,7 +130,9 @@ def run(
 
 def main(arguments: list[str] | None = None) -> int:
     languages = {
-        name: one for name, one in all_languages().items() if one.kind != SELFTEST
+        name: language
+        for name, language in all_languages().items()
+        if language.kind != SELFTEST
     }
     parser = argparse.ArgumentParser(
         prog="python -m tests.conformance.wire", description=__doc__
@@ -136,7 +146,7 @@ def main(arguments: list[str] | None = None) -> int:
         "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
     )
     options = parser.parse_args(arguments)
-    asked = chosen(parser, options.lang, languages)
+    selected = selected_languages(parser, options.lang, languages)
     try:
         icd = icd_of(options.icds)
         committed = VECTORS.is_file() and not options.icds
@@ -145,11 +155,11 @@ def main(arguments: list[str] | None = None) -> int:
             if committed
             else vectors_of(icd)
         )
-        results = run(asked, icd, files)
+        results = run(selected, icd, files)
     except (BuildError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    return told(results)
+    return print_results(results)
 
 
 if __name__ == "__main__":

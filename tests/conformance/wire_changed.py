@@ -1,5 +1,5 @@
-"""Requests about the wire layer: golden ones, changed in a few places, with the answers
-of the reference.
+"""Requests about framing: golden ones with a few changes, and the answers of the
+reference implementation.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WORDS = {"kind", "bus", "do", "event", "op", "node"}
 def requests(
     icd: Icd, vectors: dict, source: random.Random, count: int
 ) -> Iterator[tuple[dict, dict]]:
-    """So many requests with their answers, every op as often."""
+    """Yield ``count`` requests with their answers, each operation equally often."""
     by_op: dict[str, list[dict]] = {}
     for node in vectors["nodes"]:
         for case in node["cases"]:
@@ -44,13 +44,13 @@ def requests(
         if request["op"] == "procedure" and not _frames_are_whole(icd, request):
             continue
         answer = reference.answer(icd, request)
-        answer.pop("detail", None)  # words for people
+        answer.pop("detail", None)  # text for people
         yield request, answer
         count -= 1
 
 
 def _packets(request: dict) -> Iterator[dict]:
-    """CAN packets that are handed over."""
+    """Return the CAN packets of a request."""
     for row in request.get("packets") or () if request["op"] == "can_join" else ():
         yield row
     for row in request.get("script") or ():
@@ -121,7 +121,7 @@ def _change_bytes(source: random.Random, data: bytearray) -> bytearray:
 
 
 def _in_time(rows) -> None:
-    """Lets no time run backwards."""
+    """Change a script so that time never runs backwards."""
     now = 0
     for row in rows if isinstance(rows, list) else ():
         if isinstance(row.get("at"), int):
@@ -129,8 +129,8 @@ def _in_time(rows) -> None:
 
 
 def _frames_are_whole(icd: Icd, request: dict) -> bool:
-    """Whether every frame that is handed over has its length: the client lets no other
-    pass.
+    """Return whether every received frame has its full length. The client accepts no
+    other frames.
     """
     link = links.link(icd, request["node"])
     try:
@@ -138,14 +138,14 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
     except (Refusal, IcdError):
         return True
     for row in request["script"]:
-        event, asked = row.get("event"), procedure._request
+        event, pending = row.get("event"), procedure._request
         if (
             event
             and event["event"] == "done"
             and procedure._is_requested
-            and asked is not None
-            and asked.kind == "telemetry"
-            and len(event["bytes"]) != 2 * link.TELEMETRY[asked.id].LENGTH
+            and pending is not None
+            and pending.kind == "telemetry"
+            and len(event["bytes"]) != 2 * link.TELEMETRY[pending.id].LENGTH
         ):
             return False
         if event:

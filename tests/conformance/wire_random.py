@@ -1,4 +1,4 @@
-"""Random requests about the wire layer, such as no vector holds: streams cut anywhere,
+"""Random requests about framing that the vectors do not contain: streams cut anywhere,
 packets in any order, long scripts.
 """
 
@@ -25,20 +25,20 @@ MOST_PACKET_GAP_MS = 700
 
 
 def requests(icd: Icd, count: int, seed: int = 1) -> Iterator[dict]:
-    """``count`` requests of each kind for each node that has a protocol."""
+    """Yield ``count`` requests of each kind for each node that has a protocol."""
     source = random.Random(seed)
     for node in icd.nodes:
         if not icd.protocol_of(node):
             continue
-        known, link = facts.of(icd, node), links.link(icd, node.name)
+        facts_of_node, link = facts.of(icd, node), links.link(icd, node.name)
         for _ in range(count):
             for make in (stream, _packets, _client):
                 yield {"node": node.name, **make(link, source)}
-            yield {"node": node.name, **_procedure(known, link, source)}
+            yield {"node": node.name, **_procedure(facts_of_node, link, source)}
 
 
 def _cut(data: bytes, source: random.Random) -> list[bytes]:
-    """The bytes in pieces of any size."""
+    """Split the bytes into chunks of any size."""
     cuts = sorted(
         source.randrange(len(data) + 1)
         for _ in range(source.randrange(1 + len(data) // 4))
@@ -57,7 +57,7 @@ def _noise(link: Link, source: random.Random, most: int) -> bytes:
 
 
 def stream(link: Link, source: random.Random) -> dict:
-    """A stream of messages and noise, cut anywhere."""
+    """Return a stream of messages and noise, cut anywhere."""
     assert link.framing
     stream = b""
     for _ in range(source.randrange(4)):
@@ -86,13 +86,13 @@ def _packets(link: Link, source: random.Random) -> dict:
             source.choice([0, 9]),
             source.randbytes(source.randrange(60)),
         )
-        found = can_split(link, message)
-        found = [one for one in found if source.random() < 0.95] + source.choices(
-            found, k=source.randrange(3)
-        )
+        sent_packets = can_split(link, message)
+        sent_packets = [
+            packet for packet in sent_packets if source.random() < 0.95
+        ] + source.choices(sent_packets, k=source.randrange(3))
         if source.random() < 0.5:
-            source.shuffle(found)
-        rows += [[one.id, one.data] for one in found]
+            source.shuffle(sent_packets)
+        rows += [[packet.id, packet.data] for packet in sent_packets]
     if source.random() < 0.5:
         source.shuffle(rows)
     packets = []
@@ -115,30 +115,30 @@ def _packets(link: Link, source: random.Random) -> dict:
 def _client(link: Link, source: random.Random) -> dict:
     bus, checked = source.choice(["uart", "i2c", "can"]), source.random() < 0.5
     now, script = source.choice([0, 0, 1000]), []
-    asked: tuple[str, int] = ("telemetry", 128)
+    expected: tuple[str, int] = ("telemetry", 128)
     for _ in range(source.randrange(2, 30)):
         now += source.choice([0, 1, 5, 20, 20, 100, 1000])
         row: dict = {"at": now}
         kind = source.random()
         if kind < 0.3:
             if source.random() < 0.5:
-                asked = ("telemetry", source.choice([*link.frames, 128, 128, 3]))
-                row["telemetry"] = asked[1]
+                expected = ("telemetry", source.choice([*link.frames, 128, 128, 3]))
+                row["telemetry"] = expected[1]
             else:
-                asked = ("telecommand", source.choice([*link.commands, 31, 200]))
-                command = link.commands.get(asked[1])
+                expected = ("telecommand", source.choice([*link.commands, 31, 200]))
+                command = link.commands.get(expected[1])
                 size = (
                     command.length
                     if command and source.random() < 0.95
                     else source.randrange(9)
                 )
                 row |= {
-                    "telecommand": asked[1],
+                    "telecommand": expected[1],
                     "bytes": source.randbytes(size).hex(),
                     "repeat": source.random() < 0.5,
                 }
         elif kind < 0.85:
-            row["receive"] = _heard(link, bus, checked, asked, source)
+            row["receive"] = _heard(link, bus, checked, expected, source)
         elif kind < 0.9:
             row["cancel"] = True
         script.append(row)
@@ -159,9 +159,13 @@ def _client(link: Link, source: random.Random) -> dict:
 
 
 def _heard(
-    link: Link, bus: str, checked: bool, asked: tuple[str, int], source: random.Random
+    link: Link,
+    bus: str,
+    checked: bool,
+    expected: tuple[str, int],
+    source: random.Random,
 ) -> object:
-    kind, id = asked
+    kind, id = expected
     command = link.commands.get(id)
     length = command and command.length
     if kind == "telemetry":
@@ -191,14 +195,14 @@ def _heard(
             else ["reply", "reply", "request_refusal"]
         )
         data = source.randbytes(min(size, 300)) if answer_kind == "reply" else b""
-        found = source.choice(
+        packet = source.choice(
             can_split(
                 link,
                 CanMessage(answer_kind, id, source.choice([1, 1, 1, 2]), 9, data),
             )
             or [None]
         )
-        return {"id": found.id, "bytes": found.data.hex()}
+        return {"id": packet.id, "bytes": packet.data.hex()}
     if source.random() < 0.15:
         return None
     command = link.bus_exchanges["i2c"].command
@@ -217,9 +221,11 @@ def _heard(
     return data.hex()
 
 
-def _procedure(known: Facts, link: Link, source: random.Random) -> dict:
-    """A procedure with a device that does something else now and then."""
-    procedure = source.choice(known.procedures)
+def _procedure(facts_of_node: Facts, link: Link, source: random.Random) -> dict:
+    """Return a request for a procedure with a device that sometimes behaves
+    differently.
+    """
+    procedure = source.choice(facts_of_node.procedures)
     form = link.procedures[procedure.name]
     request: dict = {"op": "procedure", "name": procedure.name}
     inputs = {}
@@ -231,19 +237,19 @@ def _procedure(known: Facts, link: Link, source: random.Random) -> dict:
             values = each.values or (0, 1, 5, 60, 90)
             inputs[each.name] = min(source.choice(values), each.most)
     request |= {"inputs": inputs} if inputs else {}
-    if not known.stream:
+    if not facts_of_node.stream:
         request["bus"] = source.choice(["uart", "uart", "i2c", "can"])
     if source.random() < 0.6:
         request["block"] = source.choice([1, 20, 45, 100])
-    return {**request, "script": _played(known, link, request, source)}
+    return {**request, "script": _played(facts_of_node, link, request, source)}
 
 
 def _played(
-    known: Facts, link: Link, request: dict, source: random.Random
+    facts_of_node: Facts, link: Link, request: dict, source: random.Random
 ) -> list[dict]:
-    """A script whose outcomes fit what the procedure asks for, most of the time."""
+    """Return a script whose events usually match the requests of the procedure."""
     loss = source.choice([0, 0, 0.1, 0.5])
-    device = RecordedDevice(known, request.get("bus", "uart"), source, loss)
+    device = RecordedDevice(facts_of_node, request.get("bus", "uart"), source, loss)
     run = device.counterpart.runs[request["name"]]
     if isinstance(run, BlockReading):
         inputs = request.get("inputs", {})
@@ -251,15 +257,15 @@ def _played(
         content = source.randbytes(source.choice([0, 5, 60, 90]))
         device.device.objects.put(run.effect.kind, key, content)
     if isinstance(run, Listing):
-        length = known.telemetry[link.procedures[request["name"]].entry].length
+        length = facts_of_node.telemetry[link.procedures[request["name"]].entry].length
         run.entries = [source.randbytes(length) for _ in range(source.randrange(5))]
         run.entries += run.entries[-1:] * source.choice([0, 0, 0, 9])
     odd = source.choice([0, 0.02, 0.2])
 
-    def respond(now: int, asked: Request) -> list[ClientReport]:
-        reports = device.respond(now, asked)
+    def respond(now: int, request: Request) -> list[ClientReport]:
+        reports = device.respond(now, request)
         changed = [
-            _changed(report, asked, source) if source.random() < odd else report
+            _changed(report, request, source) if source.random() < odd else report
             for report in reports
         ]
         return [
@@ -272,9 +278,9 @@ def _played(
 
 
 def _changed(
-    report: ClientReport, asked: Request, source: random.Random
+    report: ClientReport, request: Request, source: random.Random
 ) -> ClientReport:
-    """Another event in the place of one."""
+    """Return another event in place of the given one."""
     data = bytes.fromhex(report.event.get("bytes", ""))
     if report.event["event"] == "arrived":
         data = source.choice([data[:-1], source.randbytes(len(data)), data + b"\0"])

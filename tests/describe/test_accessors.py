@@ -1,7 +1,4 @@
-"""Accessors of physical values.
-
-Every language generates the same ones, as far as it has types for them.
-"""
+"""Every language has the same accessors of physical values, as far as its types allow."""
 
 from __future__ import annotations
 

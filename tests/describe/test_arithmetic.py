@@ -1,4 +1,4 @@
-"""Arithmetic of physical values, against exact arithmetic."""
+"""The arithmetic of physical values is compared with exact arithmetic."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ cases = st.builds(
 
 
 def raws(case: ScaleArithmetic) -> list[int]:
-    """The ends of the raw values, and some values between them."""
+    """Return the ends of the raw range, and some values between them."""
     first, last = case.steps.raw_min, case.steps.raw_max
     return [first, first + 1, (first + last) // 3, last // 2, last - 1, last]
 

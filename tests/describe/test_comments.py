@@ -1,5 +1,5 @@
-"""What comments say, in every language: of errata once with the reason, of parts of
-units by the name of the part.
+"""Comments in every language: each erratum once with its reason, and the parts of units
+by name.
 """
 
 from __future__ import annotations
@@ -15,14 +15,16 @@ from tests.conformance.icds import shipped
 
 
 def parts():
-    """Every message and enumeration, and what is in it."""
+    """Yield every message and enumeration with its members."""
     for node in describe(shipped()).nodes:
-        yield from ((one, (one, *one.members)) for one in (*node.messages, *node.enums))
+        yield from (
+            (thing, (thing, *thing.members)) for thing in (*node.messages, *node.enums)
+        )
 
 
-def test_an_erratum_is_told_with_its_reason_where_it_is_met_first_and_else_where_that_is():
+def test_the_first_comment_of_an_erratum_has_its_reason_and_others_refer_to_it():
     repeated = 0
-    for whole, things in parts():
+    for owner, things in parts():
         full: dict[str, str] = {}
         for thing in things:
             for erratum, text in zip(
@@ -32,7 +34,7 @@ def test_an_erratum_is_told_with_its_reason_where_it_is_met_first_and_else_where
                     f"{erratum.label} {erratum.id}{erratum.sureness}: "
                 )
                 if erratum.id in full:
-                    assert text.endswith(f": see {full[erratum.id]}."), whole.model.name
+                    assert text.endswith(f": see {full[erratum.id]}."), owner.model.name
                     repeated += 1
                 else:
                     full[erratum.id] = thing.model.name
@@ -42,11 +44,13 @@ def test_an_erratum_is_told_with_its_reason_where_it_is_met_first_and_else_where
 
 def test_the_reason_stands_with_the_title():
     message = next(
-        one
-        for one in describe(shipped()).node("cubeacp").messages
-        if one.model.name == "ADCS Configuration"
+        message
+        for message in describe(shipped()).node("cubeacp").messages
+        if message.model.name == "ADCS Configuration"
     )
-    (radius,) = (one for one in message.members if one.model.name == "Nadir Max Radius")
+    (radius,) = (
+        member for member in message.members if member.model.name == "Nadir Max Radius"
+    )
     assert radius.comment.errata == (
         "Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other angles deg.",
     )
@@ -66,25 +70,25 @@ def test_the_reason_stands_with_the_title():
         ("%", 1000, "milli_percent", "thousandths of %"),
     ],
 )
-def test_a_part_of_a_unit_is_called_what_people_call_it(symbol, per, name, words):
+def test_a_part_of_a_unit_has_its_common_name(symbol, per, name, words):
     field = Scalar(name="One", at=0, bits=8, type="uint", unit=STANDARD[symbol])
     assert part_of_unit(field, per) == (name, words)
 
 
-def test_a_unit_of_the_icd_itself_is_not_taken_apart():
+def test_a_user_defined_unit_is_not_split():
     field = Scalar(
         name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length")
     )
     assert part_of_unit(field, 1000) == ("m", "thousandths of klick")
 
 
-def test_an_enumeration_says_which_fields_hold_it(tmp_path):
+def test_an_enumeration_lists_the_fields_that_use_it(tmp_path):
     fields = "".join(
         f"      - {{at: {at * 2}, bits: 2, name: F{at}, type: enum, enum: Mode}}\n"
         for at in range(4)
     )
-    one = "fields: [{{at: 0, bits: 2, name: F0, type: enum, enum: Mode}}]"
-    heads = f"  - {{{{name: {{0}}, id: {{1}}, kind: telemetry, length: 1, {one}}}}}\n"
+    field = "fields: [{{at: 0, bits: 2, name: F0, type: enum, enum: Mode}}]"
+    heads = f"  - {{{{name: {{0}}, id: {{1}}, kind: telemetry, length: 1, {field}}}}}\n"
     (tmp_path / "demo.yaml").write_text(
         "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\nenums:\n"
         "  - {name: Mode, members: [{value: 0, name: Idle}]}\n  - {name: Other, members: [{value: 0, name: Idle}]}\n"

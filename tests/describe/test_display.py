@@ -1,5 +1,5 @@
-"""Values are shown with the digits that the resolution of their field warrants, alike
-on the command line and on the site.
+"""The command line and the site show values with the digits that the resolution of
+their field justifies.
 """
 
 from __future__ import annotations
@@ -167,9 +167,9 @@ def test_the_page_shows_the_same_digits(tmp_path):
         raw = codec.decode(icd.nodes[0], message, frame)
         expected.append(
             [
-                FieldValue(one, raw[one.name]).text
-                for one in message.fields
-                if one.has_formula
+                FieldValue(field, raw[field.name]).text
+                for field in message.fields
+                if field.has_formula
             ]
         )
     shown = """(([plan, frames]) => frames.map((hex) => codec.decode(plan, Uint8Array.from(Buffer.from(hex, "hex")))
@@ -178,12 +178,12 @@ def test_the_page_shows_the_same_digits(tmp_path):
     on_page = in_page(
         shown, [message_plan(message, icd.nodes[0]), [frame.hex() for frame in frames]]
     )
-    spelt = [[_as_python(one) for one in row] for row in on_page]
-    assert spelt == [[_as_python(one) for one in row] for row in expected]
+    spelt = [[_as_python(value) for value in row] for row in on_page]
+    assert spelt == [[_as_python(value) for value in row] for row in expected]
 
 
 def _as_python(text: str) -> str:
-    """Numbers are spelt otherwise in JavaScript: 1e-7, 12.50."""
+    """Return a number of JavaScript in Python's spelling: 1e-7, 12.50."""
     return repr(float(text))
 
 
@@ -251,12 +251,14 @@ def raw_of(field: NodePlace, number: float) -> int:
 def test_a_value_is_displayed_in_the_format_that_its_field_states(
     charger, name, number, text
 ):
-    field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
+    field = next(
+        field for field in charger.nodes[0].messages[0].fields if field.name == name
+    )
     assert FieldValue(field, raw_of(field, number)).text == text
 
 
 def test_json_has_the_full_precision_whatever_the_display_format(charger):
-    fields = {one.name: one for one in charger.nodes[0].messages[0].fields}
+    fields = {field.name: field for field in charger.nodes[0].messages[0].fields}
     assert FieldValue(fields["Voltage"], 65).to_json()["physical"] == 65 / 3
     assert FieldValue(fields["Faults"], 0xF1).to_json()["value"] == 0xF1
     assert (
@@ -269,15 +271,17 @@ def test_json_has_the_full_precision_whatever_the_display_format(charger):
     ("name", "number"), [("Faults", 0xF1), ("Outputs", 5), ("Mask", 1 << 63)]
 )
 def test_a_displayed_bit_pattern_can_be_entered_again(charger, name, number):
-    field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
+    field = next(
+        field for field in charger.nodes[0].messages[0].fields if field.name == name
+    )
     assert parse_physical(field, FieldValue(field, number).text) == number
 
 
 def test_the_site_displays_values_in_the_format_of_their_fields(charger):
     node = charger.nodes[0]
     plan, fields = message_plan(node.messages[0], node), node.messages[0].fields
-    by_name = {one["name"]: one for one in plan["fields"]}
-    enums = {one.name: enum_plan(one) for one in node.enums}
+    by_name = {field["name"]: field for field in plan["fields"]}
+    enums = {enum.name: enum_plan(enum) for enum in node.enums}
     cases = [
         [by_name[field.name], str(raw_of(field, number))]
         for name, number, _ in EXPECTED
@@ -296,7 +300,7 @@ def test_show_states_the_display_format_and_its_json_reads_back(charger, tmp_pat
     tree = to_json(charger)
     jsonschema_rs.validator_for(json.loads(SCHEMA.read_text("utf-8"))).validate(tree)
     (message,) = tree["nodes"][0]["messages"]
-    assert [one.get("display") for one in message["fields"]][:4] == [
+    assert [field.get("display") for field in message["fields"]][:4] == [
         {"decimals": 2},
         "hex",
         "binary",
@@ -308,8 +312,8 @@ def test_show_states_the_display_format_and_its_json_reads_back(charger, tmp_pat
     shown = tmp_path / "charger.json"
     shown.write_text(json.dumps(tree), "utf-8")
     fields = shown_input.from_file(shown).icd.nodes[0].messages[0].fields
-    assert [one.display for one in fields] == [
-        one.display for one in charger.nodes[0].messages[0].fields
+    assert [field.display for field in fields] == [
+        field.display for field in charger.nodes[0].messages[0].fields
     ]
 
 

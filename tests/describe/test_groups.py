@@ -1,4 +1,6 @@
-"""Groups of members that are read and written together, and the bytes of a frame."""
+"""Groups of members that are read and written together, and the bytes of a frame that
+they cover.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,7 @@ from icdgen.describe.groups import (
     group_fields,
     grouped_fields,
 )
-from tests.conformance.icds import read
+from tests.conformance.icds import read_unchecked
 from tests.conftest import ROOT
 from tests.icd.files import loaded, status
 
@@ -30,7 +32,7 @@ SMALL, LARGE = Thresholds(flags=(4,), row=3), Thresholds(flags=(8, 4), row=8)
 def messages(path: str) -> list[MessageDescription]:
     return [
         message
-        for node in describe(read(ROOT / path)).nodes
+        for node in describe(read_unchecked(ROOT / path)).nodes
         for message in node.messages
     ]
 
@@ -42,7 +44,7 @@ def message(folder, *fields: str, length: int) -> MessageDescription:
 
 
 def scalars_of(group: Group) -> list[FieldDescription]:
-    """The fields that a group stands for."""
+    """Yield the fields of a group."""
     match group:
         case Flags() | WordRow():
             return list(group.fields)
@@ -58,20 +60,20 @@ def scalars_of(group: Group) -> list[FieldDescription]:
 def test_every_field_is_in_one_group_and_groups_keep_the_order_of_fields(
     path, thresholds
 ):
-    for one in messages(path):
+    for message in messages(path):
         grouped = [
             field.model.name
-            for group in group_fields(one, thresholds)
+            for group in group_fields(message, thresholds)
             for field in scalars_of(group)
         ]
         in_structs = [
             field.model.name
-            for array in struct_arrays_in(one)
-            if one.last_part is None or array.field is not one.last_part.field
+            for array in struct_arrays_in(message)
+            if message.last_part is None or array.field is not message.last_part.field
             for field in array.field.scalars
         ]
-        alone = [field.model.name for field in grouped_fields(one)]
-        assert grouped == alone + in_structs, one.name
+        alone = [field.model.name for field in grouped_fields(message)]
+        assert grouped == alone + in_structs, message.name
 
 
 @pytest.mark.parametrize("thresholds", [SMALL, LARGE], ids=["small", "large"])
@@ -79,8 +81,8 @@ def test_every_field_is_in_one_group_and_groups_keep_the_order_of_fields(
 def test_flags_of_a_group_are_neighbouring_bits_of_a_byte_and_words_of_a_row_follow_each_other(
     path, thresholds
 ):
-    for one in messages(path):
-        for group in group_fields(one, thresholds):
+    for message in messages(path):
+        for group in group_fields(message, thresholds):
             if isinstance(group, Flags):
                 bits = range(group.shift, group.shift + len(group.fields))
                 wanted = [
@@ -103,37 +105,37 @@ def test_members_are_a_row_from_the_threshold_on_and_elements_of_an_array_always
 ):
     fields = [f"name: W{n}, at: {16 * n}, bits: 16, type: uint" for n in range(3)]
     fields.append("name: Levels, at: 48, bits: 8, type: uint, count: 2")
-    one = message(tmp_path, *fields, length=8)
-    kinds = [type(group) for group in group_fields(one, SMALL)]
+    sample = message(tmp_path, *fields, length=8)
+    kinds = [type(group) for group in group_fields(sample, SMALL)]
     assert kinds == [WordRow, WordRow]
-    assert [type(group) for group in group_fields(one, LARGE)] == [
+    assert [type(group) for group in group_fields(sample, LARGE)] == [
         FieldDescription
     ] * 3 + [WordRow]
 
 
 def test_a_loop_reads_all_elements_of_an_array_or_none(tmp_path):
-    one = message(
+    sample = message(
         tmp_path,
         "name: Halves, at: 0, bits: 4, type: uint, count: 8",
         "name: Odd, at: 32, bits: 4, type: uint, count: 9",
         "name: Words, at: 72, bits: 16, type: uint, count: 4",
         length=17,
     )
-    halves, odd, words = map(loop_of, one.members)
+    halves, odd, words = map(loop_of, sample.members)
     assert halves is not None and (
         halves.per_iteration,
         halves.iterations,
         halves.begin,
         halves.step,
     ) == (2, 4, 0, 1)
-    assert odd is None and words is None  # an element is left over; words are copied
+    assert odd is None and words is None  # one element would remain; words are copied
 
 
 def test_bytes_of_flags_are_those_with_enough_flags(tmp_path):
     fields = [f"name: F{n}, at: {n}, bits: 1, type: bool" for n in range(11)]
-    one = message(tmp_path, *fields, length=2)
-    assert bytes_of_flags(one, at_least=3) == {0, 1}
-    assert bytes_of_flags(one, at_least=4) == {0}
+    sample = message(tmp_path, *fields, length=2)
+    assert bytes_of_flags(sample, at_least=3) == {0, 1}
+    assert bytes_of_flags(sample, at_least=4) == {0}
 
 
 @given(
@@ -162,10 +164,12 @@ def test_every_byte_of_a_frame_is_written_once_in_order(parts, random):
         add(*arguments)
     segments = list(frame.segments())
     assert [
-        n for one in segments for n in range(one.byte, one.byte + one.length)
+        n
+        for segment in segments
+        for n in range(segment.byte, segment.byte + segment.length)
     ] == list(range(frame_length))
-    assert all(one.terms in ((), ("bit 0", "bit 5")) for one in segments)
-    assert [one.statement for one in segments if one.statement] == sorted(
+    assert all(segment.terms in ((), ("bit 0", "bit 5")) for segment in segments)
+    assert [segment.statement for segment in segments if segment.statement] == sorted(
         (arguments[2] for add, arguments in added if add == frame.add_whole),
         key=lambda text: int(text.split()[1]),
     )

@@ -1,6 +1,4 @@
-"""What comments say of an ICD is the same in every language, and so are the names of
-constants.
-"""
+"""Comments and names of constants are the same in every language."""
 
 from __future__ import annotations
 
@@ -20,11 +18,13 @@ LANGUAGES = ("c", "python", "rust")
 
 @cache
 def text(language: str) -> str:
-    """All that is generated, without comment signs, escapes and line breaks."""
+    """Return all generated text of a language, without comment signs, escapes and line
+    breaks.
+    """
     files = backends.get(language).files(shipped(), Renderer(language))
-    whole = "\n".join(text for _, text in files)
+    joined = "\n".join(text for _, text in files)
     return _plain(
-        re.sub(r"^\s*(/\*\*|\*/|\*|///|//!|#)", "", whole, flags=re.MULTILINE)
+        re.sub(r"^\s*(/\*\*|\*/|\*|///|//!|#)", "", joined, flags=re.MULTILINE)
     )
 
 
@@ -37,42 +37,47 @@ def messages(icd: Icd) -> list[MessageDescription]:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_paragraph_about_messages_fields_and_enumerations_is_there(language):
-    found = text(language)
+def test_every_paragraph_about_messages_fields_and_enumerations_is_generated(language):
+    generated = text(language)
     things = [
         thing for message in messages(shipped()) for thing in (message, *message.fields)
     ]
     things += [enum for node in describe(shipped()).nodes for enum in node.enums]
-    if language == "c":  # a note says that it is one by its command
-        found = found.replace("@note", "Note")
-        found += found.replace("NoteErratum", "Erratum")
+    if language == "c":  # Doxygen has a command for notes
+        generated = generated.replace("@note", "Note")
+        generated += generated.replace("NoteErratum", "Erratum")
     missing = [
         p
         for thing in things
         for p in thing.comment.paragraphs
-        if _plain(p) not in found
+        if _plain(p) not in generated
     ]
     assert len(things) > 1400 and missing == []
 
 
 @pytest.mark.parametrize("language", ["c", "rust"])
 def test_every_constant_is_declared_by_its_name(language):
-    found = text(language)
+    generated = text(language)
     constants = [
-        one
+        constant
         for message in messages(shipped())
         for field in message.fields
-        for one in field.constants
+        for constant in field.constants
     ]
     assert (
         constants
-        and [one.name for one in constants if one.name.upper() not in found] == []
+        and [
+            constant.name
+            for constant in constants
+            if constant.name.upper() not in generated
+        ]
+        == []
     )
 
 
 def test_constants_on_physical_values_name_the_unit():
     fields = {f.name: f for message in messages(shipped()) for f in message.fields}
-    assert [one.name for one in fields["reference_spin_rate"].constants] == [
+    assert [constant.name for constant in fields["reference_spin_rate"].constants] == [
         "reference_spin_rate_deg_per_s_below"
     ]
 

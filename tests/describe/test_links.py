@@ -1,5 +1,5 @@
-"""What is described of a link: its assumptions stand in every language; what an ICD
-does not describe whole is not there.
+"""The description of a link: its assumptions are in the code of every language, and
+incomplete parts are left out.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ def described() -> dict[str, LinkDescription]:
 
 
 def without(section: str, key: str) -> LinkDescription:
-    """The link of a node whose ICD lacks the rows of that role in a list of a section."""
+    """Return the link of a node whose ICD lacks the rows of that role in a list of a
+    section.
+    """
     icd = shipped()
     node = icd.node("cubeacp")
     protocol = copy.deepcopy(icd.protocol_of(node))
@@ -42,11 +44,11 @@ def without(section: str, key: str) -> LinkDescription:
     for name, rows in part.items():
         if isinstance(rows, list):
             part[name] = [
-                one for one in rows if key not in (one.get("role"), one.get("name"))
+                row for row in rows if key not in (row.get("role"), row.get("name"))
             ]
     changed = dataclasses.replace(node, protocol=protocol)
     return links_of(
-        describe(Icd(tuple(changed if one is node else one for one in icd.nodes)))
+        describe(Icd(tuple(changed if node_ is node else node_ for node_ in icd.nodes)))
     )["cubeacp"]
 
 
@@ -55,7 +57,7 @@ def plain(text: str) -> str:
 
 
 @pytest.mark.parametrize("language", LINKS)
-def test_every_assumption_stands_in_the_link_of_every_language(language):
+def test_the_link_of_every_language_has_every_assumption(language):
     files = backends.get(language).files(shipped(), Renderer(language))
     texts = {
         str(path): text
@@ -64,17 +66,19 @@ def test_every_assumption_stands_in_the_link_of_every_language(language):
     }
     for name, link in described().items():
         text = "".join(
-            plain(re.sub(r"^\s*(\*|///?|#)", "", one, flags=re.M))
-            for path, one in texts.items()
-            # Procedures of included nodes are in the files of these.
+            plain(re.sub(r"^\s*(\*|///?|#)", "", text, flags=re.M))
+            for path, text in texts.items()
+            # Procedures of included nodes are in the files of those nodes.
             if name in path or path.endswith("/procedures.rs")
         )
         assert [
-            one for one in link.facts.assumptions if plain(one.why) not in text
+            assumption
+            for assumption in link.facts.assumptions
+            if plain(assumption.why) not in text
         ] == []
 
 
-def test_an_assumption_is_told_once():
+def test_each_assumption_is_in_the_code_once():
     facts = described()["cubeacp"].facts
     assumed = Assumptions(facts)
     assert assumed.why("link.buses.can.segments", "fill") and not assumed.why(
@@ -98,7 +102,7 @@ def test_an_assumption_is_told_once():
         ("index_file", "meta", "index"),
     ],
 )
-def test_a_part_that_is_not_described_whole_is_not_there(section, key, part):
+def test_an_incomplete_part_is_left_out(section, key, part):
     assert getattr(described()["cubeacp"], part) and not getattr(
         without(section, key), part
     )
@@ -106,11 +110,11 @@ def test_a_part_that_is_not_described_whole_is_not_there(section, key, part):
 
 def test_literals_are_laid_out_without_counting_columns():
     flat = Brackets("Pair { ", (Item("1", "one: "), Item("2", "two: ")), " }", True)
-    whole = Brackets(
+    brackets = Brackets(
         "Whole {", (Item(flat, "pair: ", ("why",)), Item(Brackets("[", (), "]"))), "}"
     )
     assert written(
-        whole.within("Some(", ")"), lambda note, indent: f"{indent}// {note}"
+        brackets.within("Some(", ")"), lambda note, indent: f"{indent}// {note}"
     ) == ("Some(Whole {\n    // why\n    pair: Pair { one: 1, two: 2 },\n    [],\n})")
     assert in_rows("abcde", 2) == ["a, b,", "c, d,", "e,"]
 

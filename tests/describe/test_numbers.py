@@ -1,4 +1,4 @@
-"""Steps of scales, limits and numbers for people, against exact arithmetic."""
+"""Steps of scales, limits and printed numbers are compared with exact arithmetic."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ scales = st.builds(Scale, fractions.filter(bool), fractions)
 
 @st.composite
 def scaled(draw) -> tuple[NodePlace, int]:
-    """A field with a scale, and a raw value that it can hold."""
+    """Draw a field with a scale, and a raw value of it."""
     kind, bits = draw(st.sampled_from(["uint", "int"])), draw(st.integers(1, 64))
     field = Scalar(name="it", at=0, bits=bits, type=kind, scale=draw(scales))
     return field, draw(st.integers(field.raw_min, field.raw_max))
@@ -39,22 +39,24 @@ def scaled(draw) -> tuple[NodePlace, int]:
 @given(scaled())
 def test_the_steps_give_what_the_reference_codec_gives(case):
     field, raw = case
-    found = steps_of_scale(field)
-    assert found is not None and found.q > 0
+    scale_steps = steps_of_scale(field)
+    assert scale_steps is not None and scale_steps.q > 0
     assert (
-        found.physical(raw) == field.scale.physical(raw) == codec.physical(field, raw)
+        scale_steps.physical(raw)
+        == field.scale.physical(raw)
+        == codec.physical(field, raw)
     )
-    assert found.double(raw) == codec.physical_double(field, raw)
+    assert scale_steps.double(raw) == codec.physical_double(field, raw)
 
 
 @given(scaled())
-def test_where_they_are_called_exact_doubles_give_the_same(case):
+def test_steps_marked_as_exact_give_the_same_in_doubles(case):
     field, raw = case
-    found = steps_of_scale(field)
-    if found.exact_in_doubles:
-        assert (float(raw) * float(found.p) + float(found.c)) / float(
-            found.q
-        ) == found.double(raw)
+    scale_steps = steps_of_scale(field)
+    if scale_steps.exact_in_doubles:
+        assert (float(raw) * float(scale_steps.p) + float(scale_steps.c)) / float(
+            scale_steps.q
+        ) == scale_steps.double(raw)
 
 
 @given(scaled())
@@ -67,7 +69,7 @@ def test_no_value_lies_outside_the_span(case):
     }
 
 
-def test_what_no_double_holds_is_not_called_exact():
+def test_a_number_without_an_exact_double_is_not_marked_as_exact():
     assert not steps_of_scale(
         Scalar(name="wide", at=0, bits=64, type="uint", scale=Scale(Fraction(3)))
     ).exact_in_doubles
@@ -80,16 +82,16 @@ LIMITS = Limits(min=Fraction(1), below=Fraction(3))
 
 
 @pytest.mark.parametrize(
-    ("value", "kept"), [(0.5, [False, True]), (1, [True, True]), (3, [True, False])]
+    ("value", "expected"), [(0.5, [False, True]), (1, [True, True]), (3, [True, False])]
 )
-def test_each_limit_tells_whether_a_value_keeps_it(value, kept):
-    found = bounds_of_limits(LIMITS)
-    assert [bound.key for bound in found] == ["min", "below"]
-    assert [bound.holds(value) for bound in found] == kept
-    assert not any(bound.holds(float("nan")) for bound in found)
+def test_each_limit_accepts_the_values_within_it(value, expected):
+    limits = bounds_of_limits(LIMITS)
+    assert [bound.key for bound in limits] == ["min", "below"]
+    assert [bound.holds(value) for bound in limits] == expected
+    assert not any(bound.holds(float("nan")) for bound in limits)
 
 
-def test_the_ends_are_those_of_the_type_unless_an_inclusive_limit_is_narrower():
+def test_the_range_is_that_of_the_type_unless_an_inclusive_limit_is_narrower():
     field = Scalar(
         name="it",
         at=0,
@@ -103,7 +105,7 @@ def test_the_ends_are_those_of_the_type_unless_an_inclusive_limit_is_narrower():
 
 
 @pytest.mark.parametrize("bits", range(1, 65))
-def test_the_storage_holds_what_it_must_and_is_not_twice_as_wide_as_need_be(bits):
+def test_the_storage_is_the_narrowest_type_for_the_values(bits):
     for signed in (False, True):
         storage = Storage(storage_bits(bits), signed)
         field = Scalar(name="it", at=0, bits=bits, type="int" if signed else "uint")
@@ -121,7 +123,7 @@ def test_the_storage_holds_what_it_must_and_is_not_twice_as_wide_as_need_be(bits
         ("1/1024", "0.0009765625"),
     ],
 )
-def test_numbers_are_decimals_where_these_end(value, text):
+def test_numbers_are_decimals_if_finite(value, text):
     assert exact_text(Fraction(value)) == text
 
 
@@ -130,7 +132,7 @@ def test_factors_are_exact_as_text(value):
     assert Fraction(factor_text(value)) == value
 
 
-def test_places_and_values():
+def test_decimal_places_and_values_are_printed_as_expected():
     assert (bit_range(3, 1), bit_range(4, 4), byte_range(0, 1), byte_range(2, 3)) == (
         "bit 3", "bits 4 to 7", "byte 0", "bytes 2 to 4",
     )  # fmt: skip

@@ -1,6 +1,8 @@
-"""The range of values that messages name: what type and limits allow together."""
+"""Error messages name the range that type and limits allow together."""
 
 from __future__ import annotations
+
+import re
 
 import pytest
 
@@ -28,11 +30,12 @@ HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order
 )
 def test_the_range_is_that_of_type_and_limits(tmp_path, keys, text):
     file = tmp_path / "demo.yaml"
-    length = 4 if "32" in keys else 2 if "16" in keys else 1
+    bits = int(re.search(r"bits: (\d+)", keys)[1])
+    length = bits // 8
     field = f"{{at: 0, name: Value, {keys}}}"
     file.write_text(
         f"{HEAD}  - {{name: Set, id: 1, kind: telecommand, length: {length}, fields: [{field}]}}\n"
     )
     loaded = load([file])
-    assert [one.message for one in loaded.findings] == []
+    assert [finding.message for finding in loaded.findings] == []
     assert range_text(loaded.icd.nodes[0].messages[0].fields[0]) == text

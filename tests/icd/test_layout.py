@@ -13,7 +13,7 @@ from icdgen.icd.frames import flatten
 from icdgen.icd.layout import Array, Layout, Orders, Overlay, Scalar, StructRef
 from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Icd, Message, Node
-from tests.conformance.icds import read
+from tests.conformance.icds import read_unchecked
 from tests.conftest import ROOT
 
 SETS = [
@@ -30,7 +30,7 @@ SETS = [
 
 
 def messages(path: str) -> list[tuple[Icd, Node, Message]]:
-    icd = read(ROOT / path)
+    icd = read_unchecked(ROOT / path)
     return [(icd, node, message) for node in icd.nodes for message in node.messages]
 
 
@@ -39,8 +39,8 @@ def test_a_layout_has_one_node_for_each_line_of_the_icd(path):
     for _, node, message in messages(path):
         for item in message.source.get("fields", ()):
             names = [part["name"] for part in item.get("bitfields", [item])]
-            nodes = [one for one in message.layout.nodes if one.name in names]
-            assert [one.name for one in nodes] == names, (
+            nodes = [node for node in message.layout.nodes if node.name in names]
+            assert [node.name for node in nodes] == names, (
                 f"{message.name}: {item['name']}"
             )
         visits = [
@@ -53,16 +53,21 @@ def test_a_layout_has_one_node_for_each_line_of_the_icd(path):
 def test_the_longest_frame_has_a_place_for_each_field(path):
     for _, node, message in messages(path):
         placed = flatten(message.layout, node.orders)
-        assert [one.name for one in placed] == [field.name for field in message.fields]
-        for one, field in zip(placed, message.fields, strict=True):
-            assert (one.at, one.bits) == (
+        assert [scalar.name for scalar in placed] == [
+            field.name for field in message.fields
+        ]
+        for scalar, field in zip(placed, message.fields, strict=True):
+            assert (scalar.at, scalar.bits) == (
                 field.at,
                 field.bits,
-            ), f"{message.name}: {one.name}"
-            assert (one.role == "count") == field.is_count
+            ), f"{message.name}: {scalar.name}"
+            assert (scalar.role == "count") == field.is_count
             if not field.is_count:
                 effective = field.orders_in_effect(node.orders)
-                assert field.derived is not None or (one.byte_order, one.bit_order) == (
+                assert field.derived is not None or (
+                    scalar.byte_order,
+                    scalar.bit_order,
+                ) == (
                     effective.byte,
                     effective.bit,
                 )
@@ -79,7 +84,12 @@ def test_lengths_of_frames_follow_from_the_sizes_of_their_variable_parts(path):
             }
             placed = flatten(layout, node.orders, sizes)
             end = max(
-                (one.at + one.bits for one in placed if one.role == "field"), default=0
+                (
+                    scalar.at + scalar.bits
+                    for scalar in placed
+                    if scalar.role == "field"
+                ),
+                default=0,
             )
             expected = layout.longest if most else layout.shortest
             assert end <= 8 * expected or layout.may_end_early
@@ -89,9 +99,11 @@ def test_lengths_of_frames_follow_from_the_sizes_of_their_variable_parts(path):
 def test_fields_at_fixed_bits_lie_within_the_fixed_part(path):
     for _, node, message in messages(path):
         for owner in (message.layout, *structs_of(message.layout)):
-            for one in owner.fixed:
-                placed = flatten(Layout(owner.name, owner.length, (one,)), node.orders)
-                assert all(one.at <= place.at for place in placed)
+            for field in owner.fixed:
+                placed = flatten(
+                    Layout(owner.name, owner.length, (field,)), node.orders
+                )
+                assert all(field.at <= place.at for place in placed)
                 assert all(
                     place.at + place.bits <= 8 * owner.length for place in placed
                 )
@@ -114,7 +126,7 @@ def test_owners_of_bits_do_not_overlap_unless_their_conditions_exclude_each_othe
 
 
 def pieces_of(place):
-    """The runs of bits of a scalar; bytes are whole bytes in order."""
+    """Return the runs of bits of a scalar. Bytes are complete bytes in order."""
     if place.scalar.is_bytes:
         return [
             bits.Piece(byte, 0, 8, 0)
@@ -124,15 +136,15 @@ def pieces_of(place):
 
 
 def structs_of(layout: Layout) -> list[Layout]:
-    """The layouts of all structs that a layout refers to."""
-    refs = [one.item if isinstance(one, Array) else one for one in layout.nodes]
-    inner = [one.layout for one in refs if isinstance(one, StructRef)]
-    return inner + [deeper for one in inner for deeper in structs_of(one)]
+    """Return the layouts of all structs that a layout refers to."""
+    refs = [node.item if isinstance(node, Array) else node for node in layout.nodes]
+    inner = [ref.layout for ref in refs if isinstance(ref, StructRef)]
+    return inner + [deeper for layout_ in inner for deeper in structs_of(layout_)]
 
 
 @pytest.mark.parametrize("path", SETS)
 def test_structs_have_fixed_nodes_only_and_share_their_layout(path):
-    icd = read(ROOT / path)
+    icd = read_unchecked(ROOT / path)
     declared = {id(struct.layout) for node in icd.nodes for struct in node.structs}
     for _, _, message in messages_of(icd):
         for layout in structs_of(message.layout):
@@ -141,7 +153,7 @@ def test_structs_have_fixed_nodes_only_and_share_their_layout(path):
                 not layout.sequence and not layout.derived and layout.orders == Orders()
             )
             assert not any(
-                isinstance(one, Overlay) or one.present_if for one in layout.fixed
+                isinstance(field, Overlay) or field.present_if for field in layout.fixed
             )
 
 
@@ -164,7 +176,9 @@ def test_a_counter_is_a_plain_number_of_the_fixed_part_that_can_hold_the_size(pa
         for part in message.layout.counted_parts:
             if not part.is_rest:
                 (counter,) = (
-                    one for one in message.layout.fixed if one.name == part.counter
+                    field
+                    for field in message.layout.fixed
+                    if field.name == part.counter
                 )
                 assert isinstance(counter, Scalar) and counter.type == "uint"
                 assert (
@@ -176,11 +190,9 @@ def test_a_counter_is_a_plain_number_of_the_fixed_part_that_can_hold_the_size(pa
 
 
 def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
-    """Every field of a frame has the bytes that it has in the longest frame without the
-    gaps.
-    """
-    icd = read(ROOT / "tests" / "conformance" / "odd_icds")
-    (node,) = (one for one in icd.nodes if one.name == "curves")
+    """The bytes of every field are those in the longest frame without the gaps."""
+    icd = read_unchecked(ROOT / "tests" / "conformance" / "odd_icds")
+    (node,) = (node for node in icd.nodes if node.name == "curves")
     assert any(message.layout.parts[-1].inner for message in node.messages)
     for message in node.messages:
         layout = message.layout
@@ -192,23 +204,33 @@ def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
             }
             gaps = list(layout.gaps(sizes))
             placed = {
-                one.name: one for one in flatten(layout, Orders("big", "msb0"), sizes)
+                scalar.name: scalar
+                for scalar in flatten(layout, Orders("big", "msb0"), sizes)
             }
             assert layout.size_of_frame(sizes) == layout.longest - sum(
                 gap.length for gap in gaps
             )
-            for one in longest:
-                if one.role == "field" and one.scalar.length is None:
-                    is_missing = any(gap.begin <= one.at // 8 < gap.end for gap in gaps)
-                    assert (one.name not in placed) == is_missing
-                    before = sum(gap.length for gap in gaps if gap.end <= one.at // 8)
-                    assert is_missing or placed[one.name].at == one.at - 8 * before
+            for scalar in longest:
+                if scalar.role == "field" and scalar.scalar.length is None:
+                    is_missing = any(
+                        gap.begin <= scalar.at // 8 < gap.end for gap in gaps
+                    )
+                    assert (scalar.name not in placed) == is_missing
+                    before = sum(
+                        gap.length for gap in gaps if gap.end <= scalar.at // 8
+                    )
+                    assert (
+                        is_missing or placed[scalar.name].at == scalar.at - 8 * before
+                    )
 
 
-def test_an_array_of_structs_is_one_node_however_many_elements_it_can_have():
-    icd = read(ROOT / "examples" / "devices" / "ublox")
+def test_an_array_of_structs_is_one_node_with_any_number_of_elements():
+    icd = read_unchecked(ROOT / "examples" / "devices" / "ublox")
     (message,) = (
-        one for node in icd.nodes for one in node.messages if one.name == "NAV-SAT"
+        message
+        for node in icd.nodes
+        for message in node.messages
+        if message.name == "NAV-SAT"
     )
     lines = list(walk(message.layout, Orders("little", "lsb0")))
     assert len(lines) == 4 + len(structs_of(message.layout)[0].nodes)
@@ -216,9 +238,12 @@ def test_an_array_of_structs_is_one_node_however_many_elements_it_can_have():
 
 
 def test_a_frame_lists_only_the_elements_that_it_has():
-    icd = read(ROOT / "examples" / "devices" / "ublox")
+    icd = read_unchecked(ROOT / "examples" / "devices" / "ublox")
     (message,) = (
-        one for node in icd.nodes for one in node.messages if one.name == "NAV-SAT"
+        message
+        for node in icd.nodes
+        for message in node.messages
+        if message.name == "NAV-SAT"
     )
     part = message.layout.sequence[-1]
     orders = Orders("little", "lsb0")
@@ -227,7 +252,7 @@ def test_a_frame_lists_only_the_elements_that_it_has():
     )
     inner = len(structs_of(message.layout)[0].fixed)
     assert len(two) - len(none) == 2 * inner
-    assert {one.name.split(".")[0] for one in two[len(none) :]} == {
+    assert {scalar.name.split(".")[0] for scalar in two[len(none) :]} == {
         f"{part.name}[0]",
         f"{part.name}[1]",
     }
@@ -236,7 +261,7 @@ def test_a_frame_lists_only_the_elements_that_it_has():
 def test_layouts_of_an_icd_are_the_same_from_the_cache(tmp_path: Path):
     from icdgen.icd import model_json
 
-    icd = read(ROOT / "examples" / "devices" / "ublox")
+    icd = read_unchecked(ROOT / "examples" / "devices" / "ublox")
     copy, _ = model_json.model_of_json(model_json.json_of_model(icd, {}))
     assert copy == icd
     for node in copy.nodes:

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from tests.conformance.random_icds import written
 from tests.conformance.strategies import icds
-from tests.conformance.wholes import with_wholes
+from tests.conformance.wholes import with_composites
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -110,7 +110,7 @@ def _random_trees(count: int) -> list[dict[str, dict]]:
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    @given(with_wholes(icds()))
+    @given(with_composites(icds()))
     def draw(trees: dict[str, dict]) -> None:
         drawn.append(json.loads(json.dumps(trees)))
 

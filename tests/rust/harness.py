@@ -20,7 +20,7 @@ from icdgen.render import Renderer
 from tests.conformance.build import build
 from tests.conformance.icds import (  # noqa: F401
     SHIPPED,
-    read,
+    read_unchecked,
     shipped,
 )
 from tests.conformance.languages import all_languages

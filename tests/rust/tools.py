@@ -11,7 +11,7 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
-from tests.conformance.build import cache_folder, kept
+from tests.conformance.build import cache_folder, locked_folder
 
 OLDEST = "1.63"
 MERGING = "2024"
@@ -151,7 +151,9 @@ class Toolchain:
             digest.update(
                 f"\0{source.relative_to(file.parent)}\0".encode() + source.read_bytes()
             )
-        with kept(cache_folder() / f"library-{digest.hexdigest()[:16]}") as out:
+        with locked_folder(
+            cache_folder() / f"library-{digest.hexdigest()[:16]}"
+        ) as out:
             if not (out / "libicd.rlib").exists():
                 made = out / "made"
                 run(*command, "--out-dir", made, file)

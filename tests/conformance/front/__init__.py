@@ -1,8 +1,8 @@
-"""The front of every testee: JSON, look-up, validation and refusals, once for all
-languages.
+"""The front of every testee: parses JSON, looks up names, validates requests and
+refuses bad ones.
 
-What it asks of the program of a language are the few primitives of ``README.md``: lines
-of words, indices and hex.
+It is written once for all languages. The program of a language only implements the
+primitives of ``README.md``: lines of words, indices and hex.
 """
 
 from tests.conformance.front.front import Front

@@ -1,9 +1,7 @@
-"""A testee: the front before the program of a language.
+"""Run a testee: the front with the program of a language.
 
-``python __main__.py PLAN COMMAND [WORD ...]``.
-
-Reads requests from standard input, one JSON object a line, and writes one answer a
-line.
+Usage: ``python __main__.py PLAN COMMAND [WORD ...]``. Reads requests from standard
+input, one JSON object per line, and writes one answer per line.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""Requests in JSON -> what the program is asked -> answers in JSON."""
+"""Translate JSON requests into lines for the program of a language, and its replies
+into JSON answers.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +10,13 @@ from typing import Any
 from icdgen.runtime_objects.refusals import Refusal
 from icdgen.runtime_objects.request_keys import text
 from tests.conformance.front import messages, scripts, wire
-from tests.conformance.front.program import Ask, Reply, asked
+from tests.conformance.front.program import Ask, Reply, reply_to
 
 DIRECTIONS = {"telecommand": 0, "telemetry": 1}
 
 
 class Front:
-    """Answers requests for a set of ICDs, whose `plan` it is given, by asking a
+    """Answers requests about a set of ICDs, described by their `plan`, by asking a
     program.
     """
 
@@ -24,10 +26,7 @@ class Front:
         self._routes = [self._routes_of(node["speaks"]) for node in plan["nodes"]]
 
     def answer(self, line: bytes) -> dict[str, Any]:
-        """The answer to a request, whatever it is.
-
-        Raises `Died` if the program has none.
-        """
+        """Return the answer to any request. Raises `Died` if the program gives none."""
         try:
             request = json.loads(line.decode("utf-8"))
             if not isinstance(request, dict):
@@ -44,11 +43,11 @@ class Front:
             return {"ok": False, "error": "request", "detail": str(error)}
 
     def ask(self, *words: object) -> Reply:
-        """Asks the program. Raises `Refusal` and `Died`."""
-        return asked(self._ask, *words)
+        """Send words to the program and return its reply. Raises `Refusal` and `Died`."""
+        return reply_to(self._ask, *words)
 
     def node(self, request: dict[str, Any]) -> int:
-        """The node that a request names."""
+        """Return the node that a request names."""
         place = self.nodes.get(text(request, "node"))
         if place is None:
             raise Refusal("unknown-node")
@@ -57,23 +56,23 @@ class Front:
     def route(
         self, node: int, kind: str, id: int, name: str | None = None
     ) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
-        """Node, direction and id that lead to a message, and what is known of it: None
-        if the ICD has none there.
+        """Return node, direction and id of a message, and its plan (``None`` if the ICD
+        has no such message).
 
-        Of an id that several messages have ``name`` says which is meant; without it the
-        id leads to none of them: see `is_shared`.
+        If several messages share the id, ``name`` selects one of them. Without it the
+        id selects none of them (see `is_shared`).
         """
         if not 0 <= id < 1 << self.plan["nodes"][node]["id_bits"]:
             raise Refusal("unknown-id")
-        found = self._routes[node].get((kind, id), [])
-        if not found and kind == "configuration":
+        routes = self._routes[node].get((kind, id), [])
+        if not routes and kind == "configuration":
             raise Refusal("unknown-id")
-        if len(found) > 1 and name is None:
-            return (node, found[0][0], id), None
-        found = [one for one in found if name in (None, one[1]["name"])]
-        if name is not None and not found:
+        if len(routes) > 1 and name is None:
+            return (node, routes[0][0], id), None
+        routes = [route for route in routes if name in (None, route[1]["name"])]
+        if name is not None and not routes:
             raise Refusal("unknown-id")
-        direction, message = found[0] if found else (DIRECTIONS[kind], None)
+        direction, message = routes[0] if routes else (DIRECTIONS[kind], None)
         if message is not None and self.is_shared(
             node, list(DIRECTIONS)[direction], id
         ):
@@ -81,13 +80,13 @@ class Front:
         return (node, direction, id), message
 
     def is_shared(self, node: int, kind: str, id: int) -> bool:
-        """Whether several messages have the id."""
+        """Return whether several messages have the id."""
         return len(self._routes[node].get((kind, id), [])) > 1
 
     def _routes_of(
         self, speaks: list[int]
     ) -> dict[tuple[str, int], list[tuple[int, dict[str, Any]]]]:
-        found: dict[tuple[str, int], list[tuple[int, dict[str, Any]]]] = {}
+        routes: dict[tuple[str, int], list[tuple[int, dict[str, Any]]]] = {}
         spoken = [self.plan["messages"][place] for place in speaks]
         for message in spoken:
             set_id, _ = message["configuration"]
@@ -97,17 +96,17 @@ class Front:
                 ("configuration", set_id, 0),
             ):
                 if id is not None:
-                    found.setdefault((kind, id), []).append((direction, message))
-        set_ids = set(found)
+                    routes.setdefault((kind, id), []).append((direction, message))
+        set_ids = set(routes)
         for message in spoken:
             got = ("configuration", message["configuration"][1])
             if got[1] is not None and got not in set_ids:
-                found.setdefault(got, []).append((1, message))
-        return found
+                routes.setdefault(got, []).append((1, message))
+        return routes
 
     def _wire(self, op: str, request: dict[str, Any]) -> dict[str, Any]:
-        """The answer about how the messages travel: of the node that is named, else of
-        the last that has a protocol.
+        """Answer a request about framing. It concerns the named node, or else the last
+        node with a protocol.
         """
         if "node" in request:
             place: int | None = self.node(request)
@@ -119,12 +118,12 @@ class Front:
         link = self.plan["nodes"][place]["link"] if place is not None else None
         try:
             if link is None:
-                checked = wire.Asking(
+                checked = wire.LinkProgram(
                     lambda *words: _nothing(),
                     {"longest": 1 << 16, "around": 0, "framing": None},
                 )
             else:
-                checked = wire.Asking(
+                checked = wire.LinkProgram(
                     lambda word, *more: self.ask(word, place, *more), link
                 )
             return {**wire.OPS, **scripts.OPS}[op](checked, request)

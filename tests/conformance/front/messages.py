@@ -1,4 +1,4 @@
-"""Requests about messages: their values, their constants, their enumerations."""
+"""Answer requests about messages: their values, constants and enumerations."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
     raw, physical = request.get("raw", {}), request.get("physical", {})
     if not isinstance(raw, dict) or not isinstance(physical, dict):
         raise Refusal("request", detail="`raw` or `physical` is no object")
-    route, fields = _known(front, request)
+    route, fields = _route_and_fields(front, request)
     settable = {
         field["name"]: field["settable"] for field in fields if not field["view"]
     }
@@ -56,7 +56,7 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
     for field in fields:
         name = field["name"]
         if field["view"]:
-            break  # they come last
+            break  # these words come last
         if name in physical:
             values.append(f"p{_physical(field, physical[name])}")
         elif field["conditional"] and raw.get(name) is None:
@@ -65,11 +65,13 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
             values.append(f"r{_raw(field, raw[name])}")
         else:
             raise Refusal("missing-field", field=name)
-    return _described(fields, _asked(front, fields, "encode", *route, *values))
+    return _described(
+        fields, _reply_about_fields(front, fields, "encode", *route, *values)
+    )
 
 
 def constants(front: Front, request: Request) -> dict[str, Any]:
-    route, fields = _known(front, request)
+    route, fields = _route_and_fields(front, request)
     reply = front.ask("constants", *route)
     rows = _named(fields, reply)
     limits = {
@@ -82,7 +84,7 @@ def constants(front: Front, request: Request) -> dict[str, Any]:
         "length": int(reply.facts["length"]),
         "default": {name: _shown(field, row["raw"]) for name, field, row in rows},
         "special": {
-            name: [_shown(field, one) for one in items(row["special"])]
+            name: [_shown(field, value) for value in items(row["special"])]
             for name, field, row in rows
             if row.get("special")
         },
@@ -121,7 +123,7 @@ def sweep(front: Front, request: Request) -> dict[str, Any]:
         raise Refusal("request", detail="`values` is no list")
     if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
         raise Refusal("request", detail="these are too many values, or not integers")
-    route, fields = _known(front, request)
+    route, fields = _route_and_fields(front, request)
     scaled = (
         (place, field)
         for place, field in enumerate(fields)
@@ -130,13 +132,16 @@ def sweep(front: Front, request: Request) -> dict[str, Any]:
     place = next((place for place, field in scaled if field["settable"]), None)
     if place is None:
         raise Refusal("unknown-field", field=name)
-    found = items(
-        _asked(front, fields, "sweep", *route, place, *values).facts.get("values", "")
+    doubles_and_back = items(
+        _reply_about_fields(front, fields, "sweep", *route, place, *values).facts.get(
+            "values", ""
+        )
     )
     return {
-        "physical": "".join(map(_double, found[::2])),
+        "physical": "".join(map(_double, doubles_and_back[::2])),
         "failures": sum(
-            back != str(value) for back, value in zip(found[1::2], values, strict=True)
+            back != str(value)
+            for back, value in zip(doubles_and_back[1::2], values, strict=True)
         ),
     }
 
@@ -157,11 +162,11 @@ def _message(
     return front.route(front.node(request), kind, id, name)
 
 
-def _known(
+def _route_and_fields(
     front: Front, request: Request
 ) -> tuple[tuple[int, int, int | str], list[Field]]:
-    """The route to a message and its fields; where the ICD has none, what the program
-    says of that id.
+    """Return the route to a message and its fields. For an id without a message the
+    program decides on the refusal.
     """
     route, message = _message(front, request)
     if message is None and front.is_shared(route[0], request["kind"], request["id"]):
@@ -181,29 +186,29 @@ def _integer(value: object) -> int:
 
 
 def _sized(value: object, size: int) -> bytes:
-    found = hex_bytes(value)
-    if len(found) != size:
+    data = hex_bytes(value)
+    if len(data) != size:
         raise Refusal("request", detail=f"these are not {2 * size} hex digits")
-    return found
+    return data
 
 
-def _raw(field: Field, given: object) -> int | str:
-    """A raw value of a request as the program is given it; whether it fits, the program
-    says.
+def _raw(field: Field, value: object) -> int | str:
+    """Return a raw value of a request in the form for the program, which decides
+    whether the value is in range.
     """
     if field["type"] == "float":
-        return int.from_bytes(_sized(given, field["bits"] // 8), "big")
+        return int.from_bytes(_sized(value, field["bits"] // 8), "big")
     if field["type"] in OCTETS:
-        return hex_bytes(given).hex()
+        return hex_bytes(value).hex()
     return (
-        int(given)
-        if field["type"] == "bool" and type(given) is bool
-        else _integer(given)
+        int(value)
+        if field["type"] == "bool" and type(value) is bool
+        else _integer(value)
     )
 
 
 def _shown(field: Field, value: str) -> object:
-    """A raw value as it stands in an answer; null where the field is not there."""
+    """Return a raw value in the form of an answer; null if the field is absent."""
     if value == ABSENT and field["conditional"]:
         return None
     if field["type"] in OCTETS:
@@ -217,17 +222,19 @@ def _shown(field: Field, value: str) -> object:
     )
 
 
-def _physical(field: Field, given: object) -> int | str:
-    """A physical value of a request: the bits of a double, or the hex of a text."""
+def _physical(field: Field, value: object) -> int | str:
+    """Return a physical value of a request: the bits of a double, or the hex of a text."""
     return (
-        hex_bytes(given).hex()
+        hex_bytes(value).hex()
         if field["type"] == "text"
-        else int.from_bytes(_sized(given, 8), "big")
+        else int.from_bytes(_sized(value, 8), "big")
     )
 
 
 def _physical_shown(field: Field, row: Facts) -> str | None:
-    """A physical value as it stands in an answer: null where the bytes are no text."""
+    """Return a physical value in the form of an answer; null if the bytes are no valid
+    text.
+    """
     if field["type"] == "text" or row["raw"] == ABSENT:
         return row.get("physical")
     return _double(row["physical"])
@@ -237,9 +244,9 @@ def _double(bits: str) -> str:
     return f"{int(bits):016x}"
 
 
-def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
-    """What the program answers; it may tell the field that it refuses by its name or by
-    its place.
+def _reply_about_fields(front: Front, fields: list[Field], *words: object) -> Reply:
+    """Return the program's reply. A refusal may name the field by its name or its
+    index.
     """
     try:
         return front.ask(*words)
@@ -251,13 +258,13 @@ def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
 
 
 def _named(fields: list[Field], reply: Reply) -> list[tuple[str, Field, Facts]]:
-    """What the rows say of the fields, by name: that of the ICD, if the language does
-    not have it.
+    """Return the rows by field name. Names that the language does not know come from
+    the ICD.
     """
-    rows = reply.of("field")
+    rows = reply.rows_of("field")
     return [
-        (text_of(row.get("field")) or one["name"], one, row)
-        for one, row in zip(fields, rows, strict=True)
+        (text_of(row.get("field")) or field["name"], field, row)
+        for field, row in zip(fields, rows, strict=True)
     ]
 
 

@@ -1,4 +1,6 @@
-"""What the front knows of the ICDs, as JSON: names and types, by index."""
+"""The plan of a set of ICDs as JSON: names and types by index, all that the front
+needs.
+"""
 
 from __future__ import annotations
 
@@ -12,24 +14,24 @@ from icdgen.protocol.procedures import Procedure
 
 
 def plan(icd: Icd) -> dict[str, Any]:
-    """The plan of a set of ICDs.
-
-    Nodes, and the messages and enumerations of each, stand in the order of the
-    description.
+    """Return the plan of a set of ICDs. Nodes, messages and enumerations have the order
+    of the description.
     """
     description = describe(icd)
     every = [message for node in description.nodes for message in node.messages]
     places = {
-        (one.model.node, one.model.name): place for place, one in enumerate(every)
+        (message.model.node, message.model.name): place
+        for place, message in enumerate(every)
     }
     return {
-        "messages": [_message(one.model) for one in every],
+        "messages": [_message(message.model) for message in every],
         "nodes": [
             {
                 "name": node.name,
                 "id_bits": node.id_bits,
                 "speaks": [
-                    places[one.model.node, one.model.name] for one in node.all_messages
+                    places[message.model.node, message.model.name]
+                    for message in node.all_messages
                 ],
                 "enums": [enum.model.name for enum in node.enums],
                 "link": _link(icd, node.model) if node.is_linked else None,
@@ -80,14 +82,14 @@ def _procedure(procedure: Procedure) -> dict[str, Any]:
 
 
 def _link(icd: Icd, node: Node) -> dict[str, Any]:
-    known = facts.of(icd, node)
-    framing, stream = known.framing, known.stream
+    link_facts = facts.of(icd, node)
+    framing, stream = link_facts.framing, link_facts.stream
     chosen = stream.chosen("telemetry") if stream else {}
     around = max(packet.overhead for packet in stream.packets) if stream else 0
     return {
-        "longest": known.longest,
+        "longest": link_facts.longest,
         "around": around,
         "of_device": {role: field.mask for role, field in chosen.items()},
         "framing": [framing.escape, framing.end] if framing else None,
-        "procedures": [_procedure(each) for each in known.procedures],
+        "procedures": [_procedure(each) for each in link_facts.procedures],
     }

@@ -1,4 +1,6 @@
-"""The program of a language: a line of words is asked, a line of words is answered."""
+"""Talk to the program of a language: one line of words per question, one line of words
+per reply.
+"""
 
 from __future__ import annotations
 
@@ -15,17 +17,19 @@ NUMBERS = {"expected", "actual", "at"}
 
 
 class Died(Exception):
-    """The program ended, or said what is no answer."""
+    """The program ended, or its reply is malformed."""
 
 
 class Reply(NamedTuple):
-    """An answer: what it says of the whole, and rows of a kind each."""
+    """A reply of the program: facts about the request as a whole, and rows of several
+    kinds.
+    """
 
     facts: Facts
     rows: list[tuple[str, Facts]]
 
-    def of(self, *kinds: str) -> list[Facts]:
-        """What the rows of these kinds say."""
+    def rows_of(self, *kinds: str) -> list[Facts]:
+        """Return the facts of the rows of these kinds."""
         return [facts for kind, facts in self.rows if kind in kinds]
 
 
@@ -38,7 +42,7 @@ class Program:
         )
 
     def ask(self, line: str) -> str:
-        """The answer to a line. Raises `Died`."""
+        """Return the reply to a line. Raises `Died`."""
         assert self.process.stdin and self.process.stdout
         try:
             self.process.stdin.write(line.encode("ascii") + b"\n")
@@ -51,34 +55,35 @@ class Program:
         return answer[:-1].decode("ascii", "replace")
 
     def close(self) -> int:
-        """Ends its input; its exit status."""
+        """Close the program's input and return its exit status."""
         assert self.process.stdin
         with suppress(OSError):
             self.process.stdin.close()
         return self.process.wait()
 
 
-def asked(ask: Ask, *words: object) -> Reply:
-    """What the program answers to these words.
-
-    Raises `Refusal` if it refuses, `Died` if that is no answer.
+def reply_to(ask: Ask, *words: object) -> Reply:
+    """Return the program's reply to these words. Raises `Refusal` if it refuses, `Died`
+    if the reply is malformed.
     """
-    found = read(ask(" ".join(map(str, words))))
-    error, facts = found.rows[0]
+    reply = rows_of_line(ask(" ".join(map(str, words))))
+    error, facts = reply.rows[0]
     if error == "ok":
-        whole: Facts = {}
-        for kind, more in found.rows:
+        facts_of_reply: Facts = {}
+        for kind, more in reply.rows:
             if kind == "ok":
-                whole |= more
-        return Reply(whole, [row for row in found.rows if row[0] != "ok"])
-    if error != "refused" or len(found.rows) != 2:
+                facts_of_reply |= more
+        return Reply(facts_of_reply, [row for row in reply.rows if row[0] != "ok"])
+    if error != "refused" or len(reply.rows) != 2:
         raise Died
-    error, facts = found.rows[1]
+    error, facts = reply.rows[1]
     raise Refusal(error, **{key: _told(key, value) for key, value in facts.items()})
 
 
-def read(line: str) -> Reply:
-    """A line in rows: a bare word begins one, ``key=value`` belongs to the last."""
+def rows_of_line(line: str) -> Reply:
+    """Split a line into rows. A bare word starts a row, and ``key=value`` belongs to
+    the last row.
+    """
     rows: list[tuple[str, Facts]] = []
     for word in line.split(" "):
         key, equals, value = word.partition("=")
@@ -92,12 +97,12 @@ def read(line: str) -> Reply:
 
 
 def items(value: str) -> list[str]:
-    """The parts of a list, each of which may end with a comma."""
+    """Split a list, in which each item may end with a comma."""
     return value.removesuffix(",").split(",") if value else []
 
 
 def text_of(value: str | None) -> str | None:
-    """A text, which stands in hex as UTF-8."""
+    """Return a text, which the reply contains as UTF-8 in hex."""
     return (
         None if value is None else bytes.fromhex(value).decode("utf-8", "surrogatepass")
     )

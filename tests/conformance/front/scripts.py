@@ -1,6 +1,4 @@
-"""Requests that are scripts: what happens at which time, for the client and for the
-procedures.
-"""
+"""Answer requests that are scripts: timed events of the client and of procedures."""
 
 from __future__ import annotations
 
@@ -16,17 +14,23 @@ from icdgen.runtime_objects.request_keys import (
     text,
 )
 from tests.conformance.front.program import Facts, Reply, items
-from tests.conformance.front.wire import MOST, Answer, Asking, Request, event, typed
+from tests.conformance.front.wire import (
+    MOST,
+    Answer,
+    LinkProgram,
+    Request,
+    event,
+    typed,
+)
 
 BUSES = ("uart", "i2c", "can")
 MOST_TIMES = 1 << 20
-ABSENT = {
-    "refused": {"code": None, "parameter": None}
-}  # what an event says where nothing is known
+# Values of an event without further information.
+ABSENT = {"refused": {"code": None, "parameter": None}}
 WITHOUT_CODE = {"refused": {"code": None}, "busy": {"code": None}}  # on framed links
 
 
-def client(to: Asking, request: Request) -> Answer:
+def client(to: LinkProgram, request: Request) -> Answer:
     bus, checked, address = (
         _bus(request),
         flag(request, "crc"),
@@ -41,9 +45,8 @@ def client(to: Asking, request: Request) -> Answer:
             for word in (number(row, "at"), *_row(bus, row))
         ]
     except Refusal:
-        to.ask(
-            *start
-        )  # a bus that the ICD does not describe is refused before its script is looked at
+        # A bus that the ICD does not describe is refused before its script is read.
+        to.ask(*start)
         raise
     reply = to.ask(*start, *words)
     return {
@@ -72,12 +75,12 @@ STREAM_SETTINGS = {
 
 
 def _settings(request: Request, limits: dict[str, tuple[int, int]]) -> list[object]:
-    """Those that are given; the others are the link's."""
-    given = request.get("settings", {})
-    if not isinstance(given, dict):
+    """Return the settings of the request. The link defines the remaining ones."""
+    settings = request.get("settings", {})
+    if not isinstance(settings, dict):
         raise Refusal("request", detail="`settings` is no object")
     return [
-        number(given, key, *limit) if key in given else ""
+        number(settings, key, *limit) if key in settings else ""
         for key, limit in limits.items()
     ]
 
@@ -97,37 +100,45 @@ def _row(bus: str, row: Request) -> tuple[object, ...]:
     return ("cancel",) if flag(row, "cancel") else ("tick",)
 
 
-def _received(bus: str, given: object) -> tuple[object, ...]:
+def _received(bus: str, received: object) -> tuple[object, ...]:
     if bus == "can":
-        if not isinstance(given, dict):
+        if not isinstance(received, dict):
             raise Refusal("request", detail="`receive` is no packet")
-        return "packet", number(given, "id", 0, (1 << 29) - 1), octets(given).hex()
+        return (
+            "packet",
+            number(received, "id", 0, (1 << 29) - 1),
+            octets(received).hex(),
+        )
     if bus == "i2c":
-        return ("failed",) if given is None else ("transferred", hex_bytes(given).hex())
-    return "received", hex_bytes(given).hex()
+        return (
+            ("failed",)
+            if received is None
+            else ("transferred", hex_bytes(received).hex())
+        )
+    return "received", hex_bytes(received).hex()
 
 
 def _client_step(
     step: Facts, rows: list[tuple[str, Facts]], framing: list[int] | None
 ) -> Answer:
-    found: Answer = {"deadline": None, **typed(step), "out": [], "events": []}
+    answer: Answer = {"deadline": None, **typed(step), "out": [], "events": []}
     stream = b""
     for kind, row in rows:
         if kind == "stream":
             stream += bytes.fromhex(row["bytes"])
         elif kind in ("frame", "transfer"):
-            found["out"].append(typed(row))
+            answer["out"].append(typed(row))
         elif kind in ("until", "error"):
-            found |= typed(row)
+            answer |= typed(row)
         else:
-            found["events"].append(ABSENT.get(kind, {}) | event(kind, row))
+            answer["events"].append(ABSENT.get(kind, {}) | event(kind, row))
     if framing:
-        found["out"] += _messages(stream, *framing)
-    return found
+        answer["out"] += _messages(stream, *framing)
+    return answer
 
 
 def _messages(stream: bytes, escape: int, end: int) -> Iterator[str]:
-    """The messages of what goes out on a UART, which is nothing else."""
+    """Return the messages sent on a UART, which carries nothing but messages."""
     start, escaped = 0, False
     for at, byte in enumerate(stream):
         if escaped and byte == end:
@@ -138,22 +149,22 @@ def _messages(stream: bytes, escape: int, end: int) -> Iterator[str]:
         yield stream[start:].hex()
 
 
-def stream_client(to: Asking, request: Request) -> Answer:
+def stream_client(to: LinkProgram, request: Request) -> Answer:
     requests = number(request, "requests", 1, 3, 1)
     settings = _settings(request, STREAM_SETTINGS)
     words = [word for row in mappings(request, "script") for word in _stream_row(row)]
     reply = to.ask("stream_client", requests, *settings, *words)
     steps = []
     for _step, rows in _steps(reply):
-        found: Answer = {"deadline": None, "out": [], "events": []}
+        answer: Answer = {"deadline": None, "out": [], "events": []}
         for kind, row in rows:
             if kind == "stream":
-                found["out"].append(row["bytes"])
+                answer["out"].append(row["bytes"])
             elif kind in ("until", "error"):
-                found |= typed(row)
+                answer |= typed(row)
             else:
-                found["events"].append(WITHOUT_CODE.get(kind, {}) | event(kind, row))
-        steps.append(found)
+                answer["events"].append(WITHOUT_CODE.get(kind, {}) | event(kind, row))
+        steps.append(answer)
     return {"steps": steps}
 
 
@@ -186,18 +197,18 @@ def _stream_row(row: Request) -> tuple[object, ...]:
 
 
 def _step_of_procedure(step: Facts) -> Answer:
-    found = {"deadline": None, "result": None, **typed(step)}
-    asked: Answer = {
-        key: found.pop(key)
+    answer = {"deadline": None, "result": None, **typed(step)}
+    request_facts: Answer = {
+        key: answer.pop(key)
         for key in ("telecommand", "telemetry", "bytes", "repeat")
-        if key in found
+        if key in answer
     }
-    if "repeat" in asked:
-        asked["repeat"] = bool(asked["repeat"])
-    return {**found, "request": asked or None}
+    if "repeat" in request_facts:
+        request_facts["repeat"] = bool(request_facts["repeat"])
+    return {**answer, "request": request_facts or None}
 
 
-def procedure(to: Asking, request: Request) -> Answer:
+def procedure(to: LinkProgram, request: Request) -> Answer:
     name, inputs = text(request, "name"), request.get("inputs", {})
     bus = _bus(request) if "bus" in request else BUSES[0]
     block = number(request, "block", 1) if "block" in request else ""
@@ -230,13 +241,13 @@ def procedure(to: Asking, request: Request) -> Answer:
     facts = dict(reply.facts)
     values = items(facts.pop("outputs", ""))
     answer: Answer = {
-        "steps": [_step_of_procedure(step) for step in reply.of("step")],
+        "steps": [_step_of_procedure(step) for step in reply.rows_of("step")],
         **typed(facts),
     }
     if form["receives"]:
-        answer["blocks"] = [typed(row) for row in reply.of("block")]
+        answer["blocks"] = [typed(row) for row in reply.rows_of("block")]
     if form["lists"]:
-        answer["entries"] = [row["bytes"] for row in reply.of("entry")]
+        answer["entries"] = [row["bytes"] for row in reply.rows_of("entry")]
     if form["outputs"]:
         values = values or [""] * len(form["outputs"])
         answer["outputs"] = {
@@ -246,16 +257,16 @@ def procedure(to: Asking, request: Request) -> Answer:
     return answer
 
 
-def _procedure_event(given: object) -> tuple[object, ...]:
-    if given is None:
+def _procedure_event(event: object) -> tuple[object, ...]:
+    if event is None:
         return ("nothing",)
-    if not isinstance(given, dict):
+    if not isinstance(event, dict):
         raise Refusal("request", detail="`event` is no object")
-    name = text(given, "event")
+    name = text(event, "event")
     if name == "done":
-        return name, octets(given).hex()
+        return name, octets(event).hex()
     if name == "arrived":
-        return name, number(given, "id"), octets(given).hex()
+        return name, number(event, "id"), octets(event).hex()
     if name in ("sent", "busy", "refused", "damaged", "timeout"):
         return (name,)
     raise Refusal("request", detail="there is no such event")
@@ -269,17 +280,17 @@ def _bus(request: Request) -> str:
 
 
 def _steps(reply: Reply) -> list[tuple[Facts, list[tuple[str, Facts]]]]:
-    """What each step says, and the rows that follow it."""
-    found: list[tuple[Facts, list[tuple[str, Facts]]]] = []
+    """Return the facts of each step and the rows that follow it."""
+    steps: list[tuple[Facts, list[tuple[str, Facts]]]] = []
     for kind, row in reply.rows:
         if kind == "step":
-            found.append((row, []))
+            steps.append((row, []))
         else:
-            found[-1][1].append((kind, row))
-    return found
+            steps[-1][1].append((kind, row))
+    return steps
 
 
-OPS: dict[str, Callable[[Asking, Request], Answer]] = {
+OPS: dict[str, Callable[[LinkProgram, Request], Answer]] = {
     "client": client,
     "stream_client": stream_client,
     "procedure": procedure,

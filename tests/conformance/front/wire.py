@@ -1,4 +1,4 @@
-"""Requests about how messages travel."""
+"""Answer requests about framing: bytes and packets on each bus."""
 
 from __future__ import annotations
 
@@ -31,21 +31,24 @@ USERS = ("boot_ms", "log_file_type", "index_file_type")
 TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 
 
-class Asking(NamedTuple):
-    """How the program is asked about a link, and what is known of that."""
+class LinkProgram(NamedTuple):
+    """How the program is asked about a link, and the plan of the link."""
 
     ask: Callable[..., Reply]
     link: dict[str, Any]
 
 
 def typed(facts: Facts) -> Answer:
-    """What a row says, as JSON: hex and words as text, the others as numbers, null
-    where a number is missing.
+    """Return a row as JSON: hex and words as text, other values as numbers, null for a
+    missing number.
     """
-    return {
-        key: value if key in TEXTS else int(value) if value else None
-        for key, value in facts.items()
-    }
+    answer: Answer = {}
+    for key, value in facts.items():
+        if key in TEXTS:
+            answer[key] = value
+        else:
+            answer[key] = int(value) if value else None
+    return answer
 
 
 def event(kind: str, facts: Facts) -> Answer:
@@ -56,21 +59,21 @@ def event(kind: str, facts: Facts) -> Answer:
     return answer
 
 
-def checksum(to: Asking, request: Request) -> Answer:
+def checksum(to: LinkProgram, request: Request) -> Answer:
     name = text(request, "name").encode().hex()
     return typed(to.ask("checksum", name, octets(request).hex()).facts)
 
 
-def uart_encode(to: Asking, request: Request) -> Answer:
+def uart_encode(to: LinkProgram, request: Request) -> Answer:
     return typed(to.ask("uart_encode", octets(request).hex()).facts)
 
 
-def uart_decode(to: Asking, request: Request) -> Answer:
+def uart_decode(to: LinkProgram, request: Request) -> Answer:
     reply = to.ask("uart_events", to.link["longest"], octets(request).hex())
-    return {"frames": [row["bytes"] for row in reply.of("message")]}
+    return {"frames": [row["bytes"] for row in reply.rows_of("message")]}
 
 
-def uart_events(to: Asking, request: Request) -> Answer:
+def uart_events(to: LinkProgram, request: Request) -> Answer:
     longest = to.link["longest"]
     limit, chunks = (
         number(request, "limit", 1, longest, longest),
@@ -80,19 +83,20 @@ def uart_events(to: Asking, request: Request) -> Answer:
     return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
 
 
-def can_split(to: Asking, request: Request) -> Answer:
+def can_split(to: LinkProgram, request: Request) -> Answer:
     kind, data = text(request, "kind"), octets(request).hex()
     if kind not in CAN_KINDS:
         raise Refusal("request", detail="there is no such kind")
     ids = [number(request, key, 0, 255) for key in ("id", "source", "destination")]
     return {
         "packets": [
-            typed(row) for row in to.ask("can_split", kind, *ids, data).of("packet")
+            typed(row)
+            for row in to.ask("can_split", kind, *ids, data).rows_of("packet")
         ]
     }
 
 
-def can_join(to: Asking, request: Request) -> Answer:
+def can_join(to: LinkProgram, request: Request) -> Answer:
     address = number(request, "address", 0, 255) if "address" in request else ""
     senders = number(request, "senders", 1, 16, 4)
     end = number(request, "end") if "end" in request else ""
@@ -114,7 +118,7 @@ def can_join(to: Asking, request: Request) -> Answer:
     }
 
 
-def i2c_request(to: Asking, request: Request) -> Answer:
+def i2c_request(to: LinkProgram, request: Request) -> Answer:
     kind, id, checked = (
         text(request, "kind"),
         number(request, "id", 0, 255),
@@ -133,7 +137,7 @@ def i2c_request(to: Asking, request: Request) -> Answer:
     }
 
 
-def i2c_reply(to: Asking, request: Request) -> Answer:
+def i2c_reply(to: LinkProgram, request: Request) -> Answer:
     id, data, checked = (
         number(request, "id", 0, 255),
         octets(request),
@@ -142,8 +146,10 @@ def i2c_reply(to: Asking, request: Request) -> Answer:
     return typed(to.ask("i2c_reply", id, int(checked), data.hex()).facts)
 
 
-def log_decode(to: Asking, request: Request) -> Answer:
-    """Whole, byte by byte and in pieces of seven bytes it must be the same."""
+def log_decode(to: LinkProgram, request: Request) -> Answer:
+    """Decode a log at once, byte by byte and in chunks of seven bytes. All three
+    results must be equal.
+    """
     data = octets(request)
     replies = [
         to.ask(
@@ -164,7 +170,7 @@ def log_decode(to: Asking, request: Request) -> Answer:
     return {"mask": None, **typed(reply.facts), "entries": entries}
 
 
-def log_encode(to: Asking, request: Request) -> Answer:
+def log_encode(to: LinkProgram, request: Request) -> Answer:
     words: list[object] = []
     for entry in mappings(request, "entries"):
         frames = _hex_rows(entry, "frames")
@@ -177,12 +183,15 @@ def log_encode(to: Asking, request: Request) -> Answer:
     return _joined(to.ask("log_encode", octets(request, "mask").hex(), *words))
 
 
-def log_message_decode(to: Asking, request: Request) -> Answer:
+def log_message_decode(to: LinkProgram, request: Request) -> Answer:
     reply = to.ask("log_message_decode", octets(request).hex())
-    return {**typed(reply.facts), "frames": [typed(row) for row in reply.of("frame")]}
+    return {
+        **typed(reply.facts),
+        "frames": [typed(row) for row in reply.rows_of("frame")],
+    }
 
 
-def log_message_encode(to: Asking, request: Request) -> Answer:
+def log_message_encode(to: LinkProgram, request: Request) -> Answer:
     frames = _hex_rows(request, "frames")
     return typed(
         to.ask(
@@ -191,7 +200,7 @@ def log_message_encode(to: Asking, request: Request) -> Answer:
     )
 
 
-def dos_time(to: Asking, request: Request) -> Answer:
+def dos_time(to: LinkProgram, request: Request) -> Answer:
     if "value" in request:
         facts = typed(to.ask("dos_time_unpack", number(request, "value")).facts)
         return {**facts, "valid": bool(facts["valid"])}
@@ -200,29 +209,32 @@ def dos_time(to: Asking, request: Request) -> Answer:
     )
 
 
-def index_decode(to: Asking, request: Request) -> Answer:
+def index_decode(to: LinkProgram, request: Request) -> Answer:
     reply = to.ask("index_decode", octets(request).hex())
-    return {**typed(reply.facts), "entries": [typed(row) for row in reply.of("entry")]}
+    return {
+        **typed(reply.facts),
+        "entries": [typed(row) for row in reply.rows_of("entry")],
+    }
 
 
-def index_encode(to: Asking, request: Request) -> Answer:
+def index_encode(to: LinkProgram, request: Request) -> Answer:
     words: list[object] = []
     for row in mappings(request, "entries"):
         words += (*(number(row, key) for key in ENTRY), octets(row, "meta").hex())
     return _joined(to.ask("index_encode", *words))
 
 
-def identify(to: Asking, request: Request) -> Answer:
+def identify(to: LinkProgram, request: Request) -> Answer:
     facts = typed(to.ask("identify", octets(request).hex()).facts)
     return {**facts, "matches": bool(facts["matches"])}
 
 
-def link_data(to: Asking, request: Request) -> Answer:
-    known = typed(to.ask("link_data").facts)
-    return {key: known.get(key) for key in USERS}
+def link_data(to: LinkProgram, request: Request) -> Answer:
+    facts = typed(to.ask("link_data").facts)
+    return {key: facts.get(key) for key in USERS}
 
 
-def stream_encode(to: Asking, request: Request) -> Answer:
+def stream_encode(to: LinkProgram, request: Request) -> Answer:
     # 2: the packet that requests telemetry of the id
     is_request = request.get("direction") == "request"
     direction = len(DIRECTIONS) if is_request else _direction(request)
@@ -230,14 +242,16 @@ def stream_encode(to: Asking, request: Request) -> Answer:
     return typed(to.ask("stream_encode", direction, id, data, *chosen).facts)
 
 
-def stream_encode_packet(to: Asking, request: Request) -> Answer:
+def stream_encode_packet(to: LinkProgram, request: Request) -> Answer:
     packet, id = number(request, "packet"), number(request, "id")
     words = (_direction(request), packet, id, *_chosen(request))
     return typed(to.ask("stream_encode_packet", *words).facts)
 
 
 def _chosen(request: Request) -> list[object]:
-    """Return the values of the fields that the sender chooses, in the order of the roles."""
+    """Return the values of the fields that the sender chooses, in the order of the
+    roles.
+    """
     values = request.get("values", {})
     if not isinstance(values, dict) or not set(values) <= set(GIVEN):
         raise Refusal(
@@ -247,7 +261,7 @@ def _chosen(request: Request) -> list[object]:
     return [number(values, role) if role in values else "" for role in GIVEN]
 
 
-def stream_events(to: Asking, request: Request) -> Answer:
+def stream_events(to: LinkProgram, request: Request) -> Answer:
     direction, longest = _direction(request), to.link["longest"]
     limit, chunks = (
         number(request, "limit", to.link["around"], longest, longest),
@@ -259,7 +273,7 @@ def stream_events(to: Asking, request: Request) -> Answer:
     return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
 
 
-def stream_respond(to: Asking, request: Request) -> Answer:
+def stream_respond(to: LinkProgram, request: Request) -> Answer:
     verdict = text(request, "verdict")
     if verdict not in VERDICTS:
         raise Refusal("request", detail="there is no such verdict")
@@ -273,11 +287,11 @@ def stream_respond(to: Asking, request: Request) -> Answer:
             raise Refusal("range")
     words = (int("reason" in request), reason, data, *chosen, *chunks)
     reply = to.ask("stream_respond", VERDICTS.index(verdict), *words)
-    return {"responses": [typed(row) for row in reply.of("response")]}
+    return {"responses": [typed(row) for row in reply.rows_of("response")]}
 
 
 def _direction(request: Request) -> int:
-    """Its number for the program."""
+    """Return the program's number of a direction."""
     direction = text(request, "direction")
     if direction not in DIRECTIONS:
         raise Refusal("request", detail="there is no such direction")
@@ -285,7 +299,7 @@ def _direction(request: Request) -> int:
 
 
 def _joined(reply: Reply) -> Answer:
-    """Bytes that may come in pieces."""
+    """Return bytes that may arrive in chunks."""
     return {"bytes": "".join(items(reply.facts["bytes"]))}
 
 
@@ -293,7 +307,7 @@ def _hex_rows(request: Request, key: str) -> list[str]:
     return [hex_bytes(row).hex() for row in rows(request, key)]
 
 
-OPS: dict[str, Callable[[Asking, Request], Answer]] = {
+OPS: dict[str, Callable[[LinkProgram, Request], Answer]] = {
     op.__name__: op
     for op in (
         checksum, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,

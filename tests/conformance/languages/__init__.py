@@ -1,9 +1,8 @@
-"""The languages that the conformance run drives: one module each, which offers
-``LANGUAGES``.
+"""The languages of the conformance run.
 
-A further language brings a module here and a testee in ``testees/``; nothing else is
-touched. One of another package brings an entry point of the group
-``icdgen.conformance`` that leads to such a list.
+Each module offers ``LANGUAGES``. To add a language, add a module here and a testee in
+``testees/``; nothing else changes. Other packages register an entry point of the group
+``icdgen.conformance`` that refers to such a list.
 """
 
 from __future__ import annotations
@@ -25,11 +24,9 @@ TESTEE, SELFTEST, REFERENCE = "testee", "selftest", "reference"
 
 @dataclass(frozen=True)
 class Language:
-    """How to get at one language's code.
-
-    ``build`` is given the folder that holds one folder of generated files for each
-    backend and an empty folder to work in; it returns the command line that starts the
-    testee (or the self-test).
+    """How to build one language's code. ``build`` gets the folder with one folder of
+    generated files per backend, and an empty folder to work in. It returns the command
+    line that starts the testee or self-test.
     """
 
     name: str
@@ -44,16 +41,16 @@ class Language:
     front: bool = True
 
     def missing(self) -> list[str]:
-        """The programs that are not there, or are a version manager's word that they
-        are not.
+        """Return the required programs that are not installed. A stub of a version
+        manager counts as not installed.
         """
         return [tool.split()[0] for tool in self.tools if version(tool) is None]
 
 
 @cache
 def version(tool: str) -> str | None:
-    """Where the tool lies and what it says of its version; None if it is not there or
-    does not work.
+    """Return the path of a tool and its version, or ``None`` if it is missing or does
+    not work.
     """
     program, *words = tool.split()
     path = shutil.which(program)
@@ -66,14 +63,14 @@ def version(tool: str) -> str | None:
 
 
 def all_languages() -> dict[str, Language]:
-    """Every language by name, in the order of their modules, then those of other
-    packages.
+    """Return every language by name: first in the order of their modules, then those of
+    other packages.
     """
-    found: dict[str, Language] = {}
+    languages: dict[str, Language] = {}
     for info in sorted(iter_modules(__path__), key=lambda i: i.name):
         for language in import_module(f"{__name__}.{info.name}").LANGUAGES:
-            found[language.name] = language
+            languages[language.name] = language
     for point in entry_points(group=GROUP):
         for language in point.load():
-            found.setdefault(language.name, language)
-    return found
+            languages.setdefault(language.name, language)
+    return languages

@@ -19,17 +19,17 @@ def build(
     flags: tuple[str, ...] = (),
     start: tuple[str, ...] = (),
 ) -> list[str]:
-    """Compiles the testee as one translation unit a node; with many small nodes as one
-    altogether.
+    """Compile the testee with one translation unit per node, or a single one if there
+    are many small nodes.
     """
     testee = source / "c-testee"
     files = sorted(testee.rglob("*.c"))
     if len(files) > 20:
-        whole = out / "testee_all.c"
-        whole.write_text(
+        unit = out / "testee_all.c"
+        unit.write_text(
             "".join(f'#include "{file.relative_to(testee)}"\n' for file in files)
         )
-        files = [whole]
+        files = [unit]
     program = out / "testee"
     execute(
         compiler,

@@ -1,4 +1,6 @@
-"""The C self-test: here, and on Cortex-M under QEMU, with floating point and without."""
+"""The C self-test: on this machine, and on Cortex-M under QEMU with and without
+floating point.
+"""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from tests.conformance.languages import Language
 
 
 def build(source: Path, out: Path) -> list[str]:
-    """Nothing is built: Node runs the source."""
+    """Return the command line. Node runs the source without a build."""
     return ["node", str(source / "js-testee" / "testee.js")]
 
 

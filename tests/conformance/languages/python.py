@@ -1,5 +1,5 @@
-"""Python: with the interpreter that runs the tests, and with the oldest that is
-supported, where it is there.
+"""Python: with the interpreter that runs the tests, and with the oldest supported one
+if it is installed.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ BACKENDS = ("python", "python-testee")
 
 
 def build(source: Path, out: Path, interpreter: str) -> list[str]:
-    """Nothing is built: the package is run from its source, with the testee laid over
-    it.
+    """Return the command line. The package runs from its source, with the testee copied
+    into it.
     """
     shutil.copytree(source / "python-testee", source / "python", dirs_exist_ok=True)
     package = next((source / "python").glob("*/_testee.py")).parent

@@ -1,6 +1,4 @@
-"""The reference codec itself behind the protocol: shows that the run and the vectors
-agree with it.
-"""
+"""The reference codec as a language: shows that the run and the vectors agree with it."""
 
 from __future__ import annotations
 
@@ -8,7 +6,7 @@ from tests.conformance.languages import REFERENCE, Language
 
 
 def build(source, out) -> list[str]:
-    """Nothing is built: the run answers by itself."""
+    """Return no command line, because the run answers in its own process."""
     return []
 
 

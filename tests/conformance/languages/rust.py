@@ -1,6 +1,4 @@
-"""Rust: optimised, and with the checks of a debug build, where an overflow of integers
-is a panic.
-"""
+"""Rust: optimised, and with debug checks, where an integer overflow panics."""
 
 from __future__ import annotations
 
@@ -15,11 +13,12 @@ QUICK = (("PANIC", "abort"), ("CODEGEN_UNITS", "2"))
 
 
 def build(source: Path, out: Path, profile: str) -> list[str]:
-    """Builds the testee, a package beside the crate.
+    """Build the testee, a package next to the crate.
 
-    Nothing but the crate is compiled, but cargo wants to know the versions of what is
-    optional, so the network may be needed once. A panic ends the testee either way;
-    without code to unwind, in fewer units, it is compiled in three quarters of the time.
+    Only the crate is compiled, but cargo resolves the versions of optional
+    dependencies, so the first build may need the network. A panic ends the testee in
+    any case. Without unwinding and with fewer codegen units the build takes three
+    quarters of the time.
     """
     quick = {f"CARGO_PROFILE_{profile.upper()}_{key}": value for key, value in QUICK}
     manifest = source / "rust-testee" / "Cargo.toml"

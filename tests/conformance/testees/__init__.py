@@ -1,8 +1,7 @@
 """The testees: programs that answer requests about the generated code of a language,
 one backend each.
 
-They are registered as backends of any other package are; nothing of them is part of
-icdgen.
+They are registered like backends of another package. They are not part of icdgen.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The C testee: tables that lead to the generated code of every message and field."""
+"""The C testee: tables that refer to the generated code of every message and field."""
 
 from __future__ import annotations
 
@@ -28,28 +28,30 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
+# The other files need a protocol.
 MESSAGES = frozenset(
     {"testee.h", "testee_line.h", "testee_line.c", "testee_messages.c"}
-)  # the others need a protocol
+)
 TYPES = {"bool": "TESTEE_BOOL", "bytes": "TESTEE_BYTES", "text": "TESTEE_BYTES"}
 
 
 class Limit(NamedTuple):
-    """A limit of a field: its kind, and the macro."""
+    """A limit of a field: its kind and its macro."""
 
     key: str
     name: str
 
 
 class FieldRow(NamedTuple):
-    """An entry of a message's table of fields. What a field does not have is empty."""
+    """An entry of a message's table of fields. Properties that a field does not have
+    are empty.
+    """
 
     type: str
     name: str  # in the names of functions
     member: str
-    holder: (
-        str  # where its message, or the struct in which it stands, is in the message
-    )
+    # The offset of the message, or of the struct with the field.
+    holder: str
     element: str  # the index of an element of an array, and a comma
     size: int
     name_of: str
@@ -57,7 +59,7 @@ class FieldRow(NamedTuple):
     set: str
     get_text: str
     set_text: str
-    has: str  # the function that tells whether it is there
+    has: str  # the function that returns whether the field is present
     view: str  # the function; its type is ``c_type``
     c_type: str
     special: list[str]
@@ -77,7 +79,7 @@ class MessageRow(NamedTuple):
 
 
 class EnumRow(NamedTuple):
-    """An enumeration; ``outside`` holds of a value that its type does not."""
+    """An enumeration. ``outside`` is the test for values outside its type."""
 
     name: str
     is_signed: bool
@@ -85,10 +87,10 @@ class EnumRow(NamedTuple):
 
 
 class Route(NamedTuple):
-    """An id that leads to a message."""
+    """The message that an id selects."""
 
     id: str
-    which: str  # message of the direction it is, where messages share ids
+    which: str  # enumerator of the message, if messages share the id
     stem: str
 
 
@@ -103,7 +105,7 @@ class Dispatcher(NamedTuple):
 
 
 class ProcedureRow(NamedTuple):
-    """A procedure of a node, and how its typed function is called."""
+    """A procedure of a node and the call of its typed function."""
 
     place: int
     form: str
@@ -122,7 +124,7 @@ class CTesteeBackend:
     runtime = RUNTIME / name
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Files that are the same for every ICD, the list of nodes, and one file a
+        """Return the files common to all ICDs, the list of nodes, and one file per
         node.
         """
         description = describe(icd)
@@ -133,7 +135,9 @@ class CTesteeBackend:
     def _files(
         self, description: Description, render: Renderer
     ) -> Iterator[tuple[PurePosixPath, str]]:
-        """The files with the names of the plan, of which the C backend shortens some."""
+        """Return the files with the names of the plan, some of which the C backend
+        shortens.
+        """
         linked = {
             place: node.name
             for place, node in enumerate(description.nodes)
@@ -180,7 +184,9 @@ class CTesteeBackend:
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None of its own: all are made from those of the ``c`` backend."""
+        """Return no identifiers, because all names derive from those of the ``c``
+        backend.
+        """
         return iter(())
 
 
@@ -212,7 +218,7 @@ def _procedure(place: int, code: ProcedureCode) -> ProcedureRow:
 
 
 class _Rows:
-    """The finished values of one node's file."""
+    """The values for the template of one node's file."""
 
     def __init__(self, node: NodeDescription) -> None:
         self.node = node
@@ -239,11 +245,15 @@ class _Rows:
             "id_type": f"uint{node.id_bits}_t",
             "messages": [self.message(message) for message in node.messages],
             "included": [
-                names.stem(one) for one in node.all_messages if one not in node.messages
+                names.stem(message)
+                for message in node.all_messages
+                if message not in node.messages
             ],
             "enums": [_enum(enum) for enum in dict.fromkeys(node.enums) | used],
             "own_enums": [_enum(enum) for enum in node.enums],
-            "dispatchers": [one for one in dispatchers if one.routes],
+            "dispatchers": [
+                dispatcher for dispatcher in dispatchers if dispatcher.routes
+            ],
             "node_type": (
                 f"{upper}_NODE_TYPE" if node.model.node_type is not None else -1
             ),
@@ -263,13 +273,13 @@ class _Rows:
         )
         routes = [
             Route(
-                names.constant(one, id),
-                names.enumerator_of(name, one) if is_shared else "0u",
-                names.stem(one),
+                names.constant(message, id),
+                names.enumerator_of(name, message) if is_shared else "0u",
+                names.stem(message),
             )
-            for one, id in messages
+            for message, id in messages
         ]
-        is_open = any(one.last_part is not None for one, _ in messages)
+        is_open = any(message.last_part is not None for message, _ in messages)
         return Dispatcher(direction, name, is_shared, routes, is_open)
 
     def message(self, message: MessageDescription) -> MessageRow:
@@ -285,12 +295,12 @@ class _Rows:
             ],
         )
 
-    def field(self, one: FieldDescription) -> FieldRow:
-        owner = one.declaration.message
-        field, stem = one.model, names.stem(owner)
+    def field(self, described: FieldDescription) -> FieldRow:
+        owner = described.declaration.message
+        field, stem = described.model, names.stem(owner)
         macros = [
             (constant.key, names.constant(owner, constant.name))
-            for constant in one.constants
+            for constant in described.constants
         ]
         return FieldRow(
             type=(
@@ -298,27 +308,31 @@ class _Rows:
                 if field.is_signed
                 else TYPES.get(field.type, "TESTEE_UNSIGNED")
             ),
-            name=one.name,
-            member=one.member,
-            holder=one.holder,
+            name=described.name,
+            member=described.member,
+            holder=described.holder,
             element=f"{field.index}u, " if field.index is not None else "",
-            size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
+            size=field.bits // 8 if field.is_bytes else described.storage.bits // 8,
             name_of=(
-                f"{self.node.name}_{names.stem(one.enum)}_testee_name"
-                if one.enum is not None
+                f"{self.node.name}_{names.stem(described.enum)}_testee_name"
+                if described.enum is not None
                 else ""
             ),
-            get=f"{stem}_{one.physical_name}" if one.is_scaled else "",
+            get=f"{stem}_{described.physical_name}" if described.is_scaled else "",
             set=(
-                f"{stem}_set_{one.physical_name}"
-                if one.is_scaled and one.is_settable
+                f"{stem}_set_{described.physical_name}"
+                if described.is_scaled and described.is_settable
                 else ""
             ),
-            get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
-            set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
-            has=names.has(one.message, one.name) if field.conditions else "",
-            view=f"{stem}_{one.name}" if field.is_read_only else "",
-            c_type=type_of(one) if field.is_read_only else "",
+            get_text=f"{stem}_{described.physical_name}" if described.is_text else "",
+            set_text=f"{stem}_set_{described.physical_name}"
+            if described.is_text
+            else "",
+            has=names.has(described.message, described.name)
+            if field.conditions
+            else "",
+            view=f"{stem}_{described.name}" if field.is_read_only else "",
+            c_type=type_of(described) if field.is_read_only else "",
             special=[name for key, name in macros if key == "special"],
             float_bits=field.bits if field.type == "float" else 0,
             limits=[

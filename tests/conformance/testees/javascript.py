@@ -1,6 +1,8 @@
-"""The JavaScript testee: a program for Node that is asked about the codec of the site.
+"""The JavaScript testee: a Node program that answers requests about the codec of the
+site.
 
-The codec is the very file that the pages load, and the plans are those that they hold.
+The codec is the file that the pages load, and the plans are those that the pages
+contain.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from tests.conformance.testees import RUNTIME, TEMPLATES
 
 
 class JsTesteeBackend:
-    """A program for Node, and the plans of the pages."""
+    """A Node program and the plans of the pages."""
 
     name = "js-testee"
     reserved: frozenset[str] = frozenset()
@@ -27,7 +29,7 @@ class JsTesteeBackend:
     runtime = RUNTIME / name
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
-        """``testee.js`` and what it needs."""
+        """Return ``testee.js`` and the files that it needs."""
         for name in ("codec.js", "frames.js"):
             yield PurePosixPath(name), Renderer("html")(name)
         yield PurePosixPath("testee.js"), render("testee.js")
@@ -37,18 +39,21 @@ class JsTesteeBackend:
         )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None: JSON strings may hold any name."""
+        """Return no identifiers, because JSON strings can contain any name."""
         return iter(())
 
 
 def _plans(icd: Icd) -> dict[str, object]:
-    """The plans of all messages, and for each node its enumerations and the messages by
-    id, of telecommands and of telemetry.
+    """Return the plans of all messages, and per node its enumerations and messages by
+    id and direction.
     """
-    places = {(one.node, one.name): place for place, one in enumerate(_messages(icd))}
+    places = {
+        (message.node, message.name): place
+        for place, message in enumerate(_messages(icd))
+    }
     nodes = []
     for node in icd.nodes:
-        known = ids_of(icd, node)
+        ids = ids_of(icd, node)
         nodes.append(
             {
                 "facts": {
@@ -57,8 +62,8 @@ def _plans(icd: Icd) -> dict[str, object]:
                 },
                 "enums": [enum_plan(enum) for enum in node.enums],
                 "ways": [
-                    message_numbers(known.telecommand, places),
-                    message_numbers(known.telemetry, places),
+                    message_numbers(ids.telecommand, places),
+                    message_numbers(ids.telemetry, places),
                 ],
             }
         )

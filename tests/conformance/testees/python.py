@@ -1,5 +1,5 @@
-"""The Python testee: modules that lie within the generated package, to answer questions
-about it.
+"""The Python testee: modules inside the generated package that answer requests about
+it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tests.conformance.testees import RUNTIME, TEMPLATES
 
 
 class PythonTesteeBackend:
-    """``PACKAGE._testee``, to be laid over the generated package."""
+    """``PACKAGE._testee``, copied into the generated package."""
 
     name = "python-testee"
     reserved: frozenset[str] = frozenset()
@@ -25,7 +25,7 @@ class PythonTesteeBackend:
         self.package = package
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """The modules, and the order of the nodes."""
+        """Return the modules and the order of the nodes."""
         root = PurePosixPath(self.package)
         for name in render.runtime_files():
             yield root / name, render.source(name)
@@ -36,5 +36,5 @@ class PythonTesteeBackend:
         )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None that could clash: names of nodes do not begin with `_`."""
+        """Return no identifiers, because names of nodes do not start with `_`."""
         return iter(())

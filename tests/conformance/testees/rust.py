@@ -1,8 +1,8 @@
-"""The Rust testee: a program that answers the requests of the conformance run about the
+"""The Rust testee: a program that answers requests of the conformance run about the
 generated crate.
 
-It is a package of its own, so that the crate stays free of it; the crate must lie
-beside it in a folder called ``rust``.
+It is a separate package, so that the crate contains no test code. The crate must be
+next to it in a folder called ``rust``.
 """
 
 from __future__ import annotations
@@ -28,31 +28,32 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
+# The files that answer requests about the protocol.
 WIRE = (
     "logs",
     "procedures",
     "scripts",
     "stream",
     "wire",
-)  # what answers requests about the protocol
+)
 
 
-class Route(NamedTuple):
-    """Where an id is said, and the type of the message that it leads to."""
+class RouteEntry(NamedTuple):
+    """An id, and the type of the message that it selects."""
 
     id: str
     type: str
 
 
 class EnumEntry(NamedTuple):
-    """Type and integer of an enumeration."""
+    """Type and integer type of an enumeration."""
 
     type: str
     raw: str
 
 
 class FieldEntry(NamedTuple):
-    """What the table of fields says."""
+    """An entry of the table of fields."""
 
     value: str
     scale: str
@@ -62,14 +63,14 @@ class FieldEntry(NamedTuple):
 
 
 class MessageEntry(NamedTuple):
-    """A message of the node's own."""
+    """A message that the node declares."""
 
     type: str
     ids: str
     fields: list[FieldEntry]
 
 
-class Dispatcher(NamedTuple):
+class DispatcherEntry(NamedTuple):
     """A sum type of the node."""
 
     function: str
@@ -78,7 +79,7 @@ class Dispatcher(NamedTuple):
 
 
 class NodeEntry:
-    """What the testee's template of a node is given."""
+    """The values for the testee's template of a node."""
 
     def __init__(self, crate: str, node: NodeDescription, id_bits: int) -> None:
         self.name, self.crate = node.name, crate
@@ -97,7 +98,7 @@ class NodeEntry:
             for enum in node.enums
         ]
         self.sums = [
-            Dispatcher(way, way.capitalize(), f"u{id_bits}")
+            DispatcherEntry(way, way.capitalize(), f"u{id_bits}")
             for way, routes in ways.items()
             if routes
         ]
@@ -120,9 +121,9 @@ class NodeEntry:
     def _path(self, message: MessageDescription) -> str:
         return f"{self.crate}::{message.node.name}::{message.camel_name}"
 
-    def _route(self, message: MessageDescription, id: str) -> Route:
+    def _route(self, message: MessageDescription, id: str) -> RouteEntry:
         path = self._path(message)
-        return Route(f"{path}::{id.upper()}", path)
+        return RouteEntry(f"{path}::{id.upper()}", path)
 
     def _message(self, message: MessageDescription) -> MessageEntry:
         ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
@@ -137,9 +138,9 @@ def _field(field: FieldDescription) -> FieldEntry:
     scale, text, special, limits = "None", "None", "Vec::new", "Vec::new"
     within = f"m.{names.raw_words(field.holder)}" if field.holder else "m"
     if field.is_text:
-        which = "" if field.model.index is None else f"{field.model.index}"
-        get = f"|m| {within}.{field.physical_name}({which})"
-        set = f"|m, text| {within}.set_{field.physical_name}({f'{which}, ' if which else ''}text)"
+        argument = "" if field.model.index is None else f"{field.model.index}"
+        get = f"|m| {within}.{field.physical_name}({argument})"
+        set = f"|m, text| {within}.set_{field.physical_name}({f'{argument}, ' if argument else ''}text)"
         text = f"Some(Text {{ get: {get}, set: {set} }})"
     if field.is_scaled:
         get, set = (
@@ -164,17 +165,17 @@ def _field(field: FieldDescription) -> FieldEntry:
         if owner is field.message
         else f"{CRATE}::{owner.node.name}::{owner.camel_name}"
     )
-    known = [
-        (one.key, f"{type}::{one.name.upper()}")
-        for one in field.constants
-        if one.key != "const"
+    constants = [
+        (constant.key, f"{type}::{constant.name.upper()}")
+        for constant in field.constants
+        if constant.key != "const"
     ]
     if field.model.special:
         bits = ".to_bits()" if field.model.type == "float" else ""
-        special = f"|| vec![{', '.join(f'i128::from({name}{bits})' for key, name in known if key == 'special')}]"
+        special = f"|| vec![{', '.join(f'i128::from({name}{bits})' for key, name in constants if key == 'special')}]"
     if field.bounds:
         values = ", ".join(
-            f'("{key}", {name} as f64)' for key, name in known if key != "special"
+            f'("{key}", {name} as f64)' for key, name in constants if key != "special"
         )
         limits = f"|| vec![{values}]"
     name = field_name(field)
@@ -187,7 +188,7 @@ def _field(field: FieldDescription) -> FieldEntry:
 
 
 class RustTesteeBackend:
-    """A package of one program, beside the crate."""
+    """A package with one program, next to the crate."""
 
     name = "rust-testee"
     reserved: frozenset[str] = frozenset()
@@ -195,29 +196,29 @@ class RustTesteeBackend:
     runtime = RUNTIME / name
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """A package with one binary, ``testee``."""
+        """Return a package with the binary ``testee``."""
         common = {"origin": origin(), "version": __version__, "crate": CRATE}
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        known = links_of(description)
+        links = links_of(description)
         yield (
             PurePosixPath("src/main.rs"),
-            render("main.rs.j2", wired=bool(known), **common),
+            render("main.rs.j2", wired=bool(links), **common),
         )
         for file in render.runtime_files():
-            if known or PurePosixPath(file).stem not in WIRE:
+            if links or PurePosixPath(file).stem not in WIRE:
                 yield PurePosixPath(file), render.source(file)
         yield (
             PurePosixPath("src/nodes/mod.rs"),
             render(
                 "nodes.rs.j2",
                 nodes=icd.nodes,
-                wired=bool(known),
-                links=list(known),
+                wired=bool(links),
+                links=list(links),
                 with_procedures=[
-                    name for name, link in known.items() if link.facts.procedures
+                    name for name, link in links.items() if link.facts.procedures
                 ],
-                longest=max(map(longest_buffer, known.values()), default=0),
+                longest=max(map(longest_buffer, links.values()), default=0),
                 **common,
             ),
         )
@@ -229,5 +230,5 @@ class RustTesteeBackend:
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None of its own: it only uses the crate's names."""
+        """Return no identifiers, because the testee only uses names of the crate."""
         return iter(())

@@ -1,8 +1,8 @@
-"""Answers what the conformance run asks about the messages: a line of words in, one out.
+"""Answer requests of the conformance run about messages: one line of words in, one line
+out.
 
-    python -m PACKAGE._testee
-
-The words are described with icdgen's conformance tests.
+Run ``python -m PACKAGE._testee``. The README of icdgen's conformance tests describes
+the words.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _LIMITS = {"min": "minimum", "max": "maximum", "above": "above", "below": "below
 
 
 def answer(line: str) -> str:
-    """The answer to a request."""
+    """Return the answer to a request."""
     words = iter(line.split(" "))
     name = next(words)
     operation = _OPERATIONS.get(name)
@@ -45,7 +45,7 @@ def answer(line: str) -> str:
 
 
 def main() -> None:
-    """Answers every line of standard input."""
+    """Answer every line of standard input."""
     for line in sys.stdin:
         sys.stdout.write(answer(line.rstrip("\n")) + "\n")
         sys.stdout.flush()
@@ -62,7 +62,7 @@ def _message(node: Any, words: Words) -> type[Message]:
         return messages[int(id)]  # type: ignore[no-any-return]
     wanted = bytes.fromhex(name).decode()
     sharing: tuple[type[Message], ...] = messages.of(int(id))
-    return next(one for one in sharing if wanted == one.NAME)
+    return next(message_class for message_class in sharing if wanted == message_class.NAME)
 
 
 def _decode(node: Any, words: Words) -> str:
@@ -75,12 +75,13 @@ def _decode(node: Any, words: Words) -> str:
 
 @cache
 def _names(message: type[Message]) -> dict[str, str]:
-    """Attribute -> name of each field, of elements and of what stands in structs too."""
+    """Return attribute -> name of each field, including elements and fields of structs.
+    """
     return {
-        one.attribute: one.name
+        field_info.attribute: field_info.name
         for info in message.FIELDS
         for line in (info, *info.lines)
-        for one in (line, *line.parts)
+        for field_info in (line, *line.parts)
     }
 
 
@@ -88,9 +89,9 @@ def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
     try:
         count = ""
-        for held in _held(message, is_made=True):
-            if held.info.attribute:
-                _set(held, words)
+        for owned in _owned_fields(message, is_made=True):
+            if owned.info.attribute:
+                _set(owned, words)
             else:
                 count = next(words)
         if message.TAIL is not None:
@@ -101,11 +102,11 @@ def _encode(node: Any, words: Words) -> str:
         raise Refusal(f"range field={_hex(name)}") from None
 
 
-def _set(held: Held, words: Words) -> None:
-    """Sets a field, or an array, as it is given: by its raw or its physical value."""
-    info, owner = held.info, held.owner
+def _set(owned: OwnedField, words: Words) -> None:
+    """Set a field or an array by its raw or its physical value."""
+    info, owner = owned.info, owned.owner
     if info.elements:
-        _set_elements(held, words)
+        _set_elements(owned, words)
         return
     word = next(words)
     try:
@@ -114,81 +115,86 @@ def _set(held: Held, words: Words) -> None:
         elif word[0] == "p":
             setattr(owner, info.physical, _physical(info, word[1:]))
         elif info.is_open and len(word) != 1 + info.bits // 4:
-            raise Refusal(f"range field={_hex(held.name)}")
+            raise Refusal(f"range field={_hex(owned.name)}")
         else:
             setattr(owner, info.attribute, _raw(info, word[1:]))
     except RangeError:
-        raise Refusal(f"range field={_hex(held.name)}") from None
+        raise Refusal(f"range field={_hex(owned.name)}") from None
 
 
-def _set_elements(held: Held, words: Words) -> None:
-    """Sets an array, each element as it is given: by its raw or its physical value."""
+def _set_elements(owned: OwnedField, words: Words) -> None:
+    """Set each element of an array by its raw or its physical value."""
     raw: list[Any] = []
-    info, owner = held.info, held.owner
+    info, owner = owned.info, owned.owner
     for index, word in zip(range(info.elements), words):
         if word[0] == "p":
-            given = (_physical(info, word[1:]),) * info.elements
+            values = (_physical(info, word[1:]),) * info.elements
             try:
-                setattr(owner, info.physical, given)
+                setattr(owner, info.physical, values)
             except RangeError:
-                raise Refusal(f"range field={_hex(f'{held.name}[{index}]')}") from None
+                raise Refusal(f"range field={_hex(f'{owned.name}[{index}]')}") from None
             raw.append(getattr(owner, info.attribute)[index])
         else:
             raw.append(_raw(info, word[1:]))
     setattr(owner, info.attribute, tuple(raw))
 
 
-class Held(NamedTuple):
-    """A field, and what has it: a message, or a struct in one. ``name`` is the whole one."""
+class OwnedField(NamedTuple):
+    """A field and its owner: a message, or a struct in a message. ``name`` is the full
+    name.
+    """
 
     owner: Any
     info: FieldInfo
     name: str
 
 
-def _held(owner: Any, head: str = "", is_made: bool = False) -> Iterator[Held]:
-    """The fields of a message, those of structs and a count without a field among them;
-    what an open end lacks reads as 0, and where it is made, is made.
+def _owned_fields(owner: Any, head: str = "", is_made: bool = False) -> Iterator[OwnedField]:
+    """Yield the fields of a message, including those of structs and counters without a
+    field.
+
+    Missing elements of a variable-length array read as 0, and with ``is_made`` are
+    created.
     """
     for info in owner.FIELDS:
         name = f"{head}{info.name}"
         if info.struct is None:
-            yield Held(owner, info, name)
+            yield OwnedField(owner, info, name)
         else:
-            yield from _held_in(owner, info, name, is_made)
+            yield from _owned_fields_of_struct(owner, info, name, is_made)
         if info.is_open and not owner.TAIL.counter:
             count = _implied(owner)
-            yield Held(owner, count, count.name)
+            yield OwnedField(owner, count, count.name)
 
 
-def _held_in(owner: Any, info: FieldInfo, name: str, is_made: bool) -> Iterator[Held]:
-    """The fields of a struct, or of each in an array."""
+def _owned_fields_of_struct(owner: Any, info: FieldInfo, name: str, is_made: bool) -> Iterator[OwnedField]:
+    """Yield the fields of a struct, or of each struct in an array."""
     value = getattr(owner, info.attribute)
     if info.is_open:
-        value += _rest(owner)[len(value) :]
+        value += _full_tail(owner)[len(value) :]
     if info.is_open and is_made:
         setattr(owner, info.attribute, value)
     for index in range(info.elements or 1):
-        one = value[index] if info.elements else value
-        yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
+        element = value[index] if info.elements else value
+        yield from _owned_fields(element, f"{name}[{index}]." if info.elements else f"{name}.")
 
 
 @cache
 def _decoder(kind: type[Message]) -> Any:
-    """The one of frames with all elements."""
+    """Return the decoder of frames with all elements."""
     return _compiled.longest(kind, "from_bytes")
 
 
-def _rest(message: Any) -> Any:
-    """The open end of a message with all elements, each 0."""
+def _full_tail(message: Any) -> Any:
+    """Return the variable-length field of a message with all elements, each 0."""
     kind: type[Message] = type(message)
     zeros = _decoder(kind)(kind, bytes(kind.LENGTH))
     return getattr(zeros, message.TAIL.part)
 
 
 def _cut(message: Message, word: str) -> None:
-    """Leaves the elements that are to be in the frame: as many as the counter says, or
-    ``word`` without one.
+    """Drop the elements that do not belong to the frame. The counter gives their
+    number, or ``word`` if there is none.
     """
     tail: Any = message.TAIL
     if tail.counter:
@@ -204,9 +210,10 @@ def _cut(message: Message, word: str) -> None:
 
 
 def _implied(message: Message) -> FieldInfo:
-    """The number of elements as a field, where no field of the frame has it."""
+    """Return the number of elements as a field, if no field of the frame contains it.
+    """
     tail: Any = message.TAIL
-    info = next(one for one in message.FIELDS if one.attribute == tail.part)
+    info = next(field_info for field_info in message.FIELDS if field_info.attribute == tail.part)
     name = f"{info.name} {'Count' if info.elements else 'Size'}"
     return FieldInfo("", name, 0, 8, "uint")
 
@@ -214,12 +221,12 @@ def _implied(message: Message) -> FieldInfo:
 class Element:
     """A field, or an element of an array."""
 
-    def __init__(self, held: Held, index: int) -> None:
-        self.owner, self.info, self.index = held.owner, held.info, index
-        self.name = f"{held.name}[{index}]" if self.info.elements else held.name
+    def __init__(self, owned: OwnedField, index: int) -> None:
+        self.owner, self.info, self.index = owned.owner, owned.info, index
+        self.name = f"{owned.name}[{index}]" if self.info.elements else owned.name
 
     def get(self, attribute: str) -> Any:
-        """Its value."""
+        """Return the value of the attribute."""
         info, owner = self.info, self.owner
         if not attribute:
             return len(getattr(owner, owner.TAIL.part))
@@ -234,31 +241,33 @@ class Element:
         if attribute == info.physical:
             _, c, q = info.scale
             return on_curve(info.curve, 0) if info.curve else c / q
-        return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
+        if info.enum:
+            return info.enum(0)
+        return 0.0 if info.type == "float" else 0
 
     def set(self, attribute: str, value: Any) -> None:
-        """Sets it, and leaves the other elements as they are."""
+        """Set the attribute and leave the other elements unchanged."""
         if self.info.elements:
-            given = list(getattr(self.owner, attribute))
-            values = [given[i] if i < len(given) else 0 for i in range(self.index + 1)]
-            values += given[self.index + 1 :]
+            present = list(getattr(self.owner, attribute))
+            values = [present[i] if i < len(present) else 0 for i in range(self.index + 1)]
+            values += present[self.index + 1 :]
             values[self.index] = value
             value = tuple(values)
         setattr(self.owner, attribute, value)
 
 
 def _elements(message: Message) -> list[Element]:
-    found = list(_held(message))
-    found += (Held(message, info, info.name) for info in message.VIEWS)
+    all_fields = list(_owned_fields(message))
+    all_fields += (OwnedField(message, info, info.name) for info in message.VIEWS)
     return [
-        Element(held, index)
-        for held in found
-        for index in range(held.info.elements or 1)
+        Element(owned, index)
+        for owned in all_fields
+        for index in range(owned.info.elements or 1)
     ]
 
 
 def _physical(info: FieldInfo, word: str) -> Any:
-    """A physical value as it is given: of text the characters."""
+    """Return a physical value from a word; for text the characters."""
     return (
         bytes.fromhex(word).decode()
         if info.type == "text"
@@ -288,41 +297,41 @@ def _hex(text: str) -> str:
     return text.encode("utf-8", "surrogatepass").hex()
 
 
-def _field(one: Element) -> str:
-    value = _shown(one.info, one.get(one.info.attribute))
-    return f" field field={_hex(one.name)} raw={value}"
+def _field(element: Element) -> str:
+    value = _shown(element.info, element.get(element.info.attribute))
+    return f" field field={_hex(element.name)} raw={value}"
 
 
 def _described(message: Message, names: bool = False) -> str:
-    said = [f" bytes={message.to_bytes().hex()}"]
-    for one in _elements(message):
-        info = one.info
-        said.append(_field(one))
+    reply = [f" bytes={message.to_bytes().hex()}"]
+    for element in _elements(message):
+        info = element.info
+        reply.append(_field(element))
         if info.type == "text":
-            text = one.get(info.physical)
-            said.append("" if "\ufffd" in text else f" physical={_hex(text)}")
-        elif info.physical and one.get(info.physical) is not None:
-            bits = _floats.float64_bits(one.get(info.physical))
-            said.append(f" physical={bits}")
-        if names and info.enum and one.get(info.attribute) is not None:
-            label = one.get(info.attribute).label
-            said.append(f" name={_hex(label)}" if label else "")
-    return "".join(said)
+            text = element.get(info.physical)
+            reply.append("" if "\ufffd" in text else f" physical={_hex(text)}")
+        elif info.physical and element.get(info.physical) is not None:
+            bits = _floats.float64_bits(element.get(info.physical))
+            reply.append(f" physical={bits}")
+        if names and info.enum and element.get(info.attribute) is not None:
+            label = element.get(info.attribute).label
+            reply.append(f" name={_hex(label)}" if label else "")
+    return "".join(reply)
 
 
 def _constants(node: Any, words: Words) -> str:
     message = _message(node, words)()
     ids = ",".join(map(str, message.IDS))
-    said = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
-    for one in _elements(message):
-        info = one.info
+    reply = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
+    for element in _elements(message):
+        info = element.info
         special = ",".join(str(_shown(info, value)) for value, _ in info.special)
-        said.append(f"{_field(one)} special={special}")
+        reply.append(f"{_field(element)} special={special}")
         for key, name in _LIMITS.items():
             bound = getattr(info, name)
             if bound is not None:
-                said.append(f" {key}={_floats.float64_bits(float(bound))}")
-    return "".join(said)
+                reply.append(f" {key}={_floats.float64_bits(float(bound))}")
+    return "".join(reply)
 
 
 def _enum(node: Any, words: Words) -> str:
@@ -335,33 +344,33 @@ def _enum(node: Any, words: Words) -> str:
 
 
 def _about_node(node: Any, words: Words) -> str:
-    found = {"node_type": "NODE_TYPE", "interface_version": "INTERFACE_VERSION"}
+    names = {"node_type": "NODE_TYPE", "interface_version": "INTERFACE_VERSION"}
     return "".join(
         f" {key}={getattr(node, name)}"
-        for key, name in found.items()
+        for key, name in names.items()
         if hasattr(node, name)
     )
 
 
 def _sweep(node: Any, words: Words) -> str:
     message = _message(node, words)()
-    one = _elements(message)[int(next(words))]
-    info = one.info
+    element = _elements(message)[int(next(words))]
+    info = element.info
     low, high = info.raw_range
-    said = []
+    reply = []
     for raw in map(int, words):
         if not low <= raw <= high:
-            raise Refusal(f"range field={_hex(one.name)}")
-        one.set(info.attribute, _raw(info, str(raw)))
-        physical = one.get(info.physical)
+            raise Refusal(f"range field={_hex(element.name)}")
+        element.set(info.attribute, _raw(info, str(raw)))
+        physical = element.get(info.physical)
         back: Optional[int] = None
         try:
-            one.set(info.physical, physical)
-            back = _shown(info, one.get(info.attribute))
+            element.set(info.physical, physical)
+            back = _shown(info, element.get(info.attribute))
         except RangeError:
             pass
-        said.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")
-    return " values=" + "".join(said)
+        reply.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")
+    return " values=" + "".join(reply)
 
 
 _OPERATIONS = {

@@ -13,7 +13,7 @@ class Refusal(Exception):
 
 
 def counted(name: str, error: Any) -> str:
-    """A refusal that says how many there must be and how many there are."""
+    """Return a refusal with the expected and the actual number."""
     return f"{name} expected={error.expected} actual={error.actual}"
 
 
@@ -22,12 +22,12 @@ def number(words: Words) -> int:
 
 
 def numbers(words: Words) -> list[int]:
-    """All that are left."""
+    """Return all remaining words as numbers."""
     return [int(word) for word in words]
 
 
 def maybe(words: Words) -> Optional[int]:
-    """None for an empty word."""
+    """Return the next number, or ``None`` for an empty word."""
     word = next(words)
     return int(word) if word else None
 
@@ -41,10 +41,10 @@ def listed(items: Iterable[object]) -> str:
 
 
 def row(name: str, **facts: object) -> str:
-    """A row of an answer; what is None is left out."""
-    said = [f" {name}"]
+    """Return a row of an answer without the keys whose value is ``None``."""
+    words = [f" {name}"]
     for key, value in facts.items():
         if value is not None:
             shown = value.hex() if isinstance(value, bytes) else value
-            said.append(f" {key}={shown}")
-    return "".join(said)
+            words.append(f" {key}={shown}")
+    return "".join(words)

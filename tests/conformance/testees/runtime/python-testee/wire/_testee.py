@@ -1,4 +1,4 @@
-"""What the testee answers about the wire layer."""
+"""Answer requests about framing."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _KINDS: dict[str, CanKind] = {
 
 
 def answer(name: str, node: Any, words: Words) -> str:
-    """The answer to a request about the link of a node."""
+    """Return the answer to a request about the link of a node."""
     if name not in _OPERATIONS:
         raise Refusal("request")
     try:
@@ -78,23 +78,23 @@ def _uart_encode(link: Link, words: Words) -> str:
 
 def _uart_events(link: Link, words: Words) -> str:
     decoder = UartDecoder(link, number(words))
-    said = []
+    reply = []
     for chunk in words:
-        for found in decoder.feed(bytes.fromhex(chunk)):
-            said.append(f" {found.event}")
-            if found.event == "message":
-                kind = uart_kind(link, found.message)
-                said.append(f" kind={kind} bytes={found.message.hex()}")
+        for event in decoder.feed(bytes.fromhex(chunk)):
+            reply.append(f" {event.event}")
+            if event.event == "message":
+                kind = uart_kind(link, event.message)
+                reply.append(f" kind={kind} bytes={event.message.hex()}")
     counts = f" ok discarded={decoder.discarded} pending={decoder.pending}"
-    return "".join(said) + counts
+    return "".join(reply) + counts
 
 
 def _can_split(link: Link, words: Words) -> str:
     kind = _KINDS[next(words)]
     id, source, destination = number(words), number(words), number(words)
     message = CanMessage(kind, id, source, destination, octets(words))
-    found = can_split(link, message)
-    return "".join(f" packet id={one.id} bytes={one.data.hex()}" for one in found)
+    packets = can_split(link, message)
+    return "".join(f" packet id={packet.id} bytes={packet.data.hex()}" for packet in packets)
 
 
 def _can_join(link: Link, words: Words) -> str:
@@ -109,12 +109,12 @@ def _can_join(link: Link, words: Words) -> str:
 
 
 def _can_event(event: CanEvent) -> str:
-    said = f" {event.event} id={event.id} source={event.source}"
+    reply = f" {event.event} id={event.id} source={event.source}"
     if event.message:
-        one = event.message
-        said += f" kind={one.kind} destination={one.destination}"
-        said += f" bytes={one.data.hex()}"
-    return f"{said} missing={event.missing}" if event.event == "incomplete" else said
+        message = event.message
+        reply += f" kind={message.kind} destination={message.destination}"
+        reply += f" bytes={message.data.hex()}"
+    return f"{reply} missing={event.missing}" if event.event == "incomplete" else reply
 
 
 def _i2c_read(link: Link, words: Words) -> str:
@@ -135,19 +135,19 @@ def _i2c_reply(link: Link, words: Words) -> str:
 
 def _frames(frames: Iterable[LogFrame]) -> str:
     return "".join(
-        row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data)
-        for one in frames
+        row("frame", bit=frame.bit, id="" if frame.id is None else frame.id, bytes=frame.data)
+        for frame in frames
     )
 
 
 def _log_decode(link: Link, words: Words) -> str:
     reader = LogReader(link)
-    said = []
+    reply = []
     for piece in words:
-        for one in reader.feed(bytes.fromhex(piece)):
-            times = {"seconds": one.seconds, "milliseconds": one.milliseconds}
-            said.append(row("entry", **times) + _frames(one.frames))
-    return "".join(said) + row("ok", truncated=reader.truncated, mask=reader.mask)
+        for entry in reader.feed(bytes.fromhex(piece)):
+            times = {"seconds": entry.seconds, "milliseconds": entry.milliseconds}
+            reply.append(row("entry", **times) + _frames(entry.frames))
+    return "".join(reply) + row("ok", truncated=reader.truncated, mask=reader.mask)
 
 
 def _log_encode(link: Link, words: Words) -> str:
@@ -182,8 +182,8 @@ def _dos_time_pack(link: Link, words: Words) -> str:
 
 def _index_decode(link: Link, words: Words) -> str:
     entries, truncated = read_index(link, octets(words))
-    said = "".join(row("entry", **one._asdict()) for one in entries)
-    return f" truncated={truncated}" + said
+    reply = "".join(row("entry", **entry._asdict()) for entry in entries)
+    return f" truncated={truncated}" + reply
 
 
 def _index_encode(link: Link, words: Words) -> str:
@@ -197,8 +197,8 @@ def _index_encode(link: Link, words: Words) -> str:
 
 
 def _identify(link: Link, words: Words) -> str:
-    found = identify(link, octets(words))._asdict()
-    return row("ok", **{key: int(value) for key, value in found.items()})
+    identity = identify(link, octets(words))._asdict()
+    return row("ok", **{key: int(value) for key, value in identity.items()})
 
 
 def _link_data(link: Link, words: Words) -> str:
@@ -235,32 +235,32 @@ def _stream_encode_packet(link: Link, words: Words) -> str:
 
 
 def _values(words: Words) -> dict[str, int]:
-    given = {role: maybe(words) for role in CHOSEN_ROLES}
-    return {role: value for role, value in given.items() if value is not None}
+    values = {role: maybe(words) for role in CHOSEN_ROLES}
+    return {role: value for role, value in values.items() if value is not None}
 
 
 def _stream_events(link: Link, words: Words) -> str:
     decoder = StreamDecoder(link, _DIRECTIONS[number(words)], number(words))
-    said = "".join(
+    reply = "".join(
         _stream_event(event)
         for chunk in words
         for event in decoder.feed(bytes.fromhex(chunk))
     )
-    return f"{said} ok discarded={decoder.discarded} pending={decoder.pending}"
+    return f"{reply} ok discarded={decoder.discarded} pending={decoder.pending}"
 
 
 def _stream_respond(link: Link, words: Words) -> str:
     verdict, has_reason = _VERDICTS[number(words)], number(words)
-    given, data = maybe(words), octets(words)
-    reason = given if has_reason else None
+    reason_word, data = maybe(words), octets(words)
+    reason = reason_word if has_reason else None
     sender = Sender(link, "telemetry", _values(words))
     decoder = StreamDecoder(link, "telecommand")
-    said = ""
+    reply = ""
     for chunk in words:
         for event in decoder.feed(bytes.fromhex(chunk)):
             if event.event in _ANSWERED and event.id is not None:
-                said += f" response {_response(sender, event, verdict, reason, data)}"
-    return said
+                reply += f" response {_response(sender, event, verdict, reason, data)}"
+    return reply
 
 
 def _response(
@@ -280,13 +280,13 @@ def _response(
 
 
 def _stream_event(event: StreamEvent) -> str:
-    said = f" {event.event}" + ("" if event.id is None else f" id={event.id}")
+    reply = f" {event.event}" + ("" if event.id is None else f" id={event.id}")
     if event.packet is not None:
-        said += f" packet={event.packet}"
+        reply += f" packet={event.packet}"
     if event.event in ("message", "packet"):
-        said += f" bytes={event.data.hex()}"
-    said += "".join(f" {role}={value}" for role, value in event.values.items())
-    return f"{said} missing={event.missing}" if event.event == "gap" else said
+        reply += f" bytes={event.data.hex()}"
+    reply += "".join(f" {role}={value}" for role, value in event.values.items())
+    return f"{reply} missing={event.missing}" if event.event == "gap" else reply
 
 
 _OPERATIONS = {

@@ -1,4 +1,4 @@
-"""Scripts of the testee for the client and for the procedures."""
+"""Run scripts of the client and of procedures."""
 
 from __future__ import annotations
 
@@ -36,55 +36,57 @@ _OUTCOMES: dict[str, Any] = {
 
 
 def client(link: Link, words: Words) -> str:
-    """What a client on a bus does in a script."""
+    """Run a script of a client on a bus."""
     bus, checked, address = _bus(words), number(words) == 1, number(words)
     settings = _settings(link, words, _BUS_SETTINGS)
     tested = Client(
         link, bus, crc=checked, address=address, settings=settings, requests=1
     )
-    said = []
+    reply = []
     for at in words:
-        said.append(" step")
+        reply.append(" step")
         action, now, before = next(words), int(at), ""
         if action in ("received", "packet"):
-            # What a time-out sends again is sent before this arrives.
-            said += [_shown(event, tested) for event in tested.tick(now)]
+            # Repetitions after a time-out are sent before these bytes arrive.
+            reply += [_shown(event, tested) for event in tested.tick(now)]
             before = _output(tested)
-        said += _reaction(tested, now, action, words)
-        said.append(before + _output(tested))
+        reply += _reaction(tested, now, action, words)
+        reply.append(before + _output(tested))
         if sent := tested.sent(tested.begun):
-            said.append(_shown(sent, tested))
+            reply.append(_shown(sent, tested))
         if tested.deadline is not None:
-            said.append(f" until deadline={int(tested.deadline)}")
-    return "".join(said)
+            reply.append(f" until deadline={int(tested.deadline)}")
+    return "".join(reply)
 
 
 def _settings(link: Link, words: Words, names: tuple[str, ...]) -> Settings:
-    """The settings of a script; what it does not give is that of the ICD."""
-    given = {name: maybe(words) for name in names}
-    known = {name: value for name, value in given.items() if value is not None}
-    return link.settings._replace(**known)
+    """Return the settings of a script. Settings that it does not contain come from the
+    ICD.
+    """
+    values = {name: maybe(words) for name in names}
+    given_values = {name: value for name, value in values.items() if value is not None}
+    return link.settings._replace(**given_values)
 
 
 def stream_client(link: Link, words: Words) -> str:
-    """What a client of a framed link does in a script."""
+    """Run a script of the client of a framed link."""
     requests = number(words)
     settings = _settings(link, words, _STREAM_SETTINGS)
     tested = Client(link, settings=settings, requests=requests)
-    said = []
+    reply = []
     for at in words:
-        said.append(" step")
+        reply.append(" step")
         takes = number(words) == 1
-        said += _reaction(tested, int(at), next(words), words)
+        reply += _reaction(tested, int(at), next(words), words)
         if takes:
-            said.append(_output(tested))
+            reply.append(_output(tested))
         if tested.deadline is not None:
-            said.append(f" until deadline={int(tested.deadline)}")
-    return "".join(said)
+            reply.append(f" until deadline={int(tested.deadline)}")
+    return "".join(reply)
 
 
 def _reaction(tested: Client, now: int, action: str, words: Words) -> list[str]:
-    """The events of an action, or its error."""
+    """Return the events of an action, or its error."""
     try:
         events = _happened(tested, now, action, words)
     except BusyError:
@@ -138,7 +140,7 @@ def _happened(tested: Client, now: int, action: str, words: Words) -> list[Event
 def _output(tested: Client) -> str:
     if tested.bus == "can":
         packets = tested.packets()
-        return "".join(row("frame", id=one.id, bytes=one.data) for one in packets)
+        return "".join(row("frame", id=packet.id, bytes=packet.data) for packet in packets)
     if tested.bus == "i2c":
         transfers = tested.transfers()
         return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
@@ -158,8 +160,8 @@ def _shown(event: Event, tested: Client) -> str:
     if isinstance(event, (Refused, Busy)):
         hidden += ["reason", "data"]
         hidden += ["parameter"] if is_framed else []
-    known = [one.name for one in fields(event) if one.name not in hidden]
-    facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
+    names = [field.name for field in fields(event) if field.name not in hidden]
+    facts = {"bytes" if key == "data" else key: getattr(event, key) for key in names}
     if "may_be_damaged" in facts:
         facts["may_be_damaged"] = 1 if facts["may_be_damaged"] else None
     return row(type(event).__name__.lower(), **facts)
@@ -170,44 +172,44 @@ def packet(words: Words) -> CanPacket:
 
 
 def procedure(link: Link, words: Words) -> str:
-    """What a procedure of the ICD does in a script."""
+    """Run a script of a procedure of the ICD."""
     name = list(link.procedures)[number(words)]
     form = link.procedures[name]
     bus, block, data = _bus(words), maybe(words), octets(words)
     numbers = [maybe(words) for _ in range(number(words))]
-    names = [one.name for one in form.inputs if not one.is_bytes]
+    names = [field.name for field in form.inputs if not field.is_bytes]
     tested = Procedure(link, name, dict(zip(names, numbers)), data, block)
     tested.bus = bus
-    said = []
+    reply = []
     for at in words:
-        event = _told(next(words), words)
+        event = _client_event(next(words), words)
         if event is not None:
             tested.event(int(at), event)
-        said.append(_step(tested, int(at)))
-    said += [row("block", offset=at, bytes=data) for at, data in tested.blocks]
-    said += [row("entry", bytes=frame) for frame in tested.frames]
+        reply.append(_step(tested, int(at)))
+    reply += [row("block", offset=at, bytes=data) for at, data in tested.blocks]
+    reply += [row("entry", bytes=frame) for frame in tested.frames]
     if form.blocks and form.blocks.sends:
-        said.append(row("ok", sent=tested.progress[0]))
+        reply.append(row("ok", sent=tested.progress[0]))
     if form.outputs and tested.result == "done":
-        known = [tested.output(one.name) for one in form.outputs]
-        said.append(row("ok", outputs=listed(known)))
-    return "".join(said)
+        outputs = [tested.output(field.name) for field in form.outputs]
+        reply.append(row("ok", outputs=listed(outputs)))
+    return "".join(reply)
 
 
 def _step(procedure: Procedure, now: int) -> str:
     facts: dict[str, object] = {}
-    asked = procedure.next(now)
-    if asked is not None:
-        facts[asked.kind] = asked.id
-        if asked.kind == "telecommand":
-            facts.update(bytes=asked.data, repeat=int(asked.repeat))
+    request = procedure.next(now)
+    if request is not None:
+        facts[request.kind] = request.id
+        if request.kind == "telecommand":
+            facts.update(bytes=request.data, repeat=int(request.repeat))
     until = procedure.deadline
     deadline = None if until is None else int(until)
     return row("step", **facts, deadline=deadline, result=procedure.result)
 
 
-def _told(name: str, words: Words) -> Optional[Event]:
-    """An event of the client as it stands in a script."""
+def _client_event(name: str, words: Words) -> Optional[Event]:
+    """Return an event of the client from a script."""
     if name == "done":
         return Done(0, 1, octets(words))
     if name == "arrived":
