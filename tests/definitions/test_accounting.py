@@ -1,5 +1,5 @@
-"""What a reader did not use of its source is reported by name and place, and nothing
-else is.
+"""Everything that a reader did not use of its source is reported by name and place, and
+nothing else.
 """
 
 from __future__ import annotations
@@ -27,16 +27,19 @@ def unused(account: Account) -> list[tuple[str, int | None]]:
     to = Definitions("device.xml")
     account.report(to)
     assert all(
-        (one.code, one.severity) == ("IMP085", "note") and one.help
-        for one in to.import_findings
+        (finding.code, finding.severity) == ("IMP085", "note") and finding.help
+        for finding in to.import_findings
     )
-    return [(one.message, one.spot.line) for one in to.import_findings]
+    return [(finding.message, finding.spot.line) for finding in to.import_findings]
 
 
-def test_attributes_texts_and_elements_that_nobody_read_are_reported_where_they_stand():
+def test_unread_attributes_texts_and_elements_are_reported_with_their_line():
     account, root = device()
     assert root.get("version") == "2"
-    assert [one.get("name") for one in root.iterfind("field")] == ["speed", "mode"]
+    assert [element.get("name") for element in root.iterfind("field")] == [
+        "speed",
+        "mode",
+    ]
     assert root.find("group/inner").attrib["value"] == "1"
     account.elements(root)
     assert unused(account) == [
@@ -47,7 +50,7 @@ def test_attributes_texts_and_elements_that_nobody_read_are_reported_where_they_
     ]
 
 
-def test_iterating_over_children_uses_none_of_them():
+def test_iterating_over_children_does_not_count_as_reading():
     account, root = device("version", "device.history")
     assert [child.tag for child in root] == ["field", "field", "group", "history"]
     account.elements(root)
@@ -57,7 +60,7 @@ def test_iterating_over_children_uses_none_of_them():
     ]
 
 
-def test_what_a_finding_names_already_is_not_reported_again():
+def test_names_in_a_finding_are_not_reported_as_unused():
     account, root = device("version")
     for element in root:
         element.settle()
@@ -91,7 +94,7 @@ def test_each_way_to_read_counts(access):
     )
 
 
-def test_keys_of_json_and_yaml_that_nobody_read_are_reported_with_their_path():
+def test_unread_keys_of_json_and_yaml_are_reported_with_their_path():
     tree = accounted(
         {
             "meta": {"id": "a", "license": "b"},

@@ -1,5 +1,5 @@
-"""CAN databases become ICDs that say what cantools reads in them, and only what is
-wrong in a database is a finding.
+"""CAN databases become ICDs with the values that cantools reads. Only mistakes in a
+database are findings.
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ def faulty():
 
 def message(read: run.Read, name: str) -> dict:
     (tree,) = read.trees.values()
-    return next(one for one in tree["messages"] if one["name"] == name)
+    return next(message for message in tree["messages"] if message["name"] == name)
 
 
 def field(read: run.Read, owner: str, name: str) -> dict:
-    return next(one for one in message(read, owner)["fields"] if one["name"] == name)
+    return next(
+        field for field in message(read, owner)["fields"] if field["name"] == name
+    )
 
 
 def test_names_ids_lengths_senders_and_comments_arrive(train):
@@ -75,7 +77,7 @@ def test_units_formulas_and_limits_arrive_where_they_say_more_than_the_width(tra
     )
 
 
-def test_fields_in_another_order_than_most_say_so(train):
+def test_fields_with_another_byte_order_than_most_state_it(train):
     pressure = field(train, "DriveStatus", "Pressure")
     assert (pressure["at"], pressure["byte_order"], pressure["bit_order"]) == (
         32,
@@ -84,16 +86,16 @@ def test_fields_in_another_order_than_most_say_so(train):
     )
 
 
-def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(train):
+def test_named_values_become_enumerations_or_special_values_of_scaled_fields(train):
     (tree,) = train.trees.values()
     (mode,) = tree["enums"]
-    assert [(one["value"], one.get("to"), one["name"], one.get("identifier")) for one in mode["members"]] == [
+    assert [(member["value"], member.get("to"), member["name"], member.get("identifier")) for member in mode["members"]] == [
         (0, None, "Off 0", None), (1, None, "2nd gear", "value 2nd gear"), (2, 3, "Spare", None), (5, None, "Off 5", None),
     ]  # fmt: skip
     assert field(train, "DriveStatus", "Torque")["special"] == [
         {"value": 2047, "meaning": "not known"}
     ]
-    assert [one.code for one in train.definitions.import_findings] == [
+    assert [finding.code for finding in train.definitions.import_findings] == [
         "IMP074",
         "IMP073",
         "IMP071",
@@ -101,7 +103,7 @@ def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(
     ]
 
 
-def test_the_smaller_of_overlapping_fields_is_a_view(train):
+def test_the_smaller_of_overlapping_fields_is_an_overlay_field(train):
     assert field(train, "DriveStatus", "LevelLow")["view"] and "view" not in field(
         train, "DriveStatus", "Level"
     )
@@ -109,7 +111,8 @@ def test_the_smaller_of_overlapping_fields_is_a_view(train):
 
 def test_multiplexed_fields_have_conditions(train):
     whens = {
-        one["name"]: one.get("when") for one in message(train, "BrakeDetails")["fields"]
+        field["name"]: field.get("when")
+        for field in message(train, "BrakeDetails")["fields"]
     }
     assert whens == {
         "Page": None,
@@ -120,7 +123,7 @@ def test_multiplexed_fields_have_conditions(train):
     }
 
 
-def test_names_that_no_language_takes_get_identifiers_and_are_listed(train):
+def test_names_that_are_no_identifiers_get_one_and_are_listed(train):
     assert train.identifiers == [
         "value `2nd gear`: `value 2nd gear`",
         "field `class`: `class field`",
@@ -128,21 +131,21 @@ def test_names_that_no_language_takes_get_identifiers_and_are_listed(train):
     assert field(train, "DriveStatus", "class")["identifier"] == "class field"
 
 
-def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
+def test_a_mistake_only_removes_the_message_or_field_it_concerns(faulty):
     (tree,) = faulty.trees.values()
-    assert [one["name"] for one in tree["messages"]] == [
+    assert [message["name"] for message in tree["messages"]] == [
         "Wide",
         "Short",
         "Nested",
         "Fine",
     ]
     assert message(faulty, "Wide")["id"] == wire_ids.CAN_EXTENDED_FLAG + 13274
-    assert [one["name"] for one in message(faulty, "Short")["fields"]] == ["Inside"]
-    found = [
-        (one.code, one.spot.line, one.message)
-        for one in faulty.definitions.import_findings
+    assert [field["name"] for field in message(faulty, "Short")["fields"]] == ["Inside"]
+    findings = [
+        (finding.code, finding.spot.line, finding.message)
+        for finding in faulty.definitions.import_findings
     ]
-    assert found == [
+    assert findings == [
         ("IMP076", 5, "the id 0x33da has more than the 11 bits of a standard frame"),
         (
             "IMP075",
@@ -182,11 +185,13 @@ def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):
         text.replace("Outside : 12|8@1+", "Outside : -1|8@1+")
     )
     read = run.read(tmp_path / "before.dbc", kinds.of(tmp_path / "before.dbc"))
-    assert [one["name"] for one in message(read, "Short")["fields"]] == ["Inside"]
-    told = [
-        one.message for one in read.definitions.import_findings if one.code == "IMP072"
+    assert [field["name"] for field in message(read, "Short")["fields"]] == ["Inside"]
+    messages = [
+        finding.message
+        for finding in read.definitions.import_findings
+        if finding.code == "IMP072"
     ]
-    assert told == ["message `Short`: `Outside` begins before its 2 bytes"]
+    assert messages == ["message `Short`: `Outside` begins before its 2 bytes"]
 
 
 @pytest.mark.parametrize("form", ["kcd", "sym"])
@@ -204,21 +209,20 @@ def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tm
     for name in ("DriveStatus", "BrakeDetails"):
         ours, theirs = (
             [
-                (one["name"], *(one.get(key) for key in keys))
-                for one in message(each, name)["fields"]
+                (field["name"], *(field.get(key) for key in keys))
+                for field in message(each, name)["fields"]
             ]
             for each in (train, read)
         )
-        several = (
-            [0, 1] if form == "sym" else None
-        )  # there a signal stands under each value of the multiplexer
+        # In this format a signal is listed under each value of the multiplexer.
+        several = [0, 1] if form == "sym" else None
         assert [
             (
-                one
-                if one[0] != "Common"
-                else (*one[:5], several and {"Page": several}, *one[6:])
+                row
+                if row[0] != "Common"
+                else (*row[:5], several and {"Page": several}, *row[6:])
             )
-            for one in ours
+            for row in ours
         ] == theirs
 
 
@@ -234,7 +238,7 @@ def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tm
         ("a.dbc", "BU_: A\n", "none is defined"),
     ],
 )  # fmt: skip
-def test_a_file_that_cannot_be_read_says_so(name, text, says, tmp_path):
+def test_a_file_that_cannot_be_read_is_a_finding(name, text, says, tmp_path):
     path = tmp_path / name
     path.write_text(text)
     reader = kinds.of(path)

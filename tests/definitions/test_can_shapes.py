@@ -1,5 +1,5 @@
-"""Shapes of public CAN databases, drawn by us: what is imported has the values that
-cantools reads in the same frames.
+"""Features of public CAN databases: the imported ICD reads the same values as cantools
+from the same frames. The databases are our own.
 """
 
 from __future__ import annotations
@@ -32,19 +32,23 @@ def tree_of(read: run.Read) -> dict:
 
 
 def message(read: run.Read, name: str) -> dict:
-    return next(one for one in tree_of(read)["messages"] if one["name"] == name)
+    return next(
+        message for message in tree_of(read)["messages"] if message["name"] == name
+    )
 
 
 def field(read: run.Read, owner: str, name: str) -> dict:
-    return next(one for one in message(read, owner)["fields"] if one["name"] == name)
+    return next(
+        field for field in message(read, owner)["fields"] if field["name"] == name
+    )
 
 
 def model(read: run.Read, folder):
-    """The ICD as `icdgen check` loads it, without a finding."""
+    """Return the ICD as `icdgen check` loads it, without a finding."""
     path = folder / f"{next(iter(read.trees))}.yaml"
     path.write_text(emit.canonical_yaml(tree_of(read)), encoding="utf-8")
     loaded = load([path])
-    assert [one.message for one in loaded.findings] == []
+    assert [finding.message for finding in loaded.findings] == []
     return loaded.icd.nodes[0]
 
 
@@ -54,8 +58,8 @@ def shapes():
 
 
 def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> int:
-    """Compare raw and physical values of random frames of each message; the number of
-    values.
+    """Compare raw and physical values of random frames of each message. Returns the
+    number of values.
     """
     import cantools
     from cantools.database.errors import DecodeError
@@ -69,36 +73,35 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
             else 0
         )
         theirs = next(
-            one
-            for one in database.messages
-            if one.frame_id == ours.telemetry_id - flag
-            and (node.id_bits != 32 or one.is_extended_frame == bool(flag))
+            message
+            for message in database.messages
+            if message.frame_id == ours.telemetry_id - flag
+            and (node.id_bits != 32 or message.is_extended_frame == bool(flag))
         )
-        selectors = {one.multiplexer_signal for one in theirs.signals} - {None}
+        selectors = {signal.multiplexer_signal for signal in theirs.signals} - {None}
         for _ in range(40):
             frame = dice.randbytes(ours.length)
             raw = codec.decode(node, ours, frame)
-            for name in selectors:  # one that selects something, as often as not
+            for name in selectors:  # often a value that selects a field
                 fields = frame_fields(ours.layout, node.orders)
-                chosen = next(one for one in fields if one.name == name)
+                chosen = next(field for field in fields if field.name == name)
                 values = [
                     value
-                    for one in fields
-                    for need in one.conditions
+                    for field in fields
+                    for need in field.conditions
                     for value in need.values
                 ]
                 if dice.random() < 0.7 and values:
                     frame = codec.frame_of(frame, {chosen: dice.choice(values)})
                     raw = codec.decode(node, ours, frame)
             for scaled in (False, True):
-                with contextlib.suppress(
-                    DecodeError
-                ):  # of a selector's value that no signal has
+                # cantools raises for a value of the multiplexer without a signal.
+                with contextlib.suppress(DecodeError):
                     for name, value in theirs.decode(
                         frame, decode_choices=False, scaling=scaled
                     ).items():
                         mine = next(
-                            (one for one in ours.fields if one.name == name), None
+                            (field for field in ours.fields if field.name == name), None
                         )
                         assert mine is not None and name in raw, (
                             f"{ours.name}.{name} is there in {frame.hex()}"
@@ -112,7 +115,7 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
     return compared
 
 
-def test_values_of_all_shapes_are_those_of_cantools(shapes, tmp_path):
+def test_values_of_all_shapes_equal_those_of_cantools(shapes, tmp_path):
     assert (
         assert_values_are_those_of_cantools(
             shapes, (FILES / "shapes.dbc").read_text(), tmp_path
@@ -127,7 +130,7 @@ def test_a_signed_signal_with_a_name_keeps_its_sign(shapes, tmp_path):
         {"value": 127, "meaning": "Invalid"}
     ]
     node = model(shapes, tmp_path)
-    engine = next(one for one in node.messages if one.name == "Engine")
+    engine = next(message for message in node.messages if message.name == "Engine")
     assert (
         codec.decode(node, engine, bytes.fromhex("00f6000000000000"))["Temperature"]
         == -10
@@ -147,7 +150,7 @@ def test_a_quantity_with_a_name_for_not_available_keeps_unit_and_limits(shapes):
     )
 
 
-def test_names_without_unit_and_limits_and_names_that_cover_all_values_are_enumerations(
+def test_named_values_without_unit_or_for_all_values_become_enumerations(
     shapes,
 ):
     kinds = {
@@ -156,8 +159,8 @@ def test_names_without_unit_and_limits_and_names_that_cover_all_values_are_enume
     }
     assert set(kinds.values()) == {"enum"}
     members = {
-        one["name"]: [each["value"] for each in one["members"]]
-        for one in tree_of(shapes)["enums"]
+        enum["name"]: [each["value"] for each in enum["members"]]
+        for enum in tree_of(shapes)["enums"]
     }
     assert members == {
         "Gear": [0, 1, 7],
@@ -168,14 +171,17 @@ def test_names_without_unit_and_limits_and_names_that_cover_all_values_are_enume
 
 
 def test_standard_and_extended_frames_of_one_number_are_two_messages(shapes):
-    ids = {one["name"]: int(one["id"]) for one in tree_of(shapes)["messages"]}
+    ids = {
+        message["name"]: int(message["id"]) for message in tree_of(shapes)["messages"]
+    }
     assert tree_of(shapes)["node"]["id_bits"] == 32
     assert ids == {"Engine": 0x100, "Diagnosis": 0x8000_0100, "Short": 0x101}
 
 
 def test_fields_depend_on_a_signed_multiplexer(shapes):
     whens = {
-        one["name"]: one.get("when") for one in message(shapes, "Diagnosis")["fields"]
+        field["name"]: field.get("when")
+        for field in message(shapes, "Diagnosis")["fields"]
     }
     assert whens == {"Page": None, "Current": {"Page": 0}, "Voltage": {"Page": 127}}
 
@@ -192,12 +198,14 @@ def test_a_value_that_the_multiplexer_cannot_have_selects_nothing(
     )
     read = imported(text, tmp_path)
     assert (
-        "Speed" in [one["name"] for one in message(read, "Status")["fields"]]
+        "Speed" in [field["name"] for field in message(read, "Status")["fields"]]
     ) == is_held
-    said = [
-        one.message for one in read.definitions.import_findings if one.code == "IMP091"
+    messages = [
+        finding.message
+        for finding in read.definitions.import_findings
+        if finding.code == "IMP091"
     ]
-    assert said == (
+    assert messages == (
         []
         if is_held
         else [
@@ -206,7 +214,7 @@ def test_a_value_that_the_multiplexer_cannot_have_selects_nothing(
     )
 
 
-def test_long_names_of_messages_signals_and_multiplexers_are_those_that_arrive(
+def test_long_names_of_messages_signals_and_multiplexers_are_imported(
     tmp_path,
 ):
     long = "Temperature_of_the_cooling_water_behind_the_second_heat_exchanger"
@@ -222,7 +230,7 @@ def test_long_names_of_messages_signals_and_multiplexers_are_those_that_arrive(
         'BA_ "SystemSignalLongSymbol" SG_ 1 T3 "";\n'
     )
     read = imported(text, tmp_path)
-    assert {one["name"]: one.get("when") for one in message(read, "Status_of_the_engine")["fields"]} == {
+    assert {field["name"]: field.get("when") for field in message(read, "Status_of_the_engine")["fields"]} == {
         f"{long}_page": None, f"{long}_inlet": {f"{long}_page": 1}, f"{long}_outlet": {f"{long}_page": 2}, "T3": None,
     }  # fmt: skip
     assert read.identifiers == [], (
@@ -249,8 +257,8 @@ def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
     blocks = [
         f"BO_ {id} {name}{id % 2}: 8 Engine\n"
         + "".join(
-            f' SG_ {one} : {4 * at}|4@1+ (1,0) [0|0] "" Display\n'
-            for at, one in enumerate(names)
+            f' SG_ {name} : {4 * at}|4@1+ (1,0) [0|0] "" Display\n'
+            for at, name in enumerate(names)
         )
         for id, name in enumerate(
             ("Status", "STATUS", "status", "STATus", "class", "Class"), 1
@@ -258,9 +266,13 @@ def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
     ]
     read = imported(HEAD + "\n".join(blocks), tmp_path)
     assert (read.imported, read.definitions.total) == (6, 6)
-    assert all(len(one["fields"]) == len(names) for one in tree_of(read)["messages"])
+    assert all(
+        len(message["fields"]) == len(names) for message in tree_of(read)["messages"]
+    )
     assert [
-        one for one in read.definitions.import_findings if one.severity == "error"
+        finding
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     ] == []
     model(read, tmp_path)
 
@@ -276,12 +288,12 @@ def test_enumerations_of_messages_and_fields_that_are_left_out_are_left_out_too(
     )
     read = imported(text, tmp_path)
     used = {
-        one["enum"]
+        field["enum"]
         for each in tree_of(read)["messages"]
-        for one in each.get("fields", ())
-        if "enum" in one
+        for field in each.get("fields", ())
+        if "enum" in field
     }
-    assert {one["name"] for one in tree_of(read).get("enums", ())} == used
+    assert {enum["name"] for enum in tree_of(read).get("enums", ())} == used
     assert "Far" not in used
 
 
@@ -306,7 +318,9 @@ def test_start_values_cycle_times_and_further_senders_arrive(tmp_path):
     )
 
 
-def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_path):
+def test_statements_that_an_icd_cannot_represent_are_reported_with_name_and_line(
+    tmp_path,
+):
     text = (
         f"{HEAD.replace(chr(34) * 2, chr(34) + '1.2' + chr(34))}BO_ 1 Status: 2 Engine\n"
         ' SG_ Speed : 0|8@1+ (1,0) [0|0] "" Display\n\n'
@@ -315,10 +329,10 @@ def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_pa
         "SIG_GROUP_ 1 Pair 1 : Speed;\n"
     )
     read = imported(text, tmp_path)
-    found = {
-        (one.message, one.spot.line)
-        for one in read.definitions.import_findings
-        if one.code == "IMP085"
+    findings = {
+        (finding.message, finding.spot.line)
+        for finding in read.definitions.import_findings
+        if finding.code == "IMP085"
     }
     assert {
         ("`VERSION` is not used", 1),
@@ -327,23 +341,23 @@ def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_pa
         ("`GenMsgDelayTime` of `BA_` is not used (`BO_ 1`)", 12),
         ("`SIG_GROUP_` is not used", 13),
         ("`receivers` of `signal` is not used (message `Status`, `Speed`)", None),
-    } <= found
+    } <= findings
 
 
-def test_a_database_of_which_all_is_used_has_no_finding(tmp_path):
+def test_a_database_that_is_used_completely_has_no_finding(tmp_path):
     text = f'{HEAD}BO_ 1 Status: 1 Engine\n SG_ Speed : 0|8@1+ (1,0) [0|0] "" Vector__XXX\n'
     assert imported(text, tmp_path).definitions.import_findings == []
 
 
-def test_a_database_that_is_cut_anywhere_says_so(tmp_path):
+def test_a_truncated_database_is_a_finding(tmp_path):
     text = (FILES / "shapes.dbc").read_text()
-    whole = len(
+    message_count = len(
         [
-            one
-            for one in run.read(
+            finding
+            for finding in run.read(
                 FILES / "shapes.dbc", can.Dbc()
             ).definitions.import_findings
-            if one.code != "IMP085"
+            if finding.code != "IMP085"
         ]
     )
     from icdgen.diagnostics import Findings
@@ -357,29 +371,31 @@ def test_a_database_that_is_cut_anywhere_says_so(tmp_path):
             continue
         is_complete = cut.endswith((";", "\n")) or not cut.rsplit("\n", 1)[-1].strip()
         lines = {
-            one.spot.line
-            for one in read.definitions.import_findings
-            if one.code == "IMP075"
+            finding.spot.line
+            for finding in read.definitions.import_findings
+            if finding.code == "IMP075"
         }
         assert is_complete or lines & {
             cut.count("\n") + 1,
             cut.rstrip().count("\n") + 1,
         }, cut[-60:]
-    assert whole == 3
+    assert message_count == 3
 
 
-def test_a_statement_that_cantools_refuses_costs_its_message_and_not_the_file(tmp_path):
+def test_a_statement_that_cantools_refuses_removes_only_its_message(tmp_path):
     text = (
         f'{HEAD}BO_ 1 Good: 1 Engine\n SG_ Speed : 0|8@1+ (1,0) [0|0] "" Display\n\n'
         'BO_ 2 Bad: 1 Engine\n SG_ Mode : 0|8@1+ (1,0) [0|0] "" Display\n\n'
         'BA_DEF_ SG_ "GenSigStartValue" STRING ;\nBA_DEF_DEF_ "GenSigStartValue" "";\nBA_ "GenSigStartValue" SG_ 2 Mode "high";\n'
     )
     read = imported(text, tmp_path)
-    assert [one["name"] for one in tree_of(read)["messages"]] == [
+    assert [message["name"] for message in tree_of(read)["messages"]] == [
         "Good"
     ] and read.definitions.total == 2
     (error,) = [
-        one for one in read.definitions.import_findings if one.severity == "error"
+        finding
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     ]
     assert (
         error.code == "IMP070"
@@ -388,20 +404,20 @@ def test_a_statement_that_cantools_refuses_costs_its_message_and_not_the_file(tm
     )
 
 
-def test_messages_of_one_name_are_all_imported_by_sender_or_by_id(tmp_path):
+def test_messages_with_equal_names_are_renamed_by_sender_or_id(tmp_path):
     text = HEAD + "".join(
         f'BO_ {id} Status: 1 {sender}\n SG_ Level : 0|8@1+ (1,0) [0|0] "" Display\n\n'
         for id, sender in ((256, "Engine"), (257, "Gateway"))
     )
     read = imported(text, tmp_path)
-    assert [one["name"] for one in tree_of(read)["messages"]] == [
+    assert [message["name"] for message in tree_of(read)["messages"]] == [
         "Engine Status",
         "Gateway Status",
     ]
-    assert "IMP092" in [one.code for one in read.definitions.import_findings]
+    assert "IMP092" in [finding.code for finding in read.definitions.import_findings]
 
     read = imported(text.replace("1 Gateway", "1 Engine"), tmp_path)
-    assert [one["name"] for one in tree_of(read)["messages"]] == [
+    assert [message["name"] for message in tree_of(read)["messages"]] == [
         "Status 0x100",
         "Status 0x101",
     ]
@@ -482,9 +498,9 @@ ARXML = """\
 )
 def test_what_cantools_drops_of_a_file_is_reported(reader, text, unused):
     definitions = reader.read("vehicle", text.encode())
-    found = [
-        (one.message, one.spot.line)
-        for one in definitions.import_findings
-        if one.code == "IMP085"
+    findings = [
+        (finding.message, finding.spot.line)
+        for finding in definitions.import_findings
+        if finding.code == "IMP085"
     ]
-    assert [one for one in found if one[1] is not None] == unused
+    assert [finding for finding in findings if finding[1] is not None] == unused

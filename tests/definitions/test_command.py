@@ -1,4 +1,4 @@
-"""``icdgen import`` of a definition as its user meets it."""
+"""``icdgen import`` of a definition as a user runs it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_what_is_written_is_laid_out_and_without_findings(folder):
+def test_written_files_are_formatted_and_pass_the_check(folder):
     result = icdgen("import", "train.dbc", cwd=folder)
     assert result.returncode == 0, result.stdout + result.stderr
     assert (
@@ -62,7 +62,7 @@ def test_update_keeps_identifiers_summaries_and_comments_and_takes_limits(folder
     )
 
 
-def test_what_is_missing_is_told_to_programs_and_by_the_status(folder):
+def test_missing_messages_are_in_the_json_report_and_the_exit_status(folder):
     shutil.copy(FILES / "faulty.dbc", folder)
     result = icdgen(
         "import",
@@ -75,12 +75,14 @@ def test_what_is_missing_is_told_to_programs_and_by_the_status(folder):
         cwd=folder,
     )
     assert result.returncode == 1
-    said = json.loads(result.stdout)
-    assert (said["messages"], said["held"]) == (4, 4) and not (folder / "icd").exists()
-    assert {"IMP091", "IMP075"} <= {one["code"] for one in said["findings"]}
+    report = json.loads(result.stdout)
+    assert (report["messages"], report["held"]) == (4, 4) and not (
+        folder / "icd"
+    ).exists()
+    assert {"IMP091", "IMP075"} <= {finding["code"] for finding in report["findings"]}
 
 
-def test_a_kind_that_there_is_not_and_a_broken_file_are_no_tracebacks(folder):
+def test_an_unknown_kind_and_a_broken_file_give_no_traceback(folder):
     result = icdgen("import", "train.dbc", "--kind", "dbx", cwd=folder)
     assert (
         result.returncode == 2
@@ -96,7 +98,7 @@ def test_a_kind_that_there_is_not_and_a_broken_file_are_no_tracebacks(folder):
     assert not (folder / "icd").exists()
 
 
-def test_what_the_library_notes_by_the_way_is_not_printed(tmp_path):
+def test_log_output_of_the_library_is_not_printed(tmp_path):
     message = 'BO_ {} Twice: 1 Node\n SG_ Level : 0|8@1+ (1,0) [0|0] "" Node\n\n'
     (tmp_path / "twice.dbc").write_text(
         'VERSION ""\n\nBU_: Node\n\n' + message.format(1) + message.format(2)

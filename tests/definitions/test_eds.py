@@ -1,8 +1,7 @@
-"""Electronic data sheets become ICDs: what components send, packages beside the file,
-and values that design parameters define.
+"""Electronic data sheets become ICDs: messages of components, packages in neighbouring
+files, and values that design parameters define.
 
-What is read of random frames is compared with a reader of bits of its own in
-tests/devices.
+A reader of bits in tests/devices compares the values of random frames.
 """
 
 from __future__ import annotations
@@ -38,16 +37,18 @@ def imported(name, folder=SHEETS):
     return run.read(folder / name, reader)
 
 
-def said(read):
-    return [(one.code, one.message) for one in read.definitions.import_findings]
+def findings_of(read):
+    return [
+        (finding.code, finding.message) for finding in read.definitions.import_findings
+    ]
 
 
-def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
+def test_interfaces_define_the_messages_and_their_direction(camera):
     (tree,) = camera.trees.values()
-    assert [(one["name"], one["kind"]) for one in tree["messages"]] == [
+    assert [(message["name"], message["kind"]) for message in tree["messages"]] == [
         ("Housekeeping", "telemetry"), ("Picture", "telemetry"), ("Noop", "telecommand"), ("Shoot", "telecommand"),
     ]  # fmt: skip
-    assert ("IMP084", "no interface carries 1 container: `Settings`") in said(
+    assert ("IMP084", "no interface carries 1 container: `Settings`") in findings_of(
         camera
     ) and not camera.failed
 
@@ -55,7 +56,7 @@ def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
 def test_the_header_of_space_packets_in_another_file_is_the_header_of_packets(camera):
     (tree,) = camera.trees.values()
     header = tree["protocol"]["link"]["header"]
-    assert [(one["bits"], one["role"]) for one in header] == [
+    assert [(field["bits"], field["role"]) for field in header] == [
         (3, "constant"), (1, "constant"), (1, "flags"), (11, "id"), (2, "type"), (14, "sequence"), (16, "length"),
     ]  # fmt: skip
     assert (
@@ -68,7 +69,7 @@ def test_the_header_of_space_packets_in_another_file_is_the_header_of_packets(ca
     )
 
 
-def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(camera):
+def test_ids_are_application_processes_or_topics(camera):
     assert [
         message(camera, name)["id"]
         for name in ("Picture", "Housekeeping", "Noop", "Shoot")
@@ -78,7 +79,9 @@ def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(came
         1,
     ]
     (process,) = [
-        one for one in camera.definitions.import_findings if one.code == "IMP083"
+        finding
+        for finding in camera.definitions.import_findings
+        if finding.code == "IMP083"
     ]
     assert (
         process.message
@@ -90,17 +93,17 @@ def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(came
     ("topic", "id"),
     [("3", 2 ^ 0x60), ("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 255", 255)],
 )
-def test_topics_become_application_processes_as_those_of_cfs(tmp_path, topic, id):
+def test_topics_become_application_processes_like_in_cfs(tmp_path, topic, id):
     folder = copied(
         tmp_path, "mission.xml", "${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", topic
     )
     assert message(imported("camera.xml", folder), "Noop")["id"] == id
 
 
-def test_a_parameter_that_is_no_topic_is_the_number_of_the_process(tmp_path):
-    said = 'parameter="{}" variableRef="Commands"'
+def test_a_parameter_other_than_a_topic_is_the_application_process(tmp_path):
+    attributes = 'parameter="{}" variableRef="Commands"'
     folder = copied(
-        tmp_path, "camera.xml", said.format("TopicId"), said.format("MsgId")
+        tmp_path, "camera.xml", attributes.format("TopicId"), attributes.format("MsgId")
     )
     text = (folder / "mission.xml").read_text()
     (folder / "mission.xml").write_text(
@@ -129,15 +132,19 @@ def test_a_container_that_interfaces_carry_by_several_numbers_is_as_many_message
     ] == [20, 19]
 
 
-def test_names_are_those_that_tell_fields_apart_and_containers_in_arrays_are_structs(
+def test_field_names_are_unique_and_containers_in_arrays_become_structs(
     camera,
 ):
     (tree,) = camera.trees.values()
-    assert [one["name"] for one in message(camera, "Housekeeping")["fields"]] == [
+    assert [field["name"] for field in message(camera, "Housekeeping")["fields"]] == [
         "Time", "Mode", "Ready", "Shutter", "Exposure", "Front Lens", "Front Sensor", "Back Lens", "Back Sensor", "Peaks", "Matrix",
     ]  # fmt: skip
     (peak,) = tree["structs"]
-    assert (peak["name"], peak["length"], [one["name"] for one in peak["fields"]]) == (
+    assert (
+        peak["name"],
+        peak["length"],
+        [field["name"] for field in peak["fields"]],
+    ) == (
         "Peak",
         5,
         ["Row", "Column", "Level"],
@@ -168,7 +175,7 @@ def test_units_ranges_and_calibrations_arrive(camera):
     assert message(camera, "Picture")["summary"] == "A piece of a picture."
 
 
-def test_a_list_is_an_open_end_that_its_field_counts(camera):
+def test_a_list_is_a_variable_length_array_with_its_counter(camera):
     assert field(camera, "Picture", "Piece") == {
         "at": 64, "name": "Piece", "struct": "Peak", "count": "Pieces", "up_to": 20,
     }  # fmt: skip
@@ -180,8 +187,8 @@ def test_a_list_is_an_open_end_that_its_field_counts(camera):
     )
 
 
-def test_what_a_container_is_based_on_stands_around_it(gyro):
-    names = [one["name"] for one in message(gyro, "Serial")["fields"]]
+def test_the_entries_of_a_base_container_surround_those_of_the_derived_one(gyro):
+    names = [field["name"] for field in message(gyro, "Serial")["fields"]]
     assert (names[0], names[-1]) == ("Mark", "Crc") and field(gyro, "Serial", "Crc")[
         "at"
     ] == 168
@@ -196,7 +203,7 @@ def test_the_length_of_a_container_is_a_constant_where_it_is_always_the_same(gyr
     assert "const" not in field(imported("log.xml"), "Note", "Length")
 
 
-def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_to_their_bits(
+def test_unsupported_encodings_are_imported_raw_with_a_finding_and_named_values(
     gyro,
 ):
     raw = {
@@ -204,22 +211,28 @@ def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_t
         for name in ("Offset", "Scale", "Drift")
     }
     assert raw == {"Offset": "uint", "Scale": "uint", "Drift": "int"}
-    told = [text for code, text in said(gyro) if code == "IMP078"]
-    assert "`Offset` (message `State`): it is encoded as onesComplement" in told
-    assert "`Number` (message `Serial`): it is encoded as packedBCD" in told
+    texts = [text for code, text in findings_of(gyro) if code == "IMP078"]
+    assert "`Offset` (message `State`): it is encoded as onesComplement" in texts
+    assert "`Number` (message `Serial`): it is encoded as packedBCD" in texts
     enums = {
-        one["name"]: [member["value"] for member in one["members"]]
-        for one in gyro.trees["gyro"]["enums"]
+        enum["name"]: [member["value"] for member in enum["members"]]
+        for enum in gyro.trees["gyro"]["enums"]
     }
     assert enums == {"Sign": [0, 1, 129], "Trend": [-1, 1], "Wide": [0, 1]}
     assert field(gyro, "Serial", "Revision")["const"] == -3
 
 
-def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(gyro):
+def test_an_error_control_is_a_field_and_unsupported_parts_are_reported_with_their_line(
+    gyro,
+):
     assert field(gyro, "State", "Crc")["summary"] == "CRC16_CCITT."
-    assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
+    assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in findings_of(
+        gyro
+    )
     (missing,) = [
-        one for one in gyro.definitions.import_findings if one.severity == "error"
+        finding
+        for finding in gyro.definitions.import_findings
+        if finding.severity == "error"
     ]
     why = "`Extra` is present only on a condition"
     assert (
@@ -231,16 +244,16 @@ def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(
 
 
 def copied(folder, name, old="", new=""):
-    """The data sheets, with something else in one of them."""
-    made = folder / "sheets"
-    shutil.copytree(SHEETS, made)
-    text = (made / name).read_text()
+    """Copy the data sheets with a replacement in one of them."""
+    copy = folder / "sheets"
+    shutil.copytree(SHEETS, copy)
+    text = (copy / name).read_text()
     assert old in text
-    (made / name).write_text(text.replace(old, new))
-    return made
+    (copy / name).write_text(text.replace(old, new))
+    return copy
 
 
-def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
+def test_an_undefined_value_removes_the_objects_that_use_it(tmp_path):
     folder = copied(
         tmp_path, "mission.xml", '<Define name="NAME_LENGTH" value="${WORD} + 4"/>', ""
     )
@@ -249,7 +262,7 @@ def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
     assert (
         "IMP081",
         f"message `Shoot`: from `File` on only bytes are imported: {why}",
-    ) in said(read)
+    ) in findings_of(read)
     assert (
         read.imported == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
     )
@@ -259,17 +272,17 @@ def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
     )
 
 
-def test_a_package_that_lies_elsewhere_is_said(tmp_path):
+def test_a_missing_package_is_reported(tmp_path):
     folder = copied(tmp_path, "packets.xml")
     (folder / "packets.xml").unlink()
-    said = why_not("camera.xml", folder)
+    reason = why_not("camera.xml", folder)
     assert (
         "is of the package `LINK/PACKETS`, which is neither in the file nor in its folder"
-        in said
+        in reason
     )
 
 
-def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
+def test_a_duplicate_package_or_value_is_reported_once(tmp_path):
     folder = copied(tmp_path, "packets.xml")
     shutil.copy(folder / "packets.xml", folder / "packets_old.xml")
     text = (
@@ -279,7 +292,7 @@ def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
     )
     (folder / "mission_old.xml").write_text(text)
     read = imported("camera.xml", folder)
-    assert [text for code, text in said(read) if code == "IMP076"] == [
+    assert [text for code, text in findings_of(read) if code == "IMP076"] == [
         "package `LINK/PACKETS` is in `packets.xml` and otherwise in `packets_old.xml`",
         "`${MISSION/PEAKS}` is in `mission.xml` and otherwise in `mission_old.xml`",
     ]
@@ -305,8 +318,8 @@ ENTRY = '<Entry name="P" type="byte"/>'
 
 
 def container(name, entries=ENTRY, more="", **attributes):
-    said = "".join(f' {key}="{value}"' for key, value in attributes.items())
-    return f'<ContainerDataType name="{name}"{said}>{more}<EntryList>{entries}</EntryList></ContainerDataType>'
+    attribute_text = "".join(f' {key}="{value}"' for key, value in attributes.items())
+    return f'<ContainerDataType name="{name}"{attribute_text}>{more}<EntryList>{entries}</EntryList></ContainerDataType>'
 
 
 def sheet(types, byte=BYTE):
@@ -324,9 +337,9 @@ def array(name, of, size):
     return f'<ArrayDataType name="{name}" dataTypeRef="{of}"><DimensionList><Dimension {size}/></DimensionList></ArrayDataType>'
 
 
-def constrained(one):
+def constrained(constraint):
     return container("B") + container(
-        "A", "", f"<ConstraintSet>{one}</ConstraintSet>", baseType="B"
+        "A", "", f"<ConstraintSet>{constraint}</ConstraintSet>", baseType="B"
     )
 
 
@@ -381,14 +394,14 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
         (nested(40, 1) + container("C40", ENTRY), "containers contain each other in a circle, or too deep"),
     ],
 )  # fmt: skip
-def test_containers_that_cannot_be_held_are_left_out_and_end(types, says, tmp_path):
+def test_unsupported_and_recursive_containers_are_left_out(types, says, tmp_path):
     assert says in refused(sheet(types), tmp_path)
 
 
 LONG = '<IntegerDataType name="long"><IntegerDataEncoding sizeInBits="16" byteOrder="littleEndian"/></IntegerDataType>'
 
 
-def test_an_error_control_behind_a_list_is_imported_behind_it(tmp_path):
+def test_an_error_control_after_a_list_is_imported(tmp_path):
     entries = (
         ENTRY
         + '<ListEntry name="L" type="long" listLengthField="P"/>'
@@ -408,10 +421,8 @@ def test_an_error_control_behind_a_list_is_imported_behind_it(tmp_path):
     assert (raw["L[1]"], raw["M"], raw["CRC"]) == (2, 7, 0x1234)
 
 
-def integer(said):
-    return (
-        f'<IntegerDataType name="byte"><IntegerDataEncoding {said}/></IntegerDataType>'
-    )
+def integer(encoding):
+    return f'<IntegerDataType name="byte"><IntegerDataEncoding {encoding}/></IntegerDataType>'
 
 
 @pytest.mark.parametrize(
@@ -431,7 +442,7 @@ def integer(said):
          "</EnumerationList></EnumeratedDataType>", "`P` never has the value `4` of `A`"),
     ],
 )  # fmt: skip
-def test_types_that_cannot_be_held_are_said(byte, says, tmp_path):
+def test_unsupported_types_are_reported(byte, says, tmp_path):
     assert says in refused(sheet(container("A"), byte), tmp_path)
 
 
@@ -461,7 +472,7 @@ def test_hostile_files_are_refused(text, says, tmp_path):
     assert says in refused(text, tmp_path)
 
 
-def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeypatch):
+def test_the_size_of_a_file_and_its_neighbours_is_limited(tmp_path, monkeypatch):
     monkeypatch.setattr(eds_types.Types, "most_steps", 100)
     assert "the file says more than 100 things" in refused(
         sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path
@@ -478,7 +489,7 @@ def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeyp
     )
 
 
-def test_a_file_beside_it_that_is_broken_is_named_and_others_are_not_looked_at(
+def test_a_broken_neighbouring_file_is_named_and_other_files_are_ignored(
     tmp_path,
 ):
     (tmp_path / "other.xml").write_text("<other><unclosed></other>")
@@ -503,7 +514,7 @@ def why_not(name, folder):
     return finding.message
 
 
-def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tmp_path):
+def test_a_container_may_contain_another_with_the_same_base(tmp_path):
     inner = container("I", entry("byte", "R"), baseType="X")
     (tmp_path / "one.xml").write_text(
         sheet(
@@ -513,39 +524,44 @@ def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tm
         )
     )
     fields = message(run.read(tmp_path / "one.xml", eds.Eds()), "A")["fields"]
-    assert [one["name"] for one in fields] == ["P", "Q P", "R"]
+    assert [field["name"] for field in fields] == ["P", "Q P", "R"]
 
 
-def test_an_id_in_front_of_all_is_the_header(tmp_path):
-    told = '<ConstraintSet><ValueConstraint entry="P" value="{}"/></ConstraintSet>'
+def test_an_id_at_the_start_of_all_messages_is_the_header(tmp_path):
+    constraint = (
+        '<ConstraintSet><ValueConstraint entry="P" value="{}"/></ConstraintSet>'
+    )
     types = "".join(
-        container(name, entry("byte", "R"), told.format(id), baseType="X")
+        container(name, entry("byte", "R"), constraint.format(id), baseType="X")
         for name, id in (("A", 7), ("B", 9))
     )
     (tmp_path / "ids.xml").write_text(sheet(container("X", abstract="true") + types))
     (tree,) = run.read(tmp_path / "ids.xml", eds.Eds()).trees.values()
     assert tree["protocol"]["link"]["header"] == [{"bits": 8, "role": "id"}]
     assert [
-        (one["id"], one["length"], one["fields"][0]["name"]) for one in tree["messages"]
+        (message["id"], message["length"], message["fields"][0]["name"])
+        for message in tree["messages"]
     ] == [
         (7, 1, "R"),
         (9, 1, "R"),
     ]
 
 
-def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):
+def test_messages_without_a_discriminator_get_numbers_and_a_finding(tmp_path):
     (tmp_path / "two.xml").write_text(sheet(container("A") + container("B")))
     read = run.read(tmp_path / "two.xml", eds.Eds())
-    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [
+    assert [
+        (message["name"], message["id"]) for message in read.trees["two"]["messages"]
+    ] == [
         ("A", 1),
         ("B", 2),
     ]
-    assert said(read) == [
+    assert findings_of(read) == [
         ("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")
     ]
 
 
-def test_the_command_reads_them_and_says_what_it_found(tmp_path):
+def test_the_command_imports_data_sheets_and_prints_the_findings(tmp_path):
     result = icdgen("import", str(SHEETS / "camera.xml"), "--out", "icd", cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
     assert (

@@ -1,7 +1,7 @@
-"""Formats of Kaitai Struct become ICDs: their sequence a message, or one for each way
-in which values let it go on.
+"""Kaitai Struct formats become ICDs: one message for the sequence, or one for each
+combination of values that selects fields.
 
-What is read of random frames is compared with kaitaistruct's reading in tests/devices.
+tests/devices compares the values of random frames with kaitaistruct.
 """
 
 from __future__ import annotations
@@ -16,9 +16,11 @@ from icdgen.icd.load import load
 from tests.definitions.test_can import FILES, field, message
 
 
-def import_findings(found):
-    """Findings but for what is not used (IMP085)."""
-    return [one for one in found.import_findings if one.code != "IMP085"]
+def import_findings(definitions):
+    """Return the findings except those about unused parts (IMP085)."""
+    return [
+        finding for finding in definitions.import_findings if finding.code != "IMP085"
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -37,26 +39,26 @@ def imported(name):
     return run.read(FILES / name, reader)
 
 
-def test_each_way_in_which_values_let_the_sequence_go_on_is_a_message_told_by_them(
+def test_each_alternative_of_a_sequence_is_a_message_with_its_discriminator(
     probe,
 ):
     (tree,) = probe.trees.values()
-    told = [
+    rows = [
         (
-            one["name"],
+            message["name"],
             [
                 part["const"]
-                for part in one["fields"]
+                for part in message["fields"]
                 if part["name"] in ("is_late", "kind")
             ],
         )
-        for one in tree["messages"]
+        for message in tree["messages"]
     ]
-    assert told == [
+    assert rows == [
         ("probe with delay power", [1, 1]), ("probe with delay places", [1, 2]),
         ("probe power", [0, 1]), ("probe places", [0, 2]),
     ]  # fmt: skip
-    assert {one["id"] for one in tree["messages"]} == {
+    assert {message["id"] for message in tree["messages"]} == {
         1
     } and probe.definitions.total == probe.imported == 4
     assert (
@@ -65,7 +67,7 @@ def test_each_way_in_which_values_let_the_sequence_go_on_is_a_message_told_by_th
     )
 
 
-def test_contents_and_what_alone_is_valid_are_constants(probe):
+def test_contents_and_single_valid_values_are_constants(probe):
     assert (
         field(probe, "probe power", "sync")["const"],
         field(probe, "probe power", "version")["const"],
@@ -75,16 +77,15 @@ def test_contents_and_what_alone_is_valid_are_constants(probe):
     )
 
 
-def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, frame):
-    said = field(probe, "probe power", "temperature_raw")
-    assert (said["formula"], said["unit"]) == ("raw*0.5 - 40", "C")
+def test_linear_instances_are_formulas_and_others_are_reported(probe, frame):
+    power = field(probe, "probe power", "temperature_raw")
+    assert (power["formula"], power["unit"]) == ("raw*0.5 - 40", "C")
     assert field(frame, "frame unnumbered", "current")["formula"] == "raw/1000.0 + 0.5"
-    assert "formula" not in field(
-        frame, "frame unnumbered", "uptime"
-    )  # whole numbers are divided without the rest
+    # Division of integers truncates.
+    assert "formula" not in field(frame, "frame unnumbered", "uptime")
     assert [
-        (one.code, one.message)
-        for one in (
+        (finding.code, finding.message)
+        for finding in (
             *import_findings(probe.definitions),
             *import_findings(frame.definitions),
         )
@@ -111,7 +112,7 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
         ),
         ("IMP081", "`payload data` is not imported: its size is `size * 2`"),
     ]
-    assert [one.spot.line for one in import_findings(frame.definitions)] == [
+    assert [finding.spot.line for finding in import_findings(frame.definitions)] == [
         18,
         28,
         46,
@@ -120,10 +121,11 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
     ]
 
 
-def test_types_that_are_repeated_are_structs_and_others_part_of_the_message(probe):
+def test_repeated_types_are_structs_and_others_are_part_of_the_message(probe):
     (tree,) = probe.trees.values()
     assert [
-        (one["name"], one["length"], len(one["fields"])) for one in tree["structs"]
+        (struct["name"], struct["length"], len(struct["fields"]))
+        for struct in tree["structs"]
     ] == [("place", 8, 2)]
     assert field(probe, "probe places", "place") | {"at": 0} == {
         "at": 0,
@@ -137,22 +139,24 @@ def test_types_that_are_repeated_are_structs_and_others_part_of_the_message(prob
     )
 
 
-def test_some_bits_that_decide_are_fields_of_their_own_and_the_whole_is_a_view(frame):
+def test_discriminating_bits_are_fields_and_the_complete_value_is_an_overlay_field(
+    frame,
+):
     parts = [
-        one
-        for one in message(frame, "frame unnumbered")["fields"]
-        if one["name"].startswith("control")
+        field
+        for field in message(frame, "frame unnumbered")["fields"]
+        if field["name"].startswith("control")
     ]
-    assert [(one["name"], one["at"], one["bits"], one.get("const")) for one in parts if "view" not in one] == [
+    assert [(part["name"], part["at"], part["bits"], part.get("const")) for part in parts if "view" not in part] == [
         ("control bits 0 to 1", 56, 2, 3), ("control bits 2 to 3", 58, 2, None),
         ("control bit 4", 60, 1, 0), ("control bits 5 to 7", 61, 3, None),
     ]  # fmt: skip
     assert [
-        (one["name"], one["at"], one["bits"]) for one in parts if "view" in one
+        (part["name"], part["at"], part["bits"]) for part in parts if "view" in part
     ] == [("control", 56, 8)]
 
 
-def test_bytes_are_held_of_what_cannot_be_told_further(frame):
+def test_unsupported_content_is_imported_as_bytes(frame):
     assert field(frame, "frame unnumbered", "callsign") == {
         "at": 0,
         "bits": 48,
@@ -163,8 +167,10 @@ def test_bytes_are_held_of_what_cannot_be_told_further(frame):
     assert message(frame, "frame information")["length"] == 10
 
 
-def test_bits_enumerations_limits_and_ends_arrive(frame):
-    of = {one["name"]: one for one in message(frame, "frame unnumbered")["fields"]}
+def test_bits_enumerations_limits_and_variable_length_fields_are_imported(frame):
+    of = {
+        field["name"]: field for field in message(frame, "frame unnumbered")["fields"]
+    }
     assert (
         of["low"]["at"],
         of["high"]["at"],
@@ -178,14 +184,16 @@ def test_bits_enumerations_limits_and_ends_arrive(frame):
     )
     assert (of["samples"]["at"], of["samples"]["count"]) == (168, "rest")
     (tree,) = frame.trees.values()
-    assert [(one["value"], one["name"]) for one in tree["enums"][0]["members"]] == [
+    assert [
+        (member["value"], member["name"]) for member in tree["enums"][0]["members"]
+    ] == [
         (0, "off"),
         (1, "on"),
         (3, "both"),
     ]
 
 
-def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is_none(
+def test_limits_of_raw_values_apply_neither_to_formulas_nor_to_computed_values(
     tmp_path,
 ):
     text = ksy("{id: b, type: u1, valid: {min: 2, max: 999}}", "{id: c, type: u1, valid: {min: 2}}", "{id: d, type: u1, valid: a}",
@@ -204,7 +212,7 @@ def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is
 
 
 @pytest.mark.parametrize(
-    ("attribute", "held"),
+    ("attribute", "expected"),
     [
         ("{id: b, size: a}", {"type": "bytes", "size": "a", "up_to": 255}),
         ("{id: b, type: str, encoding: ASCII, size: a + 2}",
@@ -214,14 +222,16 @@ def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is
         ("{id: b, type: t, repeat: expr, repeat-expr: a}", {"struct": "t", "count": "a", "up_to": 255}),
     ],
 )  # fmt: skip
-def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tmp_path):
+def test_a_repetition_with_a_count_is_a_variable_length_array(
+    attribute, expected, tmp_path
+):
     more = "types:\n  t:\n    seq: [{id: c, type: u1}]\ninstances:\n  d: {value: a * 0.5}\n"
     (tmp_path / "bad.ksy").write_text(ksy(attribute, "{id: z, type: u1}", more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     assert field(read, "bad", "b") == {
         "at": 8,
         "name": "b",
-        **held,
+        **expected,
     } and "formula" not in field(read, "bad", "a")
     assert field(read, "bad", "z") == {
         "at": 8,
@@ -230,12 +240,12 @@ def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tm
         "name": "z",
         "type": "uint",
     }
-    assert [one.message for one in import_findings(read.definitions)] == [
+    assert [finding.message for finding in import_findings(read.definitions)] == [
         "`d`: `a * 0.5` is not a linear function of one field",
     ]
 
 
-def test_what_follows_parts_of_variable_size_is_read_behind_them(tmp_path):
+def test_fields_after_variable_length_fields_are_imported(tmp_path):
     text = ksy(
         "{id: n, type: u1}",
         "{id: words, size: a}",
@@ -275,10 +285,10 @@ def test_what_follows_parts_of_variable_size_is_read_behind_them(tmp_path):
          "`c` is not imported: it follows a part up to the end of the frame"),
     ],
 )  # fmt: skip
-def test_what_depends_on_bytes_that_move_is_left_out(attributes, says, tmp_path):
+def test_fields_that_depend_on_moving_bytes_are_left_out(attributes, says, tmp_path):
     (tmp_path / "bad.ksy").write_text(ksy(*attributes))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
-    assert [one.message for one in import_findings(read.definitions)] == [says]
+    assert [finding.message for finding in import_findings(read.definitions)] == [says]
     assert field(read, "bad", "b")["type"] == "bytes"
 
 
@@ -288,7 +298,7 @@ BYTE = "{id: a, type: u1}"
 def ksy(*attributes, more=""):
     return (
         "meta:\n  id: bad\nseq:\n"
-        + "".join(f"  - {one}\n" for one in (BYTE, *attributes))
+        + "".join(f"  - {attribute}\n" for attribute in (BYTE, *attributes))
         + more
     )
 
@@ -335,20 +345,23 @@ BROAD = "types:\n" + "".join(
          '`b` is not imported: it depends on whether a field is `"x"`'),
     ],
 )  # fmt: skip
-def test_what_cannot_be_held_is_said_with_the_reason_and_what_is_before_it_is_held(
+def test_unsupported_content_is_reported_and_the_fields_before_it_are_imported(
     attribute, more, says, tmp_path
 ):
     (tmp_path / "bad.ksy").write_text(ksy(attribute, more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
-    assert read.failed and [one.code for one in import_findings(read.definitions)] == [
-        "IMP081"
-    ]
+    assert read.failed and [
+        finding.code for finding in import_findings(read.definitions)
+    ] == ["IMP081"]
     assert (
         says in read.definitions.import_findings[0].message
         and read.definitions.import_findings[0].spot.line
     )
-    for one in read.trees["bad"]["messages"]:
-        assert one["fields"][0]["name"] == "a" and one["fields"][-1]["type"] == "bytes"
+    for imported in read.trees["bad"]["messages"]:
+        assert (
+            imported["fields"][0]["name"] == "a"
+            and imported["fields"][-1]["type"] == "bytes"
+        )
 
 
 BOMB = (
@@ -387,9 +400,7 @@ BOMB = (
         ),
     ],
 )
-def test_hostile_files_and_what_is_no_definition_are_refused(
-    text, says, line, tmp_path
-):
+def test_hostile_and_invalid_files_are_refused(text, says, line, tmp_path):
     (tmp_path / "bad.ksy").write_text(text)
     reader = kinds.of(tmp_path / "bad.ksy")
     assert isinstance(reader, kaitai.Kaitai)
@@ -403,24 +414,24 @@ def test_hostile_files_and_what_is_no_definition_are_refused(
 
 
 @pytest.mark.parametrize("more", [BROAD, ""])
-def test_a_small_file_that_says_much_is_bounded(more, tmp_path, monkeypatch):
+def test_a_small_file_that_expands_is_limited(more, tmp_path, monkeypatch):
     monkeypatch.setattr(kaitai_parts.File, "most_steps", 2000)
     flags = [f"{{id: f{n}, type: u1}}" for n in range(40)]
     flags += [f"{{id: x{n}, type: u1, if: f{n} == 1}}" for n in range(40)]
     text = ksy("{id: b, type: t0}", more=more) if more else ksy(*flags)
-    found = kaitai.Kaitai().read("bad.ksy", text.encode())
+    definitions = kaitai.Kaitai().read("bad.ksy", text.encode())
     assert (
-        import_findings(found)[-1].message
+        import_findings(definitions)[-1].message
         == "message `bad` is not imported: with it the file says more than 2,000 things"
     )
 
 
-def test_ways_to_go_on_are_bounded(tmp_path):
+def test_the_number_of_alternatives_is_limited(tmp_path):
     cases = ", ".join(f"{n}: u1" for n in range(256))
     text = ksy("{id: b, type: u1}", f"{{id: c, type: {{switch-on: a, cases: {{{cases}}}}}}}",
                f"{{id: d, type: {{switch-on: b, cases: {{{cases}}}}}}}")  # fmt: skip
-    found = kaitai.Kaitai().read("bad.ksy", text.encode())
-    assert len(found.networks[0].messages) == kaitai.MOST_MESSAGES
-    assert found.import_findings[-1].message.endswith(
+    definitions = kaitai.Kaitai().read("bad.ksy", text.encode())
+    assert len(definitions.networks[0].messages) == kaitai.MOST_MESSAGES
+    assert definitions.import_findings[-1].message.endswith(
         "it branches in more than 256 ways; the others are not imported"
     )

@@ -1,5 +1,5 @@
-"""Dialects of MAVLink become ICDs whose links and fields are those that pymavlink makes
-of the same XML.
+"""MAVLink dialects become ICDs whose links and fields agree with what pymavlink reads
+from the same XML.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ def rover():
     return run.read(FILES / "rover.xml", reader)
 
 
-def test_fields_come_in_the_order_in_which_they_are_sent_and_extensions_behind_them(
+def test_fields_have_the_order_on_the_wire_followed_by_extensions(
     rover,
 ):
     drive = message(rover, "ROVER_DRIVE")
-    assert [(one["at"], one["name"]) for one in drive["fields"]] == [
+    assert [(field["at"], field["name"]) for field in drive["fields"]] == [
         (0, "lat"), (32, "yaw"), (64, "currents"), (112, "eph"), (128, "mode"), (136, "name"), (216, "signed_mode"),
         (224, "odometer"),
     ]  # fmt: skip
@@ -44,7 +44,9 @@ def test_fields_come_in_the_order_in_which_they_are_sent_and_extensions_behind_t
     )
 
 
-def test_units_that_say_a_factor_are_formulas_and_what_is_not_known_is_special(rover):
+def test_units_with_a_factor_become_formulas_and_invalid_markers_become_special_values(
+    rover,
+):
     lat, currents, yaw = (
         field(rover, "ROVER_DRIVE", name) for name in ("lat", "currents", "yaw")
     )
@@ -70,10 +72,10 @@ def test_units_that_say_a_factor_are_formulas_and_what_is_not_known_is_special(r
     assert field(rover, "HEARTBEAT", "mavlink_version")["const"] == 3
 
 
-def test_enumerations_of_several_files_are_one_and_those_without_fields_are_none(rover):
+def test_enumerations_are_merged_across_files_and_unused_ones_left_out(rover):
     (tree,) = rover.trees.values()
     (mode,) = tree["enums"]
-    assert [(one["value"], one["name"]) for one in mode["members"]] == [
+    assert [(member["value"], member["name"]) for member in mode["members"]] == [
         (0, "OFF"),
         (2, "MANUAL"),
         (8, "3D_DRIVE"),
@@ -81,13 +83,16 @@ def test_enumerations_of_several_files_are_one_and_those_without_fields_are_none
     assert rover.identifiers == ["value `3D_DRIVE`: `value 3D_DRIVE`"]
     assert field(rover, "ROVER_DRIVE", "mode")["enum"] == "ROVER_MODE"
     assert [
-        one["meaning"] for one in field(rover, "ROVER_DRIVE", "signed_mode")["special"]
+        value["meaning"]
+        for value in field(rover, "ROVER_DRIVE", "signed_mode")["special"]
     ] == [
         "OFF",
         "MANUAL",
         "3D_DRIVE",
     ]
-    assert [(one.code, one.message) for one in rover.definitions.import_findings] == [
+    assert [
+        (finding.code, finding.message) for finding in rover.definitions.import_findings
+    ] == [
         (
             "IMP077",
             "enumeration `ROVER_MODE`: 2 is `ROVER_MODE_MANUAL` and `ROVER_MODE_BY_HAND`",
@@ -97,29 +102,29 @@ def test_enumerations_of_several_files_are_one_and_those_without_fields_are_none
 
 
 @pytest.mark.parametrize(("version", "reader"), READERS.items())
-def test_seeds_names_places_and_lengths_are_those_of_pymavlink(version, reader):
+def test_seeds_names_positions_and_lengths_equal_those_of_pymavlink(version, reader):
     dialect = import_module(f"pymavlink.dialects.{version}.common")
-    found = kinds.read(Path(dialect.__file__).with_suffix(".xml"), reader)
-    (network,) = found.networks
+    definitions = kinds.read(Path(dialect.__file__).with_suffix(".xml"), reader)
+    (network,) = definitions.networks
     ours = {
-        one["id"]: (
-            one["name"],
-            network.seeds[one["name"]],
-            one["length"],
-            [part["name"] for part in one["fields"]],
+        message["id"]: (
+            message["name"],
+            network.seeds[message["name"]],
+            message["length"],
+            [part["name"] for part in message["fields"]],
         )
-        for one in network.messages
+        for message in network.messages
     }
     theirs = {
-        one.id: (
-            one.msgname,
-            one.crc_extra,
-            one.unpacker.size,
-            list(one.ordered_fieldnames),
+        message_class.id: (
+            message_class.msgname,
+            message_class.crc_extra,
+            message_class.unpacker.size,
+            list(message_class.ordered_fieldnames),
         )
-        for one in dialect.mavlink_map.values()
+        for message_class in dialect.mavlink_map.values()
     }
-    assert ours == theirs and len(ours) == found.total > 100
+    assert ours == theirs and len(ours) == definitions.total > 100
 
 
 @pytest.mark.parametrize(
@@ -145,7 +150,7 @@ def test_seeds_names_places_and_lengths_are_those_of_pymavlink(version, reader):
         ({"a.xml": "<messages/>"}, "no message can be imported, for none is defined"),
     ],
 )
-def test_what_is_included_may_not_lead_astray(files, says, tmp_path):
+def test_includes_outside_the_folder_or_in_a_cycle_are_refused(files, says, tmp_path):
     for name, text in files.items():
         (tmp_path / name).write_text(f"<mavlink>{text}</mavlink>")
     with pytest.raises(Findings) as raised:
@@ -169,7 +174,7 @@ def test_version_1_has_ids_of_a_byte_and_no_extensions(tmp_path):
         shutil.copy(FILES / name, tmp_path)
     read = run.read(tmp_path / "rover.xml", kinds.get("mavlink1"))
     (tree,) = read.trees.values()
-    assert [one["name"] for one in tree["messages"]] == [
+    assert [message["name"] for message in tree["messages"]] == [
         "HEARTBEAT"
     ] and "may_end_early" not in tree["messages"][0]
     assert (
@@ -179,7 +184,7 @@ def test_version_1_has_ids_of_a_byte_and_no_extensions(tmp_path):
 
 
 def dialect(folder, *fields):
-    """A dialect with a message of these fields."""
+    """Return a dialect with a message of these fields."""
     (folder / "one.xml").write_text(
         f'<mavlink><messages><message id="1" name="STATE">{"".join(fields)}</message></messages></mavlink>'
     )
@@ -187,7 +192,7 @@ def dialect(folder, *fields):
 
 
 @pytest.mark.parametrize("length", [1, 2])
-def test_of_a_message_of_one_byte_nothing_can_be_cut_off(length, tmp_path):
+def test_a_message_of_one_byte_cannot_end_early(length, tmp_path):
     fields = (
         f'<field type="uint8_t" name="part{number}">A part.</field>'
         for number in range(length)
@@ -199,7 +204,7 @@ def test_of_a_message_of_one_byte_nothing_can_be_cut_off(length, tmp_path):
     )
 
 
-def test_what_a_dialect_says_beyond_an_icd_is_reported(tmp_path):
+def test_statements_that_an_icd_cannot_represent_are_reported(tmp_path):
     field = '<field type="uint8_t" name="mode" increment="2" units="m">Text.</field>'
     read = dialect(
         tmp_path,
@@ -208,7 +213,9 @@ def test_what_a_dialect_says_beyond_an_icd_is_reported(tmp_path):
         '<field type="uint8_t" name="more">More.</field>',
         "<wip/>",
     )
-    assert [(one.code, one.message) for one in read.definitions.import_findings] == [
+    assert [
+        (finding.code, finding.message) for finding in read.definitions.import_findings
+    ] == [
         ("IMP085", "`increment` of `field` is not used (`mode`)"),
         ("IMP085", "`wip` of `message` is not used (`STATE`)"),
     ]

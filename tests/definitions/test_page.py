@@ -1,5 +1,5 @@
 """The pages about definitions: each file gives the output shown, from the definition to
-the program that runs.
+a running program.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def blocks(language: str) -> list[str]:
 
 
 def ends_as_shown(icd: str, number: int) -> bool:
-    """Whether an ICD ends with the YAML block of this number."""
+    """Return whether an ICD ends with the YAML block of this number."""
     return bool(re.search(documents.layout(blocks("yaml")[number]) + r"\Z", icd))
 
 
@@ -35,7 +35,7 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
     sessions = blocks("console")
     for session in sessions[:3]:
         expected = [line for line in session.splitlines() if not line.startswith("$ ")]
-        said = []
+        output = []
         for command in re.findall(r"^\$ (.*)$", session, re.MULTILINE):
             line = (
                 command.replace("icdgen ", f"{sys.executable} -m icdgen ", 1)
@@ -46,12 +46,12 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
                 line, shell=True, cwd=tmp_path, capture_output=True, text=True
             )
             assert run.returncode == 0, run.stdout + run.stderr
-            said += (
+            output += (
                 run.stdout.splitlines()
                 if not command.startswith("icdgen --lang")
                 else []
             )
-        assert said == expected
+        assert output == expected
     written = (tmp_path / "icd" / "train.yaml").read_text()
     assert re.fullmatch(documents.layout(blocks("yaml")[0]), written)
 
@@ -59,7 +59,7 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
     (tmp_path / "icd" / "errata" / "train.yaml").write_text(blocks("yaml")[1])
     loaded = load([tmp_path / "icd"])
     assert loaded.findings == [] and [
-        one.kind for one in loaded.icd.nodes[0].messages
+        message.kind for message in loaded.icd.nodes[0].messages
     ] == ["telecommand"]
 
 
@@ -116,8 +116,12 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(
         (tmp_path / name).write_text(text)
     read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
     (tree,) = read.trees.values()
-    held = emit.canonical_yaml({key: tree[key] for key in ("structs", "messages")})
-    assert read.definitions.import_findings == [] and held.endswith(blocks("yaml")[5])
+    text_of_tree = emit.canonical_yaml(
+        {key: tree[key] for key in ("structs", "messages")}
+    )
+    assert read.definitions.import_findings == [] and text_of_tree.endswith(
+        blocks("yaml")[5]
+    )
     (tmp_path / "heater.yaml").write_text(emit.canonical_yaml(tree))
     (tmp_path / "main.c").write_text(blocks("c")[2])
     generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"
@@ -126,8 +130,8 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(
         "cc -std=c99 -Wall -Werror -Iinclude main.c -o main",
         "./main",
     ):
-        made = subprocess.run(
+        result = subprocess.run(
             command, shell=True, cwd=tmp_path, capture_output=True, text=True
         )
-        assert made.returncode == 0, made.stdout + made.stderr
-    assert made.stdout == blocks("text")[1]
+        assert result.returncode == 0, result.stdout + result.stderr
+    assert result.stdout == blocks("text")[1]

@@ -1,4 +1,4 @@
-"""A package of its own brings a kind of definition."""
+"""Another package can add a kind of definition."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Lines:
 """
 
 
-def test_a_kind_of_another_package_is_known_by_its_entry_point(tmp_path, monkeypatch):
+def test_another_package_adds_a_kind_by_an_entry_point(tmp_path, monkeypatch):
     (tmp_path / "their_lines.py").write_text(MODULE)
     dist = tmp_path / "their_lines-1.0.dist-info"
     dist.mkdir()
@@ -40,5 +40,8 @@ def test_a_kind_of_another_package_is_known_by_its_entry_point(tmp_path, monkeyp
     reader = kinds.of(file)
     assert reader is not None and reader.name == "lines" and "lines" in kinds.names()
     read = run.read(file, reader)
-    assert [one["name"] for one in read.trees["lines"]["messages"]] == ["First", "2nd"]
+    assert [message["name"] for message in read.trees["lines"]["messages"]] == [
+        "First",
+        "2nd",
+    ]
     assert read.identifiers == ["message `2nd`: `message 2nd`"]

@@ -1,4 +1,4 @@
-"""What holds for every signal and every table of values."""
+"""Properties of the import that hold for every signal and every table of values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PLACES = st.builds(
 
 
 @given(PLACES)
-def test_bits_are_the_same_however_they_are_counted(place):
+def test_both_ways_to_count_bits_give_the_same_bits(place):
     other = place.counted(frames.BIG if place.order == frames.LITTLE else frames.LITTLE)
     assert other.mask == place.mask and place.mask.bit_count() == place.bits
     assert (other.order != place.order) == place.is_within_byte
@@ -34,19 +34,19 @@ def test_bits_are_the_same_however_they_are_counted(place):
         st.sampled_from(["Off", "On", "Spare", "", "Off 3", "Déjà\n vu"]),
     )
 )
-def test_each_value_with_a_name_has_one_member_and_each_member_a_name_of_its_own(
+def test_each_named_value_has_one_member_and_member_names_are_unique(
     choices,
 ):
-    found = members(choices, 0, 31, "here", Definitions(""))
+    drawn_members = members(choices, 0, 31, "here", Definitions(""))
     values = [
         value
-        for one in found
-        for value in range(one["value"], one.get("to", one["value"]) + 1)
+        for member in drawn_members
+        for value in range(member["value"], member.get("to", member["value"]) + 1)
     ]
     assert values == sorted(
         value for value, name in choices.items() if 0 <= value <= 31 and name
     )
-    names = [one["name"] for one in found]
+    names = [member["name"] for member in drawn_members]
     assert len(set(names)) == len(names) and all(names)
 
 
@@ -55,7 +55,7 @@ def test_each_value_with_a_name_has_one_member_and_each_member_a_name_of_its_own
     st.sampled_from([{}, {"unit": "km/h"}]), st.sampled_from([{}, {"formula": "raw*0.1"}]),
     st.dictionaries(st.sampled_from(["min", "max"]), st.integers(-8, 8)),
 )  # fmt: skip
-def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_formula(
+def test_named_values_keep_the_sign_unit_limits_and_formula(
     bits, is_signed, choices, unit, formula, limits
 ):
     kind = "int" if is_signed else "uint"
@@ -67,14 +67,14 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
     enums.hold(
         field, bits, choices, "Gear", "Status", "message `Status`, `Gear`", notes
     )
-    declared = {one["name"]: one["members"] for one in enums.declared()}
+    declared = {enum["name"]: enum["members"] for enum in enums.declared()}
     first, last = integer_range(bits, is_signed)
     possible = {value for value in choices if first <= value <= last}
     if field["type"] == "enum":
         named = [
             value
-            for one in declared["Gear"]
-            for value in range(one["value"], one.get("to", one["value"]) + 1)
+            for member in declared["Gear"]
+            for value in range(member["value"], member.get("to", member["value"]) + 1)
         ]
         assert is_signed == any(value < 0 for value in named), (
             "the sign of an enumeration is that of its values"
@@ -92,7 +92,7 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
             and field.items() >= (unit | formula | limits).items()
             and not declared
         )
-        named = [one["value"] for one in field.get("special", ())]
+        named = [value["value"] for value in field.get("special", ())]
         is_covered = (
             possible
             and not formula
@@ -105,7 +105,7 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
         "each value that the field can have keeps its name"
     )
     assert len(choices) == len(possible) or any(
-        one.code == "IMP074" for one in notes.import_findings
+        finding.code == "IMP074" for finding in notes.import_findings
     )
 
 
@@ -113,17 +113,17 @@ NUMBERS = st.floats(-1e9, 1e9).filter(lambda number: abs(number) > 1e-12)
 
 
 @given(NUMBERS, st.just(0.0) | NUMBERS, st.integers(-(2**31), 2**31))
-def test_a_formula_says_what_factor_and_offset_say(factor, offset, raw):
-    said = wording.formula(wording.printed(factor), wording.printed(offset)).get(
+def test_a_formula_equals_its_factor_and_offset(factor, offset, raw):
+    formula = wording.formula(wording.printed(factor), wording.printed(offset)).get(
         "formula", "raw"
     )
-    assert parse(said).physical(Fraction(raw)) == Fraction(
+    assert parse(formula).physical(Fraction(raw)) == Fraction(
         str(factor)
     ) * raw + Fraction(str(offset))
 
 
 @given(st.text(max_size=30), st.text(max_size=30))
-def test_names_of_nodes_are_names_and_texts_are_one_line(name, text):
+def test_names_of_nodes_are_valid_and_texts_have_one_line(name, text):
     import re
 
     assert re.fullmatch("[a-z][a-z0-9_]{0,39}", wording.node_name(name))

@@ -1,4 +1,4 @@
-"""Definitions in the shapes that public files have become ICDs without a message fewer.
+"""Definitions with features of public files become ICDs without losing a message.
 
 `python -m tests.xtce.shapes` compares the values with those of Yamcs, `python -m
 tests.devices` with those of other libraries.
@@ -22,7 +22,7 @@ SHAPES = FILES / "shapes"
 
 
 def placed(name, at):
-    """An entry that says where it stands."""
+    """Return an entry with an explicit position."""
     location = f'<LocationInContainerInBits referenceLocation="containerStart"><FixedValue>{at}</FixedValue>'
     return f'<ParameterRefEntry parameterRef="{name}">{location}</LocationInContainerInBits></ParameterRefEntry>'
 
@@ -33,19 +33,27 @@ def imported(path):
 
 def imported_set(*paths):
     files = [
-        one
+        file_and_kind
         for path in paths
-        for one in (kinds.within(path) if path.is_dir() else [(path, kinds.of(path))])
+        for file_and_kind in (
+            kinds.within(path) if path.is_dir() else [(path, kinds.of(path))]
+        )
     ]
-    return {Path(one.definitions.file).name: one for one in run.read_set(files)}
+    return {Path(read.definitions.file).name: read for read in run.read_set(files)}
 
 
 def findings(read):
-    return [(one.code, one.severity) for one in read.definitions.import_findings]
+    return [
+        (finding.code, finding.severity) for finding in read.definitions.import_findings
+    ]
 
 
 def errors(read):
-    return [one for one in read.definitions.import_findings if one.severity == "error"]
+    return [
+        finding
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -53,21 +61,21 @@ def kite():
     return imported(SHAPES / "aggregate.xml")
 
 
-def test_xtce_conditions_on_members_of_aggregates_tell_messages_apart(kite):
+def test_xtce_conditions_on_members_of_aggregates_are_discriminators(kite):
     (tree,) = kite.trees.values()
-    assert [(one["name"], one["id"]) for one in tree["messages"]] == [
+    assert [(message["name"], message["id"]) for message in tree["messages"]] == [
         ("Orbit", 100), ("Wheels", 101), ("Sails", 101), ("Reboot", 101), ("SwitchOn", 101),
     ]  # fmt: skip
     assert (
         field(kite, "Wheels", "Section Kind")["const"] == 1
         and field(kite, "Sails", "Section Kind")["const"] == 2
     )
-    assert [one["name"] for one in message(kite, "Orbit")["fields"]] == [
+    assert [field["name"] for field in message(kite, "Orbit")["fields"]] == [
         "Elapsed", "Position x", "Position y", "Position z", "Shadow",
     ]  # fmt: skip
 
 
-def test_xtce_a_container_that_only_others_are_based_on_is_a_note_and_no_missing_message(
+def test_xtce_a_container_used_only_as_a_base_is_a_note_and_no_missing_message(
     kite,
 ):
     assert (
@@ -83,7 +91,7 @@ def test_xtce_a_command_container_without_a_base_continues_that_of_the_base_comm
     assert message(kite, "Reboot")["fields"] == [
         {"at": 0, "bits": 16, "name": "Packet_ID", "type": "uint", "const": 1}
     ]
-    assert [one["name"] for one in message(kite, "SwitchOn")["fields"]] == [
+    assert [field["name"] for field in message(kite, "SwitchOn")["fields"]] == [
         "Packet_ID",
         "Battery",
     ]
@@ -98,14 +106,14 @@ def edited(tmp_path, *changes):
     return imported(tmp_path / "kite.xml")
 
 
-def test_xtce_a_member_that_an_aggregate_does_not_have_costs_the_message_alone(
+def test_xtce_an_unknown_member_of_an_aggregate_removes_only_its_message(
     tmp_path,
 ):
     read = edited(tmp_path, ('"Section/Kind"', '"Section/Sort"'))
     assert read.imported == 4
     assert (
         "`Sails` is not imported: it depends on `Section/Sort`, which it does not have"
-        in "".join(one.message for one in read.definitions.import_findings)
+        in "".join(finding.message for finding in read.definitions.import_findings)
     )
 
 
@@ -119,7 +127,7 @@ def test_xtce_an_entry_may_be_a_member_of_an_aggregate(tmp_path):
     }
 
 
-def test_xtce_a_packet_without_data_costs_itself_and_not_the_file(tmp_path):
+def test_xtce_a_packet_without_data_is_left_out_and_the_file_imported(tmp_path):
     assigned = '<ArgumentAssignment argumentName="Packet_ID" argumentValue="{}"/>'
     entry = '<EntryList><ArgumentRefEntry argumentRef="Packet_ID"/></EntryList>'
     read = edited(
@@ -129,33 +137,33 @@ def test_xtce_a_packet_without_data_costs_itself_and_not_the_file(tmp_path):
         (assigned.format(2), ""),
     )
     assert read.imported == 4 and "SwitchOn" in {
-        one["name"] for one in read.trees["kite"]["messages"]
+        message["name"] for message in read.trees["kite"]["messages"]
     }
     (lost,) = [
-        one.message
-        for one in read.definitions.import_findings
-        if one.severity == "error"
+        finding.message
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     ]
     assert lost.startswith("message `Reboot` is not imported: it has no data")
 
 
-def test_xtce_a_header_of_which_only_parts_are_named_is_one(tmp_path):
+def test_xtce_a_header_may_have_named_parts_only(tmp_path):
     text = (SHAPES / "aggregate.xml").read_text()
-    whole = re.search(
+    header = re.search(
         r"<ParameterRefEntry parameterRef=\"Packet_Id\"/>.*?\"Packet_Length\"/>",
         text,
         re.DOTALL,
     )[0]
     read = edited(
         tmp_path,
-        (whole, placed("Packet_Id/APID", 5) + placed("Packet_Sequence/Count", 18)),
+        (header, placed("Packet_Id/APID", 5) + placed("Packet_Sequence/Count", 18)),
         ('<ParameterRefEntry parameterRef="Elapsed"/>', placed("Elapsed", 48)),
         ('<ParameterRefEntry parameterRef="Section"/>', placed("Section", 48)),
         ('<Comparison value="0" parameterRef="Packet_Id/Version"/>', ""),
         ('<Comparison value="TM" parameterRef="Packet_Id/Type"/>', ""),
         ('<Comparison value="NotPresent" parameterRef="Packet_Id/Secondary"/>', ""),
     )
-    assert [one["id"] for one in read.trees["kite"]["messages"]] == [
+    assert [message["id"] for message in read.trees["kite"]["messages"]] == [
         100,
         101,
         101,
@@ -172,7 +180,9 @@ def test_xtce_a_field_within_the_header_is_left_out_with_a_finding(tmp_path):
     entry = '<ParameterRefEntry parameterRef="Shadow"/>'
     read = edited(tmp_path, (entry, entry + placed("Wheel", 25)))
     (lost,) = [
-        one for one in read.definitions.import_findings if one.severity == "error"
+        finding
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     ]
     assert (lost.code, lost.message) == (
         "IMP086",
@@ -185,10 +195,10 @@ def test_kaitai_types_without_a_sequence_and_sizes_of_0_have_no_bytes():
     read = imported(SHAPES / "cases.ksy")
     (tree,) = read.trees.values()
     assert findings(read) == [] and read.imported == 3
-    assert [(one["name"], one["length"]) for one in tree["messages"]] == [
+    assert [(message["name"], message["length"]) for message in tree["messages"]] == [
         ("cases power", 5), ("cases nothing", 1), ("cases unknown", 1),
     ]  # fmt: skip
-    assert [(one["name"], one["at"]) for one in message(read, "cases power")["fields"]] == [
+    assert [(field["name"], field["at"]) for field in message(read, "cases power")["fields"]] == [
         ("kind", 0), ("volts", 8), ("amps", 24),
     ]  # fmt: skip
 
@@ -196,7 +206,9 @@ def test_kaitai_types_without_a_sequence_and_sizes_of_0_have_no_bytes():
 def test_kaitai_instances_at_fixed_places_are_the_fields_of_a_format_without_a_sequence():
     read = imported(SHAPES / "places.ksy")
     assert findings(read) == []
-    assert [(one["name"], one["at"]) for one in message(read, "places")["fields"]] == [
+    assert [
+        (field["name"], field["at"]) for field in message(read, "places")["fields"]
+    ] == [
         ("x", 0),
         ("y", 16),
         ("tail", 48),
@@ -216,7 +228,7 @@ def test_xtce_files_that_refer_to_each_other_are_one_database_called_like_their_
     (read,) = imported_set(SHAPES / "pus").values()
     assert findings(read) == [] and read.imported == read.definitions.total == 4
     (name, tree), = read.trees.items()  # fmt: skip
-    assert name == "pus" and [(one["name"], one["id"]) for one in tree["messages"]] == [
+    assert name == "pus" and [(message["name"], message["id"]) for message in tree["messages"]] == [
         ("report", 7), ("alive", 7), ("connected", 7), ("ask alive", 7),
     ]  # fmt: skip
     assert field(read, "connected", "target") == {
@@ -225,19 +237,19 @@ def test_xtce_files_that_refer_to_each_other_are_one_database_called_like_their_
         "name": "target",
         "type": "uint",
     }
-    assert [one["const"] for one in message(read, "ask alive")["fields"]] == [17, 1]
+    assert [field["const"] for field in message(read, "ask alive")["fields"]] == [17, 1]
 
 
 def test_xtce_files_that_do_not_refer_to_each_other_are_icds_of_their_own():
     reads = imported_set(SHAPES / "aggregate.xml", FILES / "probe.xml", SHAPES / "pus")
-    assert {name for one in reads.values() for name in one.trees} == {
+    assert {name for read in reads.values() for name in read.trees} == {
         "aggregate",
         "probe",
         "pus",
     }
 
 
-def test_xtce_a_file_alone_says_what_it_lacks_and_how_to_give_it():
+def test_xtce_a_single_file_reports_missing_files_and_how_to_pass_them():
     with pytest.raises(Findings) as error:
         imported(SHAPES / "pus" / "test.xml")
     (finding,) = error.value.findings
@@ -251,19 +263,21 @@ def test_xtce_two_files_that_define_one_name_are_reported_with_both(tmp_path):
     folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
     (folder / "again.xml").write_text((folder / "service.xml").read_text())
     (read,) = imported_set(folder).values()
-    lost = {one.message: one for one in errors(read)}
-    one = lost["the container `/Service/report` is in `again.xml` and in `service.xml`"]
-    assert (one.code, one.help, one.spot.line) == (
+    lost = {error.message: error for error in errors(read)}
+    finding = lost[
+        "the container `/Service/report` is in `again.xml` and in `service.xml`"
+    ]
+    assert (finding.code, finding.help, finding.spot.line) == (
         "IMP076",
         "the first one is taken",
         23,
     )
-    assert one.spot.file.endswith("service.xml") and read.imported == 4
+    assert finding.spot.file.endswith("service.xml") and read.imported == 4
 
 
 def test_eds_sheets_of_module_folders_find_types_and_design_parameters_of_each_other():
     reads = imported_set(SHAPES / "cfs")
-    assert {one: read.imported for one, read in reads.items()} == {
+    assert {file: read.imported for file, read in reads.items()} == {
         "config.xml": 0, "base_types.xml": 0, "packets.xml": 0, "pump.xml": 1, "lamp.xml": 1,
     }  # fmt: skip
     assert not any(errors(read) for read in reads.values())
@@ -284,14 +298,14 @@ def test_eds_aliases_stand_for_scalars_arrays_containers_and_bases():
 
 def test_eds_a_label_without_a_value_follows_the_one_before():
     (enum,) = imported_set(SHAPES / "cfs")["pump.xml"].trees["pump"]["enums"]
-    assert [(one["name"], one["value"]) for one in enum["members"]] == [
+    assert [(member["name"], member["value"]) for member in enum["members"]] == [
         ("OFF", 0),
         ("SLOW", 4),
         ("FAST", 5),
     ]
 
 
-def test_eds_an_alias_of_itself_costs_what_uses_it(tmp_path):
+def test_eds_an_alias_of_itself_removes_the_objects_that_use_it(tmp_path):
     folder = shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
     types = folder / "core" / "eds" / "base_types.xml"
     types.write_text(
@@ -304,7 +318,7 @@ def test_eds_an_alias_of_itself_costs_what_uses_it(tmp_path):
     assert "is an alias of itself" in lost.message and reads["lamp.xml"].imported == 1
 
 
-def test_eds_a_sheet_alone_says_which_package_it_lacks_and_how_to_give_it():
+def test_eds_a_single_sheet_reports_missing_packages_and_how_to_pass_them():
     with pytest.raises(Findings) as error:
         imported(SHAPES / "cfs" / "lamp" / "eds" / "lamp.xml")
     (finding,) = error.value.findings
@@ -314,7 +328,7 @@ def test_eds_a_sheet_alone_says_which_package_it_lacks_and_how_to_give_it():
     )
 
 
-def test_a_broken_file_of_a_set_costs_itself(tmp_path):
+def test_a_broken_file_of_a_set_is_left_out(tmp_path):
     folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
     (folder / "broken.xml").write_text(
         '<SpaceSystem name="Broken"><TelemetryMetaData></SpaceSystem>'
@@ -322,7 +336,7 @@ def test_a_broken_file_of_a_set_costs_itself(tmp_path):
     reads = imported_set(folder)
     (lost,) = errors(reads["broken.xml"])
     assert lost.code == "IMP005" and lost.message.startswith("not XML")
-    assert sum(one.imported for one in reads.values()) == 4
+    assert sum(read.imported for read in reads.values()) == 4
 
 
 def test_a_folder_is_imported_by_the_command(tmp_path):
@@ -337,19 +351,20 @@ def test_a_folder_is_imported_by_the_command(tmp_path):
         "lamp.yaml",
         "pump.yaml",
     ]
-    said = json.loads(
+    report = json.loads(
         icdgen("import", "cfs", "--update", "--format", "json", cwd=tmp_path).stdout
     )
-    assert {one["definition"]: one["held"] for one in said["definitions"]}[
-        "cfs/pump/eds/pump.xml"
-    ] == 1
-    assert [one["file"] for one in said["files"]] == [
+    assert {
+        definition["definition"]: definition["held"]
+        for definition in report["definitions"]
+    }["cfs/pump/eds/pump.xml"] == 1
+    assert [file["file"] for file in report["files"]] == [
         "icd/lamp.yaml",
         "icd/pump.yaml",
-    ] and said["check"] == []
+    ] and report["check"] == []
 
 
-def test_what_cannot_be_imported_together_is_misuse(tmp_path):
+def test_definitions_that_cannot_be_imported_together_are_misuse(tmp_path):
     (tmp_path / "empty").mkdir()
     (tmp_path / "manual.txt").write_text("A manual\n")
     shutil.copy(SHAPES / "cases.ksy", tmp_path)
@@ -373,13 +388,13 @@ def test_help_names_all_kinds(tmp_path):
 
 def unused(read):
     return [
-        (one.message, one.spot.line)
-        for one in read.definitions.import_findings
-        if one.code == "IMP085"
+        (finding.message, finding.spot.line)
+        for finding in read.definitions.import_findings
+        if finding.code == "IMP085"
     ]
 
 
-def test_xtce_what_is_not_used_is_a_note_with_its_line(tmp_path):
+def test_xtce_unused_content_is_a_note_with_its_line(tmp_path):
     alarm = '<DefaultAlarm><StaticAlarmRanges><CriticalRange maxInclusive="9"/></StaticAlarmRanges></DefaultAlarm>'
     type_ = '<IntegerParameterType name="u32_t" signed="false">'
     read = edited(
@@ -397,7 +412,7 @@ def test_xtce_what_is_not_used_is_a_note_with_its_line(tmp_path):
     ]
 
 
-def test_xtce_what_is_not_used_of_a_set_names_its_file(tmp_path):
+def test_xtce_unused_content_of_a_set_names_its_file(tmp_path):
     folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
     text = (folder / "types.xml").read_text()
     (folder / "types.xml").write_text(
@@ -407,18 +422,19 @@ def test_xtce_what_is_not_used_of_a_set_names_its_file(tmp_path):
         )
     )
     (read,) = imported_set(folder).values()
-    (one,) = read.definitions.import_findings
-    assert (one.code, one.spot.line, Path(one.spot.file).name) == (
+    (finding,) = read.definitions.import_findings
+    assert (finding.code, finding.spot.line, Path(finding.spot.file).name) == (
         "IMP085",
         5,
         "types.xml",
     )
     assert (
-        one.message == "`initialValue` of `IntegerParameterType` is not used (`uint8`)"
+        finding.message
+        == "`initialValue` of `IntegerParameterType` is not used (`uint8`)"
     )
 
 
-def test_eds_what_is_not_used_is_a_note_in_the_file_where_it_stands(tmp_path):
+def test_eds_unused_content_is_a_note_in_its_file(tmp_path):
     folder = shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
     pump = folder / "pump" / "eds" / "pump.xml"
     pump.write_text(
@@ -437,7 +453,7 @@ def test_eds_what_is_not_used_is_a_note_in_the_file_where_it_stands(tmp_path):
     assert unused(reads["lamp.xml"]) == []
 
 
-def test_kaitai_what_is_not_used_is_a_note_with_its_line(tmp_path):
+def test_kaitai_unused_content_is_a_note_with_its_line(tmp_path):
     text = (SHAPES / "places.ksy").read_text()
     (tmp_path / "a.ksy").write_text(
         text.replace(
@@ -449,9 +465,9 @@ def test_kaitai_what_is_not_used_is_a_note_with_its_line(tmp_path):
     ]
 
 
-def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeypatch):
-    def fill(network, found, to, fill=packets.fill):
-        fill(network, found, to)
+def test_an_unsupported_header_is_left_out_and_the_messages_imported(monkeypatch):
+    def fill(network, message, to, fill=packets.fill):
+        fill(network, message, to)
         network.protocol["link"]["header"][-1]["plus"] = -40
 
     monkeypatch.setattr(packets, "fill", fill)
@@ -463,7 +479,7 @@ def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeyp
     assert read.imported == 5 and "protocol" not in read.trees["aggregate"]
 
 
-def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp_path):
+def test_xtce_a_field_of_unknown_size_removes_only_the_fields_after_it(tmp_path):
     text = '<StringParameterType name="text_t"><StringDataEncoding><SizeInBits><LeadingSize/></SizeInBits></StringDataEncoding></StringParameterType>'  # fmt: skip  # noqa: E501
     read = edited(
         tmp_path,
@@ -479,18 +495,18 @@ def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp
         lost.message
         == "message `Orbit`: from `Position` on only bytes are imported: it has a length prefix"
     )
-    assert read.imported == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
+    assert read.imported == 5 and [(field["name"], field["type"]) for field in message(read, "Orbit")["fields"]] == [
         ("Elapsed", "uint"), ("Position", "bytes"),
     ]  # fmt: skip
     assert unused(read) and "`Shadow`" in "".join(text for text, _ in unused(read))
 
 
-def test_xtce_what_tells_a_message_apart_must_be_held(tmp_path):
+def test_xtce_the_discriminator_of_a_message_must_be_representable(tmp_path):
     read = edited(
         tmp_path, ('name="Kind" typeRef="u8_t"', 'name="Kind" typeRef="lost_t"')
     )
     why = "there is no parameter type `lost_t`"
-    assert sorted(one.message for one in errors(read)) == [
+    assert sorted(error.message for error in errors(read)) == [
         f"message `{name}` is not imported: it depends on `Section/Kind`, which is in or behind `Section`: {why}"
         for name in ("Sails", "Wheels")
     ]

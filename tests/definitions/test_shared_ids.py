@@ -1,5 +1,5 @@
-"""Messages to which a definition gives one id are multiplexed on purpose: the ICD that
-is made of it confirms that.
+"""If a definition gives several messages the same id, the ICD marks them as multiplexed
+on purpose.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ def network(*messages: dict) -> Network:
 
 
 def sharing(tree: dict) -> list[str]:
-    return [one["name"] for one in tree["messages"] if one.get("shares_id")]
+    return [message["name"] for message in tree["messages"] if message.get("shares_id")]
 
 
 def test_messages_of_one_id_and_direction_confirm_it_and_others_do_not(tmp_path):
-    made = network(
+    definition = network(
         message("Short", 5, 1),
         message("Long", 5, 2),
         message("Order", 5, 1, "telecommand"),
         message("Alone", 6, 1),
     )
     to = Definitions("probe.xml")
-    settle(made, to)
-    tree = made.tree()
+    settle(definition, to)
+    tree = definition.tree()
     assert sharing(tree) == ["Short", "Long"] and to.import_findings == []
     file = tmp_path / "probe.yaml"
     file.write_text(yaml.safe_dump(tree, sort_keys=False), encoding="utf-8")
@@ -55,7 +55,9 @@ def test_messages_of_one_id_and_direction_confirm_it_and_others_do_not(tmp_path)
 
 
 def test_a_message_whose_partner_cannot_be_represented_does_not_confirm_anything():
-    made = network(message("Short", 5, 1), message("Broken", 5, 2, reserved=3))
+    definition = network(message("Short", 5, 1), message("Broken", 5, 2, reserved=3))
     to = Definitions("probe.xml")
-    settle(made, to)
-    assert sharing(made.tree()) == [] and "`Broken`" in to.import_findings[0].message
+    settle(definition, to)
+    assert (
+        sharing(definition.tree()) == [] and "`Broken`" in to.import_findings[0].message
+    )

@@ -1,7 +1,6 @@
-"""Models of SunSpec become ICDs: points as fields, groups that are there several times
-as structs.
+"""SunSpec models become ICDs: points are fields, repeated groups are structs.
 
-What is read of random blocks is compared with pysunspec2's reading in tests/devices.
+tests/devices compares the values of random blocks with those of pysunspec2.
 """
 
 from __future__ import annotations
@@ -37,11 +36,12 @@ def test_models_of_a_device_are_messages_whose_points_follow_each_other(charger)
     assert tree["node"] | {"name": "", "title": ""} == {
         "name": "", "title": "", "byte_order": "big", "bit_order": "msb0", "id_bits": 16,
     }  # fmt: skip
-    assert [(one["name"], one["id"], one["length"]) for one in tree["messages"]] == [
+    assert [(message["name"], message["id"], message["length"]) for message in tree["messages"]] == [
         ("charger", 65001, 64), ("sockets", 65002, 4),
     ]  # fmt: skip
     places = [
-        (one["at"] // 16, one["name"]) for one in message(charger, "charger")["fields"]
+        (field["at"] // 16, field["name"])
+        for field in message(charger, "charger")["fields"]
     ]
     assert places[:6] == [
         (0, "ID"),
@@ -58,7 +58,7 @@ def test_models_of_a_device_are_messages_whose_points_follow_each_other(charger)
     assert message(charger, "charger")["summary"] == "A charger with sockets"
 
 
-def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_factor_its_summary_says_so(
+def test_a_value_has_its_unit_and_factor_or_a_summary_about_the_register_with_the_factor(
     charger,
 ):
     lat, power = field(charger, "charger", "Lat"), field(charger, "charger", "W")
@@ -69,33 +69,35 @@ def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_fact
     )
     assert power["summary"] == "Power. In W times 10 to the power of W_SF."
     assert "unit" not in power and "formula" not in power
-    (said,) = (
-        one for one in charger.definitions.import_findings if one.code == "IMP078"
+    (finding,) = (
+        finding
+        for finding in charger.definitions.import_findings
+        if finding.code == "IMP078"
     )
     assert (
-        said.message
+        finding.message
         == "message `charger`: the factors of 1 points are in other registers: `W`"
     )
-    assert said.severity == "note"
+    assert finding.severity == "note"
 
 
-def test_what_is_not_implemented_is_a_special_value_of_each_type(charger):
-    told = {
-        one["name"]: one["special"][0]["value"]
-        for one in message(charger, "charger")["fields"]
-        if "special" in one
+def test_the_not_implemented_value_of_each_type_is_a_special_value(charger):
+    values = {
+        field["name"]: field["special"][0]["value"]
+        for field in message(charger, "charger")["fields"]
+        if "special" in field
     }
-    assert told == {
+    assert values == {
         "W": -0x8000, "W_SF": -0x8000, "Lat": -0x80000000, "Wh": 0, "St": 0xFFFF, "Evt": 0xFFFFFFFF, "Hz": "nan", "N": 0xFFFF,
         "Dial Pos": 0xFFFF,
     }  # fmt: skip
 
 
-def test_symbols_are_enumerations_and_those_of_bits_the_values_of_these_bits(charger):
+def test_symbols_become_enumerations_and_symbols_of_bit_fields_flags(charger):
     (tree,) = charger.trees.values()
     named = {
-        one["name"]: [(member["value"], member["name"]) for member in one["members"]]
-        for one in tree["enums"]
+        enum["name"]: [(member["value"], member["name"]) for member in enum["members"]]
+        for enum in tree["enums"]
     }
     assert named == {
         "St": [(0, "OFF"), (3, "ON")],
@@ -107,41 +109,43 @@ def test_symbols_are_enumerations_and_those_of_bits_the_values_of_these_bits(cha
     ) == ("text", "bytes")
 
 
-def test_groups_that_are_there_several_times_are_structs(charger):
+def test_repeated_groups_are_structs(charger):
     (tree,) = charger.trees.values()
-    assert [(one["name"], one["length"], [part["name"] for part in one["fields"]]) for one in tree["structs"]] == [
+    assert [(struct["name"], struct["length"], [part["name"] for part in struct["fields"]]) for struct in tree["structs"]] == [
         ("Lamp", 2, ["Lux"]), ("Socket", 4, ["A", "Lock Is"]), ("sockets Socket", 2, ["V"]),
     ]  # fmt: skip
     ends = [message(charger, name)["fields"][-1] for name in ("charger", "sockets")]
-    assert [(one["count"], one["up_to"]) for one in ends] == [
+    assert [(field["count"], field["up_to"]) for field in ends] == [
         ("N", (2048 - 64) // 4),
         ("rest", (2048 - 4) // 2),
     ]
     assert field(charger, "charger", "Lamp")["count"] == 2
 
 
-def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(
+def test_an_unsupported_model_is_reported_with_the_reason_and_the_others_are_imported(
     charger,
 ):
-    (said,) = (
-        one for one in charger.definitions.import_findings if one.severity == "error"
+    (finding,) = (
+        finding
+        for finding in charger.definitions.import_findings
+        if finding.severity == "error"
     )
-    assert said.message == (
+    assert finding.message == (
         "message `curves` is not imported: "
         "`Pt`, which has any number of repetitions, is inside `Crv`, whose repetitions no point counts"
     )
     assert (charger.imported, charger.definitions.total) == (2, 3)
-    assert said.help == (
+    assert finding.help == (
         "if your device always has the same number, write it into a copy of the file: "
         "as `count` of `Pt` and as `value` of the point `NPt`"
     )
 
 
-def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model_says(
+def test_a_group_in_a_counted_group_is_counted_by_a_point_of_the_model(
     tmp_path,
 ):
     curves = copy.deepcopy(
-        next(one for one in MODELS if one["group"]["name"] == "curves")
+        next(model for model in MODELS if model["group"]["name"] == "curves")
     )
     points, (curve,) = curves["group"]["points"], curves["group"]["groups"]
     points.append({"name": "NCrv", "type": "uint16", "size": 1})
@@ -184,7 +188,7 @@ def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model
             codec.decode(node, layout, frame + bytes(2))
 
 
-def test_points_and_groups_behind_a_repeated_group_are_imported(tmp_path):
+def test_points_and_groups_after_a_repeated_group_are_imported(tmp_path):
     register = {"type": "uint16", "size": 1}
     model = {
         "id": 65004,
@@ -216,7 +220,7 @@ def test_points_and_groups_behind_a_repeated_group_are_imported(tmp_path):
     assert (raw["Ph[2].V"], raw["End Evt"]) == (22, 90)
 
 
-def test_what_follows_a_group_without_a_number_must_have_a_fixed_size(tmp_path):
+def test_groups_after_a_group_without_a_count_must_have_a_fixed_size(tmp_path):
     register = {"type": "uint16", "size": 1}
     model = {
         "id": 65004,
@@ -238,7 +242,7 @@ def test_what_follows_a_group_without_a_number_must_have_a_fixed_size(tmp_path):
 
 def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp_path):
     curves = copy.deepcopy(
-        next(one for one in MODELS if one["group"]["name"] == "curves")
+        next(model for model in MODELS if model["group"]["name"] == "curves")
     )
     points, (curve,) = curves["group"]["points"], curves["group"]["groups"]
     points.append({"name": "NCrv", "type": "uint16", "size": 1})
@@ -278,15 +282,15 @@ def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp
         ({"type": "string", "size": "8"}, "`W` is of the type `string` and size 8"),
     ],
 )
-def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
+def test_a_model_with_an_invalid_point_is_left_out(tmp_path, change, why):
     models = copy.deepcopy(MODELS)
     models[0]["group"]["points"][2] |= change
     (tmp_path / "models.json").write_text(json.dumps(models))
     read = run.read(tmp_path / "models.json", sunspec.SunSpec())
     assert why in [
-        one.message.split(": ", 1)[1]
-        for one in read.definitions.import_findings
-        if one.severity == "error"
+        finding.message.split(": ", 1)[1]
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     ]
     assert read.imported == 1
 
@@ -318,7 +322,7 @@ def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
         ),
     ],
 )
-def test_what_is_no_model_is_refused_where_it_stands(tmp_path, text, line, message):
+def test_an_invalid_model_is_refused_with_its_line(tmp_path, text, line, message):
     (tmp_path / "wrong.json").write_text(text)
     with pytest.raises(Findings) as refused:
         run.read(tmp_path / "wrong.json", sunspec.SunSpec())
@@ -329,14 +333,16 @@ def test_what_is_no_model_is_refused_where_it_stands(tmp_path, text, line, messa
     ) and finding.message.startswith(message)
 
 
-def test_groups_without_end_are_left_out():
+def test_groups_nested_too_deeply_are_left_out():
     deep = {"name": "a", "points": []}
     for _ in range(50):
         deep = {"name": "a", "points": [], "groups": [deep]}
-    made = sunspec.SunSpec().read(
+    definitions = sunspec.SunSpec().read(
         "deep.json", json.dumps({"id": 1, "group": deep}).encode()
     )
-    assert "groups are nested more than 8 deep" in made.import_findings[0].message
+    assert (
+        "groups are nested more than 8 deep" in definitions.import_findings[0].message
+    )
 
 
 VALUES = (
@@ -351,25 +357,27 @@ VALUES = (
 
 
 @given(st.data())
-def test_whatever_stands_in_a_model_is_held_or_said(data):
+def test_any_content_of_a_model_is_imported_or_reported(data):
     models = copy.deepcopy(MODELS)
     owners = list(_objects(models))
     for _ in range(data.draw(st.integers(1, 3))):
         owner = data.draw(st.sampled_from(owners))
         owner[data.draw(st.sampled_from([*owner, "count", "sf"]))] = data.draw(VALUES)
     try:
-        made = sunspec.SunSpec().read("some.json", json.dumps(models).encode())
+        definitions = sunspec.SunSpec().read("some.json", json.dumps(models).encode())
     except Findings:
         return
-    assert isinstance(made, Definitions) and made.total >= len(
-        made.networks[0].messages
+    assert isinstance(definitions, Definitions) and definitions.total >= len(
+        definitions.networks[0].messages
     )
 
 
 def _objects(of):
+    children = []
     if isinstance(of, dict):
         yield of
-    for one in (
-        of.values() if isinstance(of, dict) else of if isinstance(of, list) else ()
-    ):
-        yield from _objects(one)
+        children = of.values()
+    elif isinstance(of, list):
+        children = of
+    for child in children:
+        yield from _objects(child)

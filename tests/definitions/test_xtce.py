@@ -1,8 +1,7 @@
-"""XTCE becomes ICDs: space packets with their header as header of packets, what inherits, what
-is told by values, and commands.
+"""XTCE becomes ICDs: space packets with their header, inheritance, discriminators, and
+commands.
 
-What is read of random packets is compared with space-packet-parser's reading in
-tests/devices.
+tests/devices compares the values of random packets with those of space-packet-parser.
 """
 
 from __future__ import annotations
@@ -41,21 +40,24 @@ def test_the_primary_header_is_that_of_packets_and_the_application_process_the_i
 ):
     (tree,) = probe.trees.values()
     header = tree["protocol"]["link"]["header"]
-    assert [(one["bits"], one["role"]) for one in header] == [
+    assert [(field["bits"], field["role"]) for field in header] == [
         (3, "constant"), (1, "constant"), (1, "flags"), (11, "id"), (2, "type"), (14, "sequence"), (16, "length"),
     ]  # fmt: skip
-    assert (tree["node"]["id_bits"], [one["id"] for one in tree["messages"]]) == (
+    assert (
+        tree["node"]["id_bits"],
+        [message["id"] for message in tree["messages"]],
+    ) == (
         11,
         [100, 100, 101],
     )
 
 
-def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
-    told = '<xtce:Comparison parameterRef="SECONDARY" value="1"/><xtce:Comparison parameterRef="APID" value="100"'
+def test_header_values_common_to_a_direction_are_sent(tmp_path):
+    comparisons = '<xtce:Comparison parameterRef="SECONDARY" value="1"/><xtce:Comparison parameterRef="APID" value="100"'
     text = (
         (FILES / "probe.xml")
         .read_text()
-        .replace('<xtce:Comparison parameterRef="APID" value="100"', told)
+        .replace('<xtce:Comparison parameterRef="APID" value="100"', comparisons)
     )
     (tmp_path / "probe.xml").write_text(
         text.replace(
@@ -70,8 +72,8 @@ def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
     }
 
 
-def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(probe):
-    assert [one["name"] for one in message(probe, "Housekeeping")["fields"]] == [
+def test_a_derived_container_has_the_fields_of_its_base_and_its_discriminator(probe):
+    assert [field["name"] for field in message(probe, "Housekeeping")["fields"]] == [
         "Time",
         "Mode",
         "Valid",
@@ -88,24 +90,26 @@ def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(pr
 
 
 def test_calibrations_are_formulas_or_tables(probe):
-    said = {
+    fields = {
         name: field(probe, "Safe", name)
         for name in ("Temperature", "Pressure", "Level", "Curve", "Rate")
     }
     assert (
-        said["Temperature"]["formula"] == "raw*0.0125 - 40.5"
-        and said["Temperature"]["below"] == 85.5
+        fields["Temperature"]["formula"] == "raw*0.0125 - 40.5"
+        and fields["Temperature"]["below"] == 85.5
     )
-    assert said["Pressure"]["formula"] == "raw^2*0.0002 - raw*0.5 + 3"
+    assert fields["Pressure"]["formula"] == "raw^2*0.0002 - raw*0.5 + 3"
     assert (
-        said["Level"]["formula"] == "raw*5/12 - 5/2" and said["Rate"]["unit"] == "deg/s"
-    )
-    assert (
-        said["Curve"]["points"] == [[0.5, "-1e-9"], [10, 5], [90, 6]]
-        and said["Curve"]["unit"] == "V"
+        fields["Level"]["formula"] == "raw*5/12 - 5/2"
+        and fields["Rate"]["unit"] == "deg/s"
     )
     assert (
-        said["Curve"]["outside"] == "refuse" and probe.definitions.import_findings == []
+        fields["Curve"]["points"] == [[0.5, "-1e-9"], [10, 5], [90, 6]]
+        and fields["Curve"]["unit"] == "V"
+    )
+    assert (
+        fields["Curve"]["outside"] == "refuse"
+        and probe.definitions.import_findings == []
     )
 
 
@@ -125,22 +129,22 @@ def test_calibrations_are_formulas_or_tables(probe):
         ('calibrated="-1e-9"', 'calibrated="much"', "a coefficient is `much`"),
     ],
 )
-def test_what_no_formula_and_no_table_says_is_held_raw_and_said(
+def test_an_unsupported_calibration_is_imported_raw_with_a_finding(
     tmp_path, old, new, why
 ):
     text = (FILES / "probe.xml").read_text()
     assert text.count(old) == 1
     (tmp_path / "probe.xml").write_text(text.replace(old, new))
     read = run.read(tmp_path / "probe.xml", xtce.Xtce())
-    held = field(read, "Safe", "Curve")
-    assert held.keys().isdisjoint(("points", "outside", "formula", "unit"))
+    curve = field(read, "Safe", "Curve")
+    assert curve.keys().isdisjoint(("points", "outside", "formula", "unit"))
     (import_finding,) = read.definitions.import_findings
     assert import_finding.code == "IMP078" and import_finding.message.startswith(
         f"`Curve` (message `Safe`): {why}"
     )
 
 
-def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):
+def test_bytes_with_a_transmitted_size_extend_to_the_end_of_the_packet(probe):
     dump = field(probe, "Dumped", "Dump")
     assert (dump["at"], dump["size"], dump["up_to"], "bits" in dump) == (
         40,
@@ -150,10 +154,10 @@ def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):
     )
 
 
-def test_without_such_a_header_the_id_is_what_tells_all_messages(lander):
+def test_without_a_packet_header_the_id_is_the_common_discriminator(lander):
     (tree,) = lander.trees.values()
     assert "protocol" not in tree
-    assert [(one["name"], one["id"], one["kind"]) for one in tree["messages"]] == [
+    assert [(message["name"], message["id"], message["kind"]) for message in tree["messages"]] == [
         ("Power", 7, "telemetry"), ("Clock", 8, "telemetry"), ("Places", 9, "telemetry"), ("Arm Power", 10, "telemetry"),
         ("Stretch", 3, "telecommand"), ("Stop", 4, "telecommand"),
     ]  # fmt: skip
@@ -186,7 +190,7 @@ def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_giv
         "It may hit the mast.",
         "Arm",
     )
-    assert [(one["name"], one.get("const")) for one in stretch["fields"]] == [
+    assert [(field["name"], field.get("const")) for field in stretch["fields"]] == [
         ("sync", 0xEB90), ("opcode", 3), ("angle", None),
     ]  # fmt: skip
     assert {key: field(lander, "Stretch", "angle")[key] for key in ("type", "bits", "min", "max")} == {
@@ -194,11 +198,11 @@ def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_giv
     }  # fmt: skip
 
 
-def test_what_is_held_raw_is_said_with_the_reason(lander):
+def test_raw_fields_are_reported_with_the_reason(lander):
     assert [
-        one.message
-        for one in lander.definitions.import_findings
-        if one.code == "IMP078"
+        finding.message
+        for finding in lander.definitions.import_findings
+        if finding.code == "IMP078"
     ] == ["`Digits` (message `Clock`): an integer is encoded as `BCD`"]
 
 
@@ -265,7 +269,7 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
         (nested(99, 1), "more than 50 containers inherit or contain each other"),
     ],
 )  # fmt: skip
-def test_containers_that_cannot_be_held_are_left_out_and_end(
+def test_unsupported_and_recursive_containers_are_left_out(
     text, says, tmp_path, monkeypatch
 ):
     most = xtce_types.Types.most_steps if "things" not in says else 20_000
@@ -284,7 +288,7 @@ def test_a_condition_is_on_the_value_of_a_repeated_parameter_that_was_sent_last(
         system(container("A", ENTRY * 2 + entry(condition) + entry(behind)))
     )
     read = run.read(tmp_path / "twice.xml", xtce.Xtce())
-    assert [(one["at"], one["name"], one.get("when")) for one in message(read, "A")["fields"]] == [
+    assert [(field["at"], field["name"], field.get("when")) for field in message(read, "A")["fields"]] == [
         (0, "P", None), (8, "P 2", None), (16, "P 3", {"P 2": 1}), (24, "P 4", None),
     ]  # fmt: skip
 
@@ -302,7 +306,7 @@ def test_a_condition_is_on_the_value_of_a_repeated_parameter_that_was_sent_last(
         ("<BinaryParameterType name='byte'/>", "the type `byte` has no encoding"),
     ],
 )  # fmt: skip
-def test_types_that_cannot_be_held_are_said_and_end(types, says, tmp_path):
+def test_unsupported_and_recursive_types_are_reported(types, says, tmp_path):
     assert says in refused(system(container("A"), types), tmp_path)
 
 
@@ -314,7 +318,7 @@ def test_types_that_cannot_be_held_are_said_and_end(types, says, tmp_path):
         (BYTE.replace("Encoding", 'Encoding sizeInBits="24" encoding="BCD"'), 24, "an integer is encoded as `BCD`"),
     ],
 )  # fmt: skip
-def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(
+def test_a_number_of_known_size_and_unknown_encoding_is_imported_raw(
     types, bits, says, tmp_path
 ):
     (tmp_path / "a.xml").write_text(system(container("A"), types))
@@ -329,7 +333,7 @@ def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(
     ]
 
 
-def test_a_number_of_unknown_encoding_tells_no_message_apart(tmp_path):
+def test_a_number_of_unknown_encoding_is_no_discriminator(tmp_path):
     of = '<RestrictionCriteria><Comparison parameterRef="P" value="12"/></RestrictionCriteria>'
     containers = container("A") + container("B", "", "A", of)
     why = refused(
@@ -373,19 +377,21 @@ def refused(text, folder):
     return finding.message
 
 
-def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):
+def test_messages_without_a_discriminator_get_numbers_and_a_finding(tmp_path):
     (tmp_path / "two.xml").write_text(system(container("A") + container("B")))
     read = run.read(tmp_path / "two.xml", xtce.Xtce())
-    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [
+    assert [
+        (message["name"], message["id"]) for message in read.trees["two"]["messages"]
+    ] == [
         ("A", 1),
         ("B", 2),
     ]
-    assert [(one.code, one.message) for one in read.definitions.import_findings] == [
-        ("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")
-    ]
+    assert [
+        (finding.code, finding.message) for finding in read.definitions.import_findings
+    ] == [("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")]
 
 
-def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tmp_path):
+def test_a_size_that_the_packet_transmits_is_ignored_with_a_finding(tmp_path):
     size = "<SizeInBits><DynamicValue><ParameterInstanceRef parameterRef='P'/></DynamicValue></SizeInBits>"
     types = f"{BYTE}<BinaryParameterType name='data'><BinaryDataEncoding>{size}</BinaryDataEncoding></BinaryParameterType>"
     text = system(
@@ -397,9 +403,9 @@ def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tm
     )
     (tmp_path / "one.xml").write_text(text)
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
-    assert [(one.code, one.message) for one in read.definitions.import_findings] == [
-        ("IMP080", "message `A`: `D` is as long as `P` says")
-    ]
+    assert [
+        (finding.code, finding.message) for finding in read.definitions.import_findings
+    ] == [("IMP080", "message `A`: `D` is as long as `P` says")]
     assert field(read, "A", "D") == {
         "at": 8,
         "name": "D",
@@ -410,7 +416,7 @@ def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tm
 
 
 def counted(dynamic, kind="array"):
-    """A system whose message has a byte `P` and, behind it, what the value counts."""
+    """Return a system whose message has a byte `P` and then an element that `P` counts."""
     if kind == "array":
         end = f"<StartingIndex><FixedValue>0</FixedValue></StartingIndex><EndingIndex>{dynamic}</EndingIndex>"
         dimensions = f"<DimensionList><Dimension>{end}</Dimension></DimensionList>"
@@ -433,7 +439,7 @@ def value(slope, intercept):
 
 
 @pytest.mark.parametrize(
-    ("text", "held"),
+    ("text", "expected"),
     [
         (
             counted(value(1, -1)),
@@ -467,14 +473,14 @@ def value(slope, intercept):
         ),
     ],
 )
-def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
+def test_an_array_counted_by_a_parameter_has_variable_length(text, expected, tmp_path):
     (tmp_path / "one.xml").write_text(text)
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
-    assert field(read, "A", "D") == {"at": 8, "name": "D", **held}
+    assert field(read, "A", "D") == {"at": 8, "name": "D", **expected}
 
 
 def behind(text, *entries):
-    """The system with further entries behind what the value counts: `E` is a
+    """Return the system with further entries after the counted one: `E` is a
     little-endian word, `F` has four bits.
     """
     order = "bitOrder='mostSignificantBitFirst' byteOrder='leastSignificantByteFirst'"
@@ -487,8 +493,8 @@ def behind(text, *entries):
         for name, kind in (("E", "word"), ("F", "half"))
     )
     added = "".join(
-        one if one[0] == "<" else f'<ParameterRefEntry parameterRef="{one}"/>'
-        for one in entries
+        entry if entry[0] == "<" else f'<ParameterRefEntry parameterRef="{entry}"/>'
+        for entry in entries
     )
     return (
         text.replace("</ParameterTypeSet>", f"{types}</ParameterTypeSet>")
@@ -497,7 +503,7 @@ def behind(text, *entries):
     )
 
 
-def test_what_follows_what_a_parameter_counts_is_read_behind_it(tmp_path):
+def test_fields_after_a_counted_array_are_imported(tmp_path):
     fixed = '<FixedValueEntry binaryValue="00" sizeInBits="8"/>'
     text = behind(counted(value(8, 0), "bytes"), "E", fixed, "E")
     (tmp_path / "one.xml").write_text(text)
@@ -525,7 +531,7 @@ def test_what_follows_what_a_parameter_counts_is_read_behind_it(tmp_path):
          "<FixedValue>8</FixedValue></LocationInContainerInBits></ParameterRefEntry>",),
     ],
 )  # fmt: skip
-def test_what_has_no_whole_bytes_behind_what_a_parameter_counts_is_refused(
+def test_fields_without_whole_bytes_after_a_counted_array_are_refused(
     entries, tmp_path
 ):
     text = behind(counted(value(8, 0), "bytes"), *entries)
@@ -537,13 +543,13 @@ def test_what_has_no_whole_bytes_behind_what_a_parameter_counts_is_refused(
 
 
 @pytest.mark.parametrize("dynamic", [value(2, 0), value(1, 0.5), "<DynamicValue/>"])
-def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(
-    dynamic, tmp_path
-):
+def test_an_array_without_a_counter_is_imported_as_bytes_to_the_end(dynamic, tmp_path):
     (tmp_path / "one.xml").write_text(counted(dynamic))
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
     (lost,) = [
-        one for one in read.definitions.import_findings if one.severity == "error"
+        finding
+        for finding in read.definitions.import_findings
+        if finding.severity == "error"
     ]
     assert lost.code == "IMP081" and lost.message.startswith(
         "message `A`: from `D` on only bytes are imported: "
@@ -559,17 +565,21 @@ def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(
 
 
 @pytest.mark.parametrize("bits", [8 * 65_536, 10**12])
-def test_a_place_beyond_every_frame_costs_the_message_and_no_memory(bits, tmp_path):
-    there = f"<LocationInContainerInBits><FixedValue>{bits}</FixedValue></LocationInContainerInBits>"
-    entry = f'{ENTRY}<ParameterRefEntry parameterRef="P">{there}</ParameterRefEntry>'
+def test_a_position_beyond_every_frame_removes_the_message_and_needs_no_memory(
+    bits, tmp_path
+):
+    position = f"<LocationInContainerInBits><FixedValue>{bits}</FixedValue></LocationInContainerInBits>"
+    entry = f'{ENTRY}<ParameterRefEntry parameterRef="P">{position}</ParameterRefEntry>'
     (tmp_path / "one.xml").write_text(system(container("A", entry), BYTE))
     with pytest.raises(Findings) as raised:
         run.read(tmp_path / "one.xml", xtce.Xtce())
-    assert any("more than 65,535 bytes" in one.message for one in raised.value.findings)
+    assert any(
+        "more than 65,535 bytes" in finding.message for finding in raised.value.findings
+    )
 
 
 @pytest.mark.parametrize("scale", ["x", "1e9999"])
-def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
+def test_a_time_with_an_invalid_scale_is_imported_raw(scale, tmp_path):
     text = (
         (FILES / "lander.xml").read_text().replace('scale="0.001"', f'scale="{scale}"')
     )
@@ -579,11 +589,11 @@ def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
         read, "Power", "At"
     )
     assert f"`At` (message `Power`): a coefficient is `{scale}`" in [
-        one.message for one in read.definitions.import_findings
+        finding.message for finding in read.definitions.import_findings
     ]
 
 
-def test_messages_of_one_name_are_told_apart(lander):
-    assert [one["name"] for one in lander.trees["lander"]["messages"]].count(
+def test_messages_with_equal_names_get_unique_names(lander):
+    assert [message["name"] for message in lander.trees["lander"]["messages"]].count(
         "Power"
     ) == 1

@@ -1,1 +1,1 @@
-"""Comparing ICDs."""
+"""Tests of ``icdgen diff``, which compares two releases of ICDs."""

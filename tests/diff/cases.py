@@ -1,5 +1,5 @@
-"""The fixture pairs: ``rules/<code>/previous`` and ``current``, and the exact report in
-``expected.txt``.
+"""The example pairs of the rules: ``rules/<code>/previous`` and ``current``, and the
+exact report in ``expected.txt``.
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ CASES = sorted(path for path in FOLDER.iterdir() if path.is_dir())
 
 
 def compared(case: Path) -> report.DiffReport:
-    """What `icdgen diff previous current` finds, run in the case's folder."""
+    """Return the comparison of `icdgen diff previous current` in the folder of the
+    case.
+    """
     with chdir(case):
         return report.make_report(*inputs.sides(["previous", "current"], []))
 
 
 def printed(case: Path) -> str:
-    """What it prints, with everything."""
+    """Return the complete output of `icdgen diff`."""
     return reports.get("text")(compared(case), everything=True)

@@ -1,4 +1,4 @@
-"""Two releases of a small ICD, side by side."""
+"""Fixture with two releases of a small ICD."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LATER = DEMO.replace("formula: raw*0.01", "formula: raw*0.001", 1).replace(
 
 @pytest.fixture
 def releases(tmp_path) -> tuple[Path, Path]:
-    """Folders ``old`` and ``new``: a factor and an id differ."""
+    """Write the folders ``old`` and ``new``, in which a factor and an id differ."""
     for name, text in (("old", DEMO), ("new", LATER)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "demo.yaml").write_text(text, encoding="utf-8")

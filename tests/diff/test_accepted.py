@@ -1,5 +1,5 @@
-"""``.icdgen-accepted.yaml``: what was accepted does not fail again, and an entry that
-no longer applies is told.
+"""``.icdgen-accepted.yaml``: accepted changes do not fail again, and entries that no
+longer apply are reported.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ def accept(folder, *entries: str):
     (folder / ".icdgen-accepted.yaml").write_text(HEAD + "".join(entries))
 
 
-def test_what_was_accepted_does_not_fail(icdgen, releases, tmp_path):
+def test_an_accepted_change_does_not_fail(icdgen, releases, tmp_path):
     accept(tmp_path, ID)
     assert icdgen("diff", "old", "new", "--fail-on", "wire").status == 0
     assert icdgen("diff", "old", "new", "--fail-on", "wire,meaning").status == 1
@@ -25,7 +25,7 @@ def test_what_was_accepted_does_not_fail(icdgen, releases, tmp_path):
     assert icdgen("diff", "old", "new", "--fail-on", "wire,meaning,source").status == 0
 
 
-def test_it_is_listed_with_its_reason_and_still_counts_for_the_version(
+def test_an_accepted_change_is_listed_with_its_reason_and_counts_for_the_version(
     icdgen, releases, tmp_path
 ):
     accept(tmp_path, ID, FACTOR)
@@ -43,7 +43,7 @@ def test_it_is_listed_with_its_reason_and_still_counts_for_the_version(
     assert document["counts"] == {"wire": 0, "meaning": 0, "source": 0, "text": 0}
 
 
-def test_the_file_is_found_upwards_and_no_further_than_the_repository(
+def test_the_file_is_searched_in_parent_folders_up_to_the_repository(
     icdgen, releases, tmp_path, monkeypatch
 ):
     accept(tmp_path, ID)
@@ -79,7 +79,7 @@ def test_another_file_can_be_named(icdgen, releases, tmp_path):
         ("was: '20'", "was: '19'"),
     ],
 )
-def test_an_entry_that_no_longer_applies_accepts_nothing_and_is_told(
+def test_an_entry_that_no_longer_applies_is_reported(
     icdgen, releases, tmp_path, change
 ):
     accept(tmp_path, ID.replace(*change))
@@ -89,23 +89,23 @@ def test_an_entry_that_no_longer_applies_accepts_nothing_and_is_told(
         ".icdgen-accepted.yaml:3:12: warning[DIF901]: this accepted change does not happen"
         in result.out
     )
-    for form, said in (
+    for form, expected in (
         ("markdown", "does not happen"),
         ("html", "does not happen"),
         ("github", "::warning"),
         ("sarif", "DIF901"),
     ):
-        assert said in icdgen("diff", "old", "new", "--format", form).out
+        assert expected in icdgen("diff", "old", "new", "--format", form).out
     (stale,) = json.loads(icdgen("diff", "old", "new", "--format", "json").out)["stale"]
     assert stale["place"]["line"] == 3 and stale["reason"] == "Agreed in review 7."
 
 
-def test_it_is_told_too_where_nothing_changed(icdgen, releases, tmp_path):
+def test_an_unused_entry_is_reported_if_nothing_changed(icdgen, releases, tmp_path):
     accept(tmp_path, ID)
     assert "does not happen" in icdgen("diff", "old", "old").out
 
 
-def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(
+def test_an_entry_about_a_node_covers_all_changes_of_its_kind(
     icdgen, releases, tmp_path
 ):
     accept(tmp_path, "  - {code: dif103, node: demo, reason: All ids are new.}\n")
@@ -113,7 +113,7 @@ def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(
 
 
 @pytest.mark.parametrize(
-    "text, said",
+    "text, expected",
     [
         (
             "accepted: 1\nchanges:\n  - {code: DIF103, node: demo}\n",
@@ -136,11 +136,11 @@ def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(
         ("", "the file is empty"),
     ],
 )
-def test_a_bad_file_is_a_finding(icdgen, releases, tmp_path, text, said):
+def test_a_bad_file_is_a_finding(icdgen, releases, tmp_path, text, expected):
     (tmp_path / ".icdgen-accepted.yaml").write_text(text)
     result = icdgen("diff", "old", "new")
     assert (
         result.status == 2
-        and said in result.err
+        and expected in result.err
         and ".icdgen-accepted.yaml:" in result.err
     )

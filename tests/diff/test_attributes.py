@@ -1,5 +1,5 @@
-"""No attribute of an ICD changes without a word: each is given another value, and the
-comparison reports it.
+"""The comparison reports a change of any attribute of an ICD. Each test gives one
+attribute another value.
 """
 
 from __future__ import annotations
@@ -85,8 +85,8 @@ def icd(tmp_path_factory) -> Icd:
 def reported(
     icd: Icd, *, message: Message | None = None, enum: Enum | None = None
 ) -> set[str]:
-    """Codes of the changes between an ICD and the same with another message or
-    enumeration.
+    """Return the codes of the changes after replacing a message or an enumeration of an
+    ICD.
     """
     node = icd.nodes[0]
     if enum is not None:
@@ -98,7 +98,7 @@ def reported(
 
 
 def names(kind: type) -> list[str]:
-    return [one.name for one in fields(kind) if one.name not in NO_CHANGE]
+    return [field.name for field in fields(kind) if field.name not in NO_CHANGE]
 
 
 @pytest.mark.parametrize("name", names(Scalar))
@@ -188,7 +188,8 @@ NOT_OF_MESSAGE = {
 
 
 @pytest.mark.parametrize(
-    "name", [one.name for one in fields(Message) if one.name not in NOT_OF_MESSAGE]
+    "name",
+    [field.name for field in fields(Message) if field.name not in NOT_OF_MESSAGE],
 )
 def test_another_value_of_any_attribute_of_a_message_is_reported(icd, name):
     message = icd.nodes[0].messages[0]
@@ -214,7 +215,7 @@ OF_ENUM = {
 @pytest.mark.parametrize("name", OF_ENUM)
 def test_another_value_of_any_attribute_of_an_enumeration_is_reported(icd, name):
     old = icd.nodes[0].enums[0]
-    assert {one.name for one in fields(Enum)} == {
+    assert {field.name for field in fields(Enum)} == {
         *OF_ENUM,
         "members",
         "node",
@@ -225,7 +226,8 @@ def test_another_value_of_any_attribute_of_an_enumeration_is_reported(icd, name)
 
 
 @pytest.mark.parametrize(
-    "name", [one.name for one in fields(Member) if one.name not in ("errata", "source")]
+    "name",
+    [field.name for field in fields(Member) if field.name not in ("errata", "source")],
 )
 def test_another_value_of_any_attribute_of_a_member_is_reported(icd, name):
     old = icd.nodes[0].enums[0]
@@ -235,7 +237,7 @@ def test_another_value_of_any_attribute_of_a_member_is_reported(icd, name):
 
 
 @pytest.mark.parametrize("name", ("summary", "aliases"))
-def test_other_words_about_a_struct_are_reported(icd, name):
+def test_a_changed_text_of_a_struct_is_reported(icd, name):
     node = icd.nodes[0]
     struct = replace(node.structs[0], **{name: OTHER[name]})
     changes = compare(icd, Icd((replace(node, structs=(struct,)),))).changes

@@ -1,4 +1,4 @@
-"""``icdgen diff`` from the outside: exit status, formats, what is misuse."""
+"""``icdgen diff`` as a command: exit status, formats and misuse."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class TestExitStatus:
         assert icdgen("diff", "old", "new", "--fail-on", "additions").status == 1
         assert icdgen("diff", "old", "new", "--fail-on", "wire,additions").status == 1
 
-    def test_words_fail_only_if_words_are_asked_for(self, icdgen, releases):
+    def test_text_changes_fail_only_if_requested(self, icdgen, releases):
         (releases[1] / "demo.yaml").write_text(
             DEMO.replace("title: Demo", "title: A demo")
         )
@@ -64,7 +64,7 @@ class TestExitStatus:
         assert icdgen("diff", "old", "new", "--fail-on", "text").status == 1
 
     @pytest.mark.parametrize(
-        "arguments, said",
+        "arguments, expected",
         [
             ((), "Missing argument"),
             (("old",), "name what to compare with"),
@@ -80,9 +80,9 @@ class TestExitStatus:
             (("old", "new", "--out", "old"), "cannot write old"),
         ],
     )
-    def test_misuse_is_2_with_a_remedy(self, icdgen, releases, arguments, said):
+    def test_misuse_is_2_with_a_remedy(self, icdgen, releases, arguments, expected):
         result = icdgen("diff", *arguments)
-        assert result.status == 2 and said in result.err
+        assert result.status == 2 and expected in result.err
         assert "Traceback" not in result.err
 
 
@@ -97,17 +97,19 @@ class TestBadIcds:
         )
         assert result.out == ""
 
-    def test_what_only_breaks_a_rule_can_be_passed_over(self, icdgen, releases):
+    def test_rule_violations_can_be_ignored(self, icdgen, releases):
         (releases[1] / "demo.yaml").write_text(LATER.replace("length: 3", "length: 2"))
         result = icdgen("diff", "old", "new", "--unchecked")
         assert result.status == 0 and "DIF106" in result.out
 
-    def test_what_cannot_be_read_cannot(self, icdgen, releases):
+    def test_unreadable_files_cannot_be_ignored(self, icdgen, releases):
         (releases[1] / "demo.yaml").write_text(LATER.replace("bits: 4", "bits: four"))
         result = icdgen("diff", "old", "new", "--unchecked")
         assert result.status == 2 and "ICD010" in result.err
 
-    def test_twins_do_not_confuse_an_unchecked_comparison(self, icdgen, releases):
+    def test_duplicate_names_do_not_crash_an_unchecked_comparison(
+        self, icdgen, releases
+    ):
         twice = "      - {at: 20, bits: 4, name: Roll Angle, type: uint}\n  - name: Set Roll"
         (releases[1] / "demo.yaml").write_text(
             LATER.replace("  - name: Set Roll", twice)
@@ -115,7 +117,9 @@ class TestBadIcds:
         result = icdgen("diff", "old", "new", "--unchecked")
         assert result.status == 0 and "DIF114" in result.out
 
-    def test_an_unknown_enumeration_does_not_confuse_it_either(self, icdgen, releases):
+    def test_an_unknown_enumeration_does_not_crash_an_unchecked_comparison(
+        self, icdgen, releases
+    ):
         (releases[1] / "demo.yaml").write_text(
             LATER.replace("enum: Mode", "enum: Mood")
         )
@@ -125,13 +129,13 @@ class TestBadIcds:
 
 class TestOutput:
     @pytest.mark.parametrize("form", FORMATS)
-    def test_every_format_tells_the_changes(self, icdgen, releases, form):
+    def test_every_format_contains_the_changes(self, icdgen, releases, form):
         result = icdgen("diff", "old", "new", "--format", form)
         assert result.status == 0 and result.err == ""
         assert "DIF201" in result.out and "DIF103" in result.out
 
     @pytest.mark.parametrize("form", FORMATS)
-    def test_every_format_takes_equal_icds(self, icdgen, releases, form):
+    def test_every_format_supports_equal_icds(self, icdgen, releases, form):
         result = icdgen("diff", "old", "old", "--format", form)
         assert result.status == 0 and "DIF" not in result.out
 
@@ -157,7 +161,7 @@ class TestOutput:
                 == icdgen("diff", "old", "new", "--format", form).out
             )
 
-    def test_words_are_cut_short_but_for_all(self, icdgen, releases):
+    def test_text_changes_are_shortened_without_all(self, icdgen, releases):
         rows = "".join(
             f"      - {{value: {n}, name: Mode {n}, summary: S}}\n"
             for n in range(2, 40)
@@ -174,7 +178,7 @@ class TestOutput:
         assert "and 28 more changes of words, which --all lists" in short
         assert long.count("DIF401") == 38
 
-    def test_hostile_names_act_upon_nothing(self, icdgen, releases):
+    def test_hostile_names_are_escaped_in_every_format(self, icdgen, releases):
         evil = LATER.replace(
             "name: Roll Angle",
             'name: "Roll\\e[31m<script>alert(1)</script>|`x`\\u202e Angle"',
@@ -184,10 +188,11 @@ class TestOutput:
         for form in FORMATS:
             out = icdgen("diff", "old", "new", "--format", form).out
             assert "\x1b" not in out and "\u202e" not in out, form
+            # In Markdown a code span is plain text.
             if form in (
                 "markdown",
                 "html",
-            ):  # in Markdown a code span is nothing but text
+            ):
                 assert "<script>alert" not in (
                     re.sub("`[^`]*`", "", out) if form == "markdown" else out
                 )
@@ -213,7 +218,7 @@ def in_terminal(command, folder, environment) -> bytes:
         command, cwd=folder, stdout=theirs, stderr=theirs, env=environment
     )
     os.close(theirs)
-    found = b""
+    output = b""
     while True:
         try:
             part = os.read(ours, 65536)
@@ -221,10 +226,10 @@ def in_terminal(command, folder, environment) -> bytes:
             break
         if not part:
             break
-        found += part
+        output += part
     os.close(ours)
     assert process.wait() == 0
-    return found
+    return output
 
 
 class TestRule:
@@ -232,12 +237,12 @@ class TestRule:
         out = icdgen("rule", "dif201").out
         assert out.startswith("# DIF201: ") and "Before:" in out and "After:" in out
 
-    def test_they_are_listed_after_those_of_icds(self, icdgen):
+    def test_rules_of_changes_are_listed_after_those_of_icds(self, icdgen):
         lines = icdgen("rule").out.splitlines()
         assert lines == sorted(lines, key=lambda line: (line[:3] != "ICD", line))
         assert any(line.startswith("DIF101  ") for line in lines)
 
-    def test_json_is_json(self, icdgen, releases):
+    def test_the_json_list_of_rules_is_valid(self, icdgen, releases):
         assert (
             json.loads(icdgen("diff", "old", "new", "--format", "json").out)["counts"][
                 "meaning"

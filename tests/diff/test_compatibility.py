@@ -1,4 +1,4 @@
-"""Who still understands whom, and the step of the version."""
+"""Which release understands which, and the resulting step of the version."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def compared(tmp_path, old: str, new: str):
 def answers(tmp_path, change: tuple[str, str], base: str = BASE) -> dict:
     assert change[0] in base
     return {
-        one.key: one
-        for one in directions(compared(tmp_path, base, base.replace(*change)))
+        direction.key: direction
+        for direction in directions(compared(tmp_path, base, base.replace(*change)))
     }
 
 
@@ -90,23 +90,26 @@ def answers(tmp_path, change: tuple[str, str], base: str = BASE) -> dict:
         (("{value: 1, name: Run}", "{value: 1, name: Run}, {value: 2, name: Safe}"), "yes", "yes", "yes"),
     ],
 )  # fmt: skip
-def test_each_direction_has_its_answer(tmp_path, change, telemetry, telecommands, logs):
+def test_each_direction_has_a_verdict(tmp_path, change, telemetry, telecommands, logs):
     change = change if change[0] != "summary" else ("length: 3", "length: 3")
-    found = answers(tmp_path, change)
-    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == [
+    directions_by_key = answers(tmp_path, change)
+    assert [
+        directions_by_key[key].verdict for key in ("telemetry", "telecommands", "logs")
+    ] == [
         telemetry,
         telecommands,
         logs,
     ]
 
 
-def test_a_new_field_is_no_harm_to_old_telemetry_but_to_old_telecommands(tmp_path):
+def test_a_new_field_breaks_old_telecommands_but_not_old_telemetry(tmp_path):
     new = BASE.replace("name: Last", "name: Final").replace(
         "{at: 12, bits: 3,", "{at: 12, bits: 2,"
     )
-    (frame,) = {one.key: one for one in directions(compared(tmp_path, BASE, new))}[
-        "telecommands"
-    ].frames
+    (frame,) = {
+        direction.key: direction
+        for direction in directions(compared(tmp_path, BASE, new))
+    }["telecommands"].frames
     assert (
         frame.message == "Set Mode"
         and frame.verdict == "partly"
@@ -114,55 +117,66 @@ def test_a_new_field_is_no_harm_to_old_telemetry_but_to_old_telecommands(tmp_pat
     )
 
 
-def test_an_id_that_means_another_message_is_a_no_with_its_reason(tmp_path):
-    found = answers(
+def test_an_id_of_another_message_is_incompatible_with_a_reason(tmp_path):
+    directions_by_key = answers(
         tmp_path,
         ("  - name: Status\n    id: 130", "  - name: Status\n    id: 131"),
         LOGGED.replace("id: 131", "id: 132"),
     )
-    (frame,) = found["telemetry"].frames
+    (frame,) = directions_by_key["telemetry"].frames
     assert (frame.verdict, frame.reasons) == ("no", ("its id is 131 now",))
 
 
 def test_only_frames_that_can_be_logged_matter_to_logs(tmp_path):
-    found = answers(
+    directions_by_key = answers(
         tmp_path, ("name: Current, type: uint", "name: Current, type: int"), LOGGED
     )
     assert (
-        found["telemetry"].verdict == "partly"
-        and found["logs"].verdict == "yes"
-        and found["logs"].total == 1
+        directions_by_key["telemetry"].verdict == "partly"
+        and directions_by_key["logs"].verdict == "yes"
+        and directions_by_key["logs"].total == 1
     )
 
 
-def test_framing_concerns_everything_on_the_wire_and_nothing_in_logs(tmp_path):
-    found = answers(tmp_path, ("escape: 31,", "escape: 30,"), LOGGED)
-    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == [
+def test_framing_affects_the_wire_but_not_logs(tmp_path):
+    directions_by_key = answers(tmp_path, ("escape: 31,", "escape: 30,"), LOGGED)
+    assert [
+        directions_by_key[key].verdict for key in ("telemetry", "telecommands", "logs")
+    ] == [
         "partly",
         "partly",
         "yes",
     ]
-    assert "protocol.link.buses.uart.framing.escape" in found["telemetry"].general[0]
-
-
-def test_the_mask_concerns_logs(tmp_path):
-    found = answers(tmp_path, ("{bit: 0, id: 130}", "{bit: 0, id: 131}"), LOGGED)
     assert (
-        found["telemetry"].verdict == "yes"
-        and found["logs"].verdict == "partly"
-        and found["logs"].general
+        "protocol.link.buses.uart.framing.escape"
+        in directions_by_key["telemetry"].general[0]
     )
 
 
-def test_frames_of_a_node_that_is_gone_are_not_understood(tmp_path):
+def test_the_mask_affects_logs(tmp_path):
+    directions_by_key = answers(
+        tmp_path, ("{bit: 0, id: 130}", "{bit: 0, id: 131}"), LOGGED
+    )
+    assert (
+        directions_by_key["telemetry"].verdict == "yes"
+        and directions_by_key["logs"].verdict == "partly"
+        and directions_by_key["logs"].general
+    )
+
+
+def test_frames_of_a_removed_node_are_not_understood(tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
     write(tmp_path / "a", HEAD + BASE)
     (tmp_path / "a" / "other.yaml").write_text(HEAD.replace("demo", "other") + BASE)
     write(tmp_path / "b", HEAD + BASE)
     comparison = compare(load([tmp_path / "a"]).icd, load([tmp_path / "b"]).icd)
-    found = {one.key: one for one in directions(comparison)}
-    assert [(f.node, f.verdict) for f in found["telemetry"].frames] == [("other", "no")]
+    directions_by_key = {
+        direction.key: direction for direction in directions(comparison)
+    }
+    assert [(f.node, f.verdict) for f in directions_by_key["telemetry"].frames] == [
+        ("other", "no")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -181,10 +195,10 @@ def test_frames_of_a_node_that_is_gone_are_not_understood(tmp_path):
 )
 def test_the_step_of_the_version_and_its_reason(tmp_path, change, expected):
     comparison = compared(tmp_path, BASE, BASE.replace(*change))
-    found = step(comparison.changes)
-    assert found.step == expected and found.reason
-    assert set(found.deciding) <= {change.code for change in comparison.changes}
-    assert bool(found.deciding) == (expected != "none")
+    version_step = step(comparison.changes)
+    assert version_step.step == expected and version_step.reason
+    assert set(version_step.deciding) <= {change.code for change in comparison.changes}
+    assert bool(version_step.deciding) == (expected != "none")
 
 
 FRAMED = (
@@ -225,7 +239,7 @@ protocol:
         (("    commands: {ack: Status}\n", ""), "yes", "yes"),
     ],
 )
-def test_nobody_finds_messages_in_another_packet_format(
+def test_another_packet_format_is_incompatible(
     tmp_path, change, telemetry, telecommands
 ):
     got = answers(tmp_path, change, FRAMED)
@@ -235,14 +249,14 @@ def test_nobody_finds_messages_in_another_packet_format(
     )
 
 
-def test_nobody_finds_messages_between_other_escape_characters(tmp_path):
+def test_other_escape_characters_are_incompatible(tmp_path):
     escaped = "framing: {by: escape, escape: 0x10, start: 0x02, end: 0x03}"
     base = FRAMED.replace("framing: {by: length}", escaped)
     got = answers(tmp_path, ("end: 0x03", "end: 0x04"), base)
     assert (got["telemetry"].verdict, got["telecommands"].verdict) == ("no", "no")
 
 
-def test_an_order_that_is_stated_now_and_held_before_breaks_nothing(tmp_path):
+def test_stating_the_default_byte_order_breaks_nothing(tmp_path):
     new = FRAMED.replace(
         "bits: 16, role: length", "bits: 16, role: length, byte_order: little"
     )

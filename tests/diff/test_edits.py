@@ -1,4 +1,6 @@
-"""What must hold for every edit of the shipped ICDs, and for every sequence of edits."""
+"""Properties of the diff for every edit of the shipped ICDs and every sequence of
+edits.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ MIRROR = {
     "DIF101": "DIF102", "DIF113": "DIF114", "DIF123": "DIF124", "DIF130": "DIF131", "DIF132": "DIF133", "DIF207": "DIF208",
     "DIF306": "DIF311", "DIF403": "DIF404",
 }  # fmt: skip
-MIRROR |= {other: one for one, other in MIRROR.items()}
+MIRROR |= {other: edit for edit, other in MIRROR.items()}
 
 SEEDS = st.integers(0, 2**32)
 
@@ -56,7 +58,7 @@ def test_no_edited_icd_differs_from_itself(names, seed):
 @pytest.mark.parametrize("name", EDITS)
 @settings(deadline=None, max_examples=8)
 @given(seed=SEEDS)
-def test_every_single_edit_is_found_and_classified_right(name, seed):
+def test_every_single_edit_is_reported_with_its_code(name, seed):
     done = EDITS[name](shipped(), random.Random(seed))
     assert done is not None
     changes = compare(shipped(), done.icd).changes
@@ -96,9 +98,8 @@ def as_it_is(change: Change) -> tuple:
 
 
 def subject(change: Change) -> tuple:
-    """Old and new thing, by identity.
-
-    An id that means another message is about neither of the two.
+    """Return the old and the new object by identity. If an id means another message,
+    the subject is the id.
     """
     if change.code == "DIF104":
         return None, None
@@ -110,7 +111,7 @@ def subject(change: Change) -> tuple:
 @given(
     names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=8), seed=SEEDS
 )
-def test_backwards_is_the_mirror_of_forwards(names, seed):
+def test_the_backward_diff_mirrors_the_forward_diff(names, seed):
     other = edited(names, seed)
     forwards, backwards = (
         compare(shipped(), other).changes,
@@ -121,7 +122,7 @@ def test_backwards_is_the_mirror_of_forwards(names, seed):
 
 @settings(deadline=None, max_examples=30)
 @given(names=st.lists(st.sampled_from(TEXT), min_size=1, max_size=8), seed=SEEDS)
-def test_words_alone_never_amount_to_more_than_words(names, seed):
+def test_text_edits_only_give_text_changes(names, seed):
     assert {
         change.layer for change in compare(shipped(), edited(names, seed)).changes
     } <= {"text"}
@@ -131,7 +132,7 @@ def test_words_alone_never_amount_to_more_than_words(names, seed):
 @given(
     names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=6), seed=SEEDS
 )
-def test_changes_are_whole_and_ordered_by_layer(names, seed):
+def test_changes_are_complete_and_ordered_by_layer(names, seed):
     changes = compare(shipped(), edited(names, seed)).changes
     assert [LAYERS.index(c.layer) for c in changes] == sorted(
         LAYERS.index(c.layer) for c in changes
@@ -145,5 +146,5 @@ def test_changes_are_whole_and_ordered_by_layer(names, seed):
         ), change
 
 
-def test_edits_of_words_are_edits_and_some_edits_lie_beyond_messages():
+def test_the_edits_include_texts_and_objects_outside_messages():
     assert set(TEXT) < set(EDITS) and set(BEYOND) < set(EDITS)

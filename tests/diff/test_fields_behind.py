@@ -1,4 +1,4 @@
-"""Releases of an ICD that differ in fields behind a part of variable length."""
+"""The diff of ICDs that differ in fields after a variable-length field."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ messages:
 
 
 def changes(tmp_path, *replaced):
-    """Rule and text of the changes to OLD with these replacements."""
+    """Return rule and text of the changes to OLD with these replacements."""
     (tmp_path / "old").mkdir()
     (tmp_path / "new").mkdir()
     (tmp_path / "old" / "demo.yaml").write_text(OLD)
@@ -37,28 +37,28 @@ def changes(tmp_path, *replaced):
     ]
 
 
-def test_more_elements_in_front_do_not_move_a_field(tmp_path):
-    found = changes(tmp_path, ("up_to: 8", "up_to: 9"))
-    assert [rule for rule, _ in found if rule < "DIF300"] == ["DIF119"]
+def test_more_elements_before_a_field_do_not_move_it(tmp_path):
+    reported = changes(tmp_path, ("up_to: 8", "up_to: 9"))
+    assert [rule for rule, _ in reported if rule < "DIF300"] == ["DIF119"]
 
 
 def test_fields_that_change_places_are_reported(tmp_path):
-    found = changes(
+    reported = changes(
         tmp_path,
         ("after: Payload, bits: 8, name: Mode", "after: Payload, bits: 16, name: CRC"),
         ("after: Mode, bits: 16, name: CRC", "after: CRC, bits: 8, name: Mode"),
     )
-    moved = [text for rule, text in found if rule == "DIF107"]
+    moved = [text for rule, text in reported if rule == "DIF107"]
     assert len(moved) == 2 and "`Mode`" in moved[0] and "`CRC`" in moved[1]
 
 
 def test_a_new_field_at_the_end_makes_the_frame_longer(tmp_path):
-    found = changes(
+    reported = changes(
         tmp_path,
         (
             "name: CRC, type: uint}\n",
             "name: CRC, type: uint}\n      - {at: 8, after: CRC, bits: 8, name: End, type: uint}\n",
         ),
     )
-    assert "DIF106" in [rule for rule, _ in found]
-    assert any("`End`" in text for _, text in found)
+    assert "DIF106" in [rule for rule, _ in reported]
+    assert any("`End`" in text for _, text in reported)

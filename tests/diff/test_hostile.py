@@ -1,4 +1,4 @@
-"""Whatever is given to compare: a report or a finding, never a traceback."""
+"""Any input to the diff gives a report or a finding, never a traceback."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VALUES = [
 
 
 def mutated(tree: dict, seed: int) -> dict:
-    """The tree with some values replaced, doubled or taken out."""
+    """Return the tree with some values replaced, duplicated or removed."""
     rng, tree = random.Random(seed), copy.deepcopy(tree)
     for _ in range(rng.randint(1, 3)):
         owners = [owner for owner in containers(tree) if owner]
@@ -46,17 +46,17 @@ def containers(tree: object):
             yield from containers(item)
 
 
-def compared_both_ways(one: ComparisonSide, other: ComparisonSide) -> None:
-    for sides in ((one, other), (other, one)):
-        made = report.make_report(*sides)
+def compared_both_ways(first: ComparisonSide, other: ComparisonSide) -> None:
+    for sides in ((first, other), (other, first)):
+        diff_report = report.make_report(*sides)
         for form in reports.FORMATS:
-            assert isinstance(reports.get(form)(made), str)
+            assert isinstance(reports.get(form)(diff_report), str)
 
 
 def test_output_of_show_that_was_tampered_with(tmp_path):
     icd = load([ROOT / "icd" / "cubemag.yaml", ROOT / "icd" / "bootloader.yaml"]).icd
     tree = json.loads(json.dumps(to_json(icd)))
-    whole = shown.from_bytes(json.dumps(tree).encode(), "whole.json")
+    untouched = shown.from_bytes(json.dumps(tree).encode(), "whole.json")
     read = 0
     for seed in range(70):
         try:
@@ -70,7 +70,7 @@ def test_output_of_show_that_was_tampered_with(tmp_path):
             )
             continue
         read += 1
-        compared_both_ways(whole, side)
+        compared_both_ways(untouched, side)
     assert read > 8
 
 
@@ -78,27 +78,27 @@ def test_icds_that_break_rules(tmp_path, demo):
     import yaml
 
     tree = yaml.safe_load(demo.read_text(encoding="utf-8"))
-    whole, read = from_paths([demo]), 0
+    valid, read = from_paths([demo]), 0
     for seed in range(70):
         path = tmp_path / "tampered.yaml"
         path.write_text(json.dumps(mutated(tree, seed), indent=1), encoding="utf-8")
         side = from_paths([path], unchecked=True)
         if side.is_comparable(unchecked=True):
             read += 1
-            compared_both_ways(whole, side)
+            compared_both_ways(valid, side)
     assert read > 8
 
 
 @pytest.mark.parametrize(
-    "change, said",
+    "change, expected",
     [
         (('"scale": "1/100"', '"scale": "0"'), "`scale` cannot be 0"),
         (('"includes": []', '"includes": ["nowhere"]'), "which is not shown before it"),
     ],
 )
-def test_what_the_schema_does_not_see_is_a_finding_too(demo, change, said):
+def test_mistakes_beyond_the_schema_are_findings(demo, change, expected):
     text = json.dumps(to_json(load([demo]).icd))
     assert change[0] in text
     with pytest.raises(Findings) as caught:
         shown.from_bytes(text.replace(*change).encode(), "shown.json")
-    assert said in caught.value.findings[0].message
+    assert expected in caught.value.findings[0].message

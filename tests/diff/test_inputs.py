@@ -1,5 +1,5 @@
-"""What can be compared: files, folders, git revisions, the output of `icdgen show`; and
-that order and spelling are nothing.
+"""Inputs of the diff: files, folders, git revisions, the output of `icdgen show`. Order
+and spelling of an ICD make no difference.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from tests.diff.conftest import LATER
 
 @pytest.fixture
 def repository(tmp_path):
-    """A repository with the tags v1 and v2, and a working tree in which the unit is
-    another.
+    """Create a repository with the tags v1 and v2, and a working tree with another
+    unit.
     """
 
     def git(*words: str) -> None:
@@ -67,12 +67,12 @@ class TestGit:
             ("v1:./icd/demo.yaml", "v2:icd/demo.yaml"),
         ],
     )
-    def test_two_revisions(self, icdgen, repository, arguments):
+    def test_two_revisions_can_be_compared(self, icdgen, repository, arguments):
         result = icdgen("diff", *arguments, "--format", "json")
         assert (result.status, result.err) == (0, "")
         assert codes(result.out) == {"DIF201", "DIF103"}
 
-    def test_a_revision_and_the_working_tree(self, icdgen, repository):
+    def test_a_revision_can_be_compared_with_the_working_tree(self, icdgen, repository):
         for arguments in (
             ("v2", "icd"),
             ("v2:icd/demo.yaml",),
@@ -83,9 +83,7 @@ class TestGit:
                 "DIF308",
             }
 
-    def test_the_folder_icd_is_meant_where_nothing_says_otherwise(
-        self, icdgen, repository
-    ):
+    def test_the_folder_icd_is_the_default(self, icdgen, repository):
         assert codes(icdgen("diff", "v2", "--format", "json").out) == {
             "DIF202",
             "DIF308",
@@ -94,9 +92,7 @@ class TestGit:
         result = icdgen("diff", "v1..v2")
         assert result.status == 2 and "`icds` in icdgen.toml" in result.err
 
-    def test_the_icds_of_icdgen_toml_are_meant_where_no_path_is_given(
-        self, icdgen, repository
-    ):
+    def test_the_icds_of_icdgen_toml_are_the_default(self, icdgen, repository):
         (repository / "icdgen.toml").write_text('icds = ["icd"]\n')
         assert codes(icdgen("diff", "v1..v2", "--format", "json").out) == {
             "DIF201",
@@ -111,12 +107,12 @@ class TestGit:
             "DIF103",
         }
 
-    def test_places_are_those_of_the_revision(self, icdgen, repository):
+    def test_places_refer_to_the_revision(self, icdgen, repository):
         out = icdgen("diff", "v1..v2", "icd").out
         assert "v1:icd/demo.yaml:14:77 -> v2:icd/demo.yaml:14:77" in out
         assert "/tmp" not in out
 
-    def test_findings_are_those_of_the_revision_too(self, icdgen, repository):
+    def test_findings_refer_to_the_revision(self, icdgen, repository):
         (repository / "icd" / "demo.yaml").write_text(
             DEMO.replace("length: 3", "length: 2")
         )
@@ -165,7 +161,7 @@ class TestGit:
         )
 
     @pytest.mark.parametrize(
-        "arguments, said",
+        "arguments, expected",
         [
             (("v1..v9", "icd"), "git knows no revision v9"),
             (("v9", "icd"), "there is no v9"),
@@ -175,13 +171,17 @@ class TestGit:
             (("--", "-v1..v2", "icd"), "git knows no revision -v1"),
         ],
     )
-    def test_what_is_not_there_is_named(self, icdgen, repository, arguments, said):
+    def test_a_missing_path_or_revision_is_named(
+        self, icdgen, repository, arguments, expected
+    ):
         result = icdgen("diff", *arguments)
         assert (
-            result.status == 2 and said in result.err and "Traceback" not in result.err
+            result.status == 2
+            and expected in result.err
+            and "Traceback" not in result.err
         )
 
-    def test_the_working_tree_is_left_alone(self, icdgen, repository):
+    def test_the_working_tree_stays_unchanged(self, icdgen, repository):
         before = {
             p: p.read_bytes()
             for p in repository.rglob("*")
@@ -221,7 +221,7 @@ class TestShown:
         changes = compare(icd_of([wheel]), shown.from_file(file).icd).changes
         assert {change.code for change in changes} == {"DIF217", "DIF401"}
 
-    def test_places_are_those_in_the_output(self, icdgen, releases, tmp_path):
+    def test_places_refer_to_the_output_of_show(self, icdgen, releases, tmp_path):
         (tmp_path / "old.json").write_text(
             icdgen("show", "--icd", "old", "--format", "json").out
         )
@@ -238,7 +238,9 @@ class TestShown:
             in (tmp_path / file).read_text().splitlines()[int(line) - 1]
         )
 
-    def test_it_may_come_from_standard_input(self, icdgen, releases, monkeypatch):
+    def test_the_output_of_show_may_come_from_standard_input(
+        self, icdgen, releases, monkeypatch
+    ):
         data = icdgen("show", "--icd", "old", "--format", "json").out.encode()
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
         assert codes(icdgen("diff", "-", "new", "--format", "json").out) == {
@@ -255,7 +257,7 @@ class TestShown:
         assert icdgen("diff", "old.json", "old").out == "old.json -> old\nno change\n"
 
     @pytest.mark.parametrize(
-        "text, said",
+        "text, expected",
         [
             ("{", "not JSON"),
             ('{"format": 1}', "`nodes`"),
@@ -264,9 +266,7 @@ class TestShown:
             ("{" * 100_000, "JSON"),
         ],
     )
-    def test_what_is_no_such_output_is_a_finding(
-        self, icdgen, releases, tmp_path, text, said
-    ):
+    def test_other_json_is_a_finding(self, icdgen, releases, tmp_path, text, expected):
         (tmp_path / "bad.json").write_text(text)
         result = icdgen("diff", "bad.json", "new")
         assert (
@@ -274,7 +274,7 @@ class TestShown:
             and "bad.json:1:" in result.err
             and "show --format json" in result.err
         )
-        assert said.strip("`") in result.err
+        assert expected.strip("`") in result.err
 
 
 class TestNoChange:
@@ -293,7 +293,7 @@ class TestNoChange:
         (releases[1] / "demo.yaml").write_text(DEMO.replace(old, new))
         assert icdgen("diff", "old", "new").out == "old -> new\nno change\n"
 
-    def test_nor_is_the_order_of_anything(self, icdgen, releases):
+    def test_the_order_of_declarations_is_no_change(self, icdgen, releases):
         head, first, second = (
             DEMO.split("  - name: Estimated")[0],
             *DEMO.split("messages:\n")[1].split("  - name: Set Roll"),
@@ -305,7 +305,7 @@ class TestNoChange:
         (releases[1] / "demo.yaml").write_text("".join(lines))
         assert icdgen("diff", "old", "new").out == "old -> new\nno change\n"
 
-    def test_nor_are_offsets_counted_from_the_other_end_of_the_byte(
+    def test_offsets_counted_from_the_other_end_of_the_byte_are_no_change(
         self, icdgen, releases
     ):
         turned = DEMO.replace("bit_order: lsb0", "bit_order: msb0").replace(

@@ -1,4 +1,4 @@
-"""Renames and moves are found as such, and the diff says how sure it is."""
+"""The diff recognises renamed and moved objects and reports its certainty."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ def changes(tmp_path, old: str, new: str) -> list:
     return compare(*sides).changes
 
 
-def codes(found: list) -> list[str]:
-    return [change.code for change in found]
+def codes(changed: list) -> list[str]:
+    return [change.code for change in changed]
 
 
 def test_the_same_layout_under_another_name_is_a_rename(tmp_path):
-    found = changes(
+    reported = changes(
         tmp_path, message("Rates", 130, *AXES), message("Gyro Rates", 130, *AXES)
     )
-    assert codes(found) == ["DIF301"]
-    assert found[0].certainty in ("likely", "certain") and found[0].was == "Rates"
+    assert codes(reported) == ["DIF301"]
+    assert reported[0].certainty in ("likely", "certain") and reported[0].was == "Rates"
 
 
-def test_the_same_layout_under_another_name_and_id_is_one_too(tmp_path):
-    found = changes(
+def test_the_same_layout_under_another_name_and_id_is_a_rename(tmp_path):
+    reported = changes(
         tmp_path, message("Rates", 130, *AXES), message("Gyro Rates", 131, *AXES)
     )
-    assert codes(found) == ["DIF103", "DIF301"]
-    assert 0 < found[0].sure < 1
+    assert codes(reported) == ["DIF103", "DIF301"]
+    assert 0 < reported[0].sure < 1
 
 
 def test_another_layout_under_another_name_is_another_message(tmp_path):
@@ -58,24 +58,24 @@ def test_another_layout_under_another_name_is_another_message(tmp_path):
     ]  # fmt: skip
 
 
-def test_a_short_frame_is_not_taken_for_another_of_the_same_form(tmp_path):
+def test_a_short_frame_of_the_same_form_is_no_rename(tmp_path):
     byte = "{at: 0, bits: 8, name: %s, type: uint}"
-    found = changes(
+    reported = changes(
         tmp_path,
         message("Heater", 130, byte % "Level", length=1),
         message("Door", 140, byte % "Angle", length=1),
     )
-    assert {"DIF101", "DIF102"} <= set(codes(found))
+    assert {"DIF101", "DIF102"} <= set(codes(reported))
 
 
 def test_names_decide_where_messages_change_places(tmp_path):
-    """Two messages that swap their ids are not two that swap their names."""
-    found = changes(
+    """Two messages that swap their ids are not reported as swapping their names."""
+    reported = changes(
         tmp_path,
         message("One", 130, *AXES) + message("Two", 131, *AXES),
         message("One", 131, *AXES) + message("Two", 130, *AXES),
     )
-    assert sorted(set(codes(found))) == ["DIF103", "DIF104"]
+    assert sorted(set(codes(reported))) == ["DIF103", "DIF104"]
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -86,16 +86,19 @@ def test_an_insertion_is_one_change_however_many_fields_follow(tmp_path, count):
         row.replace(f"at: {8 * n},", f"at: {8 * (n + count)},")
         for n, row in enumerate(many)
     ]
-    found = changes(
+    reported = changes(
         tmp_path,
         message("M", 130, *many, length=40),
         message("M", 130, *new, *moved, length=40 + count),
     )
-    assert codes(found) == ["DIF106", "DIF108", *["DIF311"] * count]
-    assert "40 fields lie" in found[1].message and f"{count} byte" in found[1].message
+    assert codes(reported) == ["DIF106", "DIF108", *["DIF311"] * count]
+    assert (
+        "40 fields lie" in reported[1].message
+        and f"{count} byte" in reported[1].message
+    )
 
 
-def test_a_field_that_grew_moves_those_behind_it(tmp_path):
+def test_a_field_that_grew_moves_the_fields_after_it(tmp_path):
     old = [
         "{at: 0, bits: 8, name: A1, type: uint}",
         "{at: 8, bits: 8, name: B1, type: uint}",
@@ -106,27 +109,27 @@ def test_a_field_that_grew_moves_those_behind_it(tmp_path):
         "{at: 16, bits: 8, name: B1, type: uint}",
         "{at: 24, bits: 8, name: C1, type: uint}",
     ]
-    found = changes(
+    reported = changes(
         tmp_path, message("M", 130, *old, length=3), message("M", 130, *new, length=4)
     )
-    assert codes(found) == ["DIF106", "DIF108", "DIF110", "DIF307"]
-    assert found[1].message.startswith("`A1` has 16 bits, had 8: 2 fields")
+    assert codes(reported) == ["DIF106", "DIF108", "DIF110", "DIF307"]
+    assert reported[1].message.startswith("`A1` has 16 bits, had 8: 2 fields")
 
 
-def test_a_field_renamed_behind_an_insertion_is_still_found(tmp_path):
+def test_a_field_renamed_after_an_insertion_is_a_rename(tmp_path):
     old = [
         "{at: 0, bits: 8, name: Count, type: uint}",
         "{at: 8, bits: 16, name: Bus Voltage, type: uint, unit: mV}",
     ]
     new = ["{at: 0, bits: 8, name: Fresh, type: uint}", "{at: 8, bits: 8, name: Count, type: uint}",
            "{at: 16, bits: 16, name: Main Bus Voltage, type: uint, unit: mV}"]  # fmt: skip
-    found = changes(
+    reported = changes(
         tmp_path, message("M", 130, *old, length=3), message("M", 130, *new, length=4)
     )
-    assert codes(found) == ["DIF106", "DIF108", "DIF311", "DIF302"]
+    assert codes(reported) == ["DIF106", "DIF108", "DIF311", "DIF302"]
 
 
-def test_a_frame_that_gained_fields_at_its_end_is_said_to(tmp_path):
+def test_fields_added_at_the_end_of_a_frame_are_reported(tmp_path):
     length, *_ = changes(
         tmp_path, message("M", 130, AXES[0], length=2), message("M", 130, *AXES)
     )
@@ -137,7 +140,7 @@ def test_a_frame_that_gained_fields_at_its_end_is_said_to(tmp_path):
     assert "The first 2 bytes are as they were." in length.details
 
 
-def test_a_message_that_another_node_declares_now_is_not_gone(tmp_path):
+def test_a_message_moved_to_another_node_is_not_removed(tmp_path):
     for side, where in (("old", "one"), ("new", "two")):
         (tmp_path / side).mkdir()
         for name in ("one", "two"):
@@ -145,8 +148,10 @@ def test_a_message_that_another_node_declares_now_is_not_gone(tmp_path):
                 f"messages:\n{message('M', 130, *AXES)}" if name == where else ""
             )
             (tmp_path / side / f"{name}.yaml").write_text(text)
-    found = compare(*(load([tmp_path / side]).icd for side in ("old", "new"))).changes
-    assert codes(found) == ["DIF133", "DIF132", "DIF310"] or codes(found) == [
+    reported = compare(
+        *(load([tmp_path / side]).icd for side in ("old", "new"))
+    ).changes
+    assert codes(reported) == ["DIF133", "DIF132", "DIF310"] or codes(reported) == [
         "DIF132",
         "DIF133",
         "DIF310",
@@ -154,7 +159,7 @@ def test_a_message_that_another_node_declares_now_is_not_gone(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "one, other, expected",
+    "first, other, expected",
     [
         ("Unkown Reset Cause", "Unknown Reset Cause", True),
         ("Initialise", "initialize", True),
@@ -170,20 +175,20 @@ def test_a_message_that_another_node_declares_now_is_not_gone(tmp_path):
         ("Version 12345", "Version 12354", False),
     ],
 )
-def test_a_slip_of_the_pen_is_told_from_another_sense(one, other, expected):
-    assert same_sense(one, other) is same_sense(other, one) is expected
+def test_a_typing_error_is_distinguished_from_another_meaning(first, other, expected):
+    assert same_sense(first, other) is same_sense(other, first) is expected
 
 
-def test_a_name_that_says_more_extends_the_other_unless_it_denies_it():
+def test_a_longer_name_has_the_same_meaning_unless_it_negates():
     assert extends("Mode", "Control Mode") and extends("Control Mode", "Mode")
     assert not extends("Valid", "Not Valid") and not extends("Roll", "Pitch")
 
 
 def test_likeness_is_symmetric_and_bounded():
     names = ["Roll Angle", "Pitch Angle", "Angle of Roll", "", "X"]
-    for one in names:
+    for name in names:
         for other in names:
             assert (
-                likeness(one, other) == likeness(other, one)
-                and 0 <= likeness(one, other) <= 1
+                likeness(name, other) == likeness(other, name)
+                and 0 <= likeness(name, other) <= 1
             )

@@ -1,4 +1,4 @@
-"""Names and types of generated code that a report shows."""
+"""The report shows names and types of generated code that change."""
 
 from __future__ import annotations
 

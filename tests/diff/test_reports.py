@@ -1,5 +1,5 @@
-"""The reports as what reads them: JSON with its schema, SARIF, annotations, Markdown, a
-page.
+"""Reports of the diff in each format: JSON with its schema, SARIF, annotations,
+Markdown, HTML.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class TestJson:
         schema().validate(document)
         assert case.name in {change["code"] for change in document["changes"]}
 
-    def test_so_does_that_of_a_release(self, release):
+    def test_the_report_of_a_release_fits_the_schema(self, release):
         document = json.loads(reports.get("json")(release))
         schema().validate(document)
         assert sum(document["counts"].values()) == len(document["changes"])
 
-    def test_the_schema_is_a_schema_and_refuses_what_is_no_report(self, release):
+    def test_the_schema_is_valid_and_refuses_other_json(self, release):
         jsonschema.Draft202012Validator.check_schema(schema().schema)
         document = json.loads(reports.get("json")(release))
         document["changes"][0]["layer"] = "wine"
@@ -60,7 +60,7 @@ class TestJson:
 
 
 class TestSarif:
-    def test_results_have_the_new_place_and_the_old_one_beside_it(self, release):
+    def test_results_have_the_new_and_the_old_place(self, release):
         run = json.loads(reports.get("sarif")(release))["runs"][0]
         rules = run["tool"]["driver"]["rules"]
         assert len(run["results"]) == len(release.changes)
@@ -77,7 +77,7 @@ class TestSarif:
 
 
 class TestGithub:
-    def test_one_command_a_change_at_its_severity(self, release):
+    def test_each_change_is_one_command_with_its_severity(self, release):
         lines = reports.get("github")(release).splitlines()
         assert len(lines) == len(release.changes)
         words = {"error": "::error ", "warning": "::warning ", "note": "::notice "}
@@ -86,7 +86,7 @@ class TestGithub:
 
 
 class TestMarkdown:
-    def test_it_has_the_verdicts_and_every_change(self, release):
+    def test_the_report_has_the_verdicts_and_every_change(self, release):
         text = reports.get("markdown")(release)
         assert "**major**" in text and text.count("frames as before") >= 1
         assert sum(
@@ -96,7 +96,7 @@ class TestMarkdown:
 
 
 class Page(HTMLParser):
-    """Checks that every element is closed, and keeps what matters."""
+    """Parser that checks that every element is closed, and records links and fields."""
 
     VOID = frozenset(("meta", "br", "input", "rect", "polygon"))
 
@@ -108,10 +108,10 @@ class Page(HTMLParser):
         self.drawings = 0
 
     def handle_starttag(self, tag, attributes):
-        found = dict(attributes)
-        self.links += [found[key] for key in ("href", "src") if key in found]
+        values = dict(attributes)
+        self.links += [values[key] for key in ("href", "src") if key in values]
         if tag == "g":
-            self.fields.append((found["class"], found["data-key"]))
+            self.fields.append((values["class"], values["data-key"]))
         self.drawings += tag == "svg"
         if tag not in self.VOID or (
             tag == "rect" and self.get_starttag_text()[-2:] != "/>"
@@ -134,13 +134,13 @@ class TestHtml:
         assert page.open == []
         return text, page
 
-    def test_it_is_whole_and_needs_nothing_from_elsewhere(self, release):
+    def test_the_page_is_complete_and_self_contained(self, release):
         text, page = self.page(release)
         assert all(link.startswith("#") for link in page.links)
         assert "http" not in text and "url(" not in text and "@import" not in text
         assert "prefers-color-scheme: dark" in text
 
-    def test_it_draws_both_layouts_of_every_frame_whose_bits_changed(self, release):
+    def test_the_page_draws_both_layouts_of_every_changed_frame(self, release):
         text, page = self.page(release)
         assert page.drawings >= len(facts()["lengths"])
         assert ">old</text>" in text and ">new</text>" in text
@@ -153,20 +153,20 @@ class TestHtml:
         kinds = [kind for kind, _ in page.fields]
         assert kinds.count("field come") >= 14 and kinds.count("field moved") == 2 * 5
 
-    def test_a_moved_field_is_linked_to_where_it_lies_now(self, release):
+    def test_a_moved_field_links_to_its_new_position(self, release):
         text, _ = self.page(release)
         assert 'class="link moved"' in text
 
     @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-    def test_every_change_has_its_place_on_a_whole_page(self, case):
+    def test_the_complete_page_contains_every_change(self, case):
         text, _ = self.page(compared(case))
         assert case.name in text
 
 
 class TestRelease:
-    """The reconstructed older release of the same device against today's ICDs."""
+    """The reconstructed older release of the device compared with the current ICDs."""
 
-    def test_its_frames_have_the_lengths_that_are_known(self, release):
+    def test_the_older_frames_have_their_documented_lengths(self, release):
         lengths = {
             m.name: m.length for node in release.old.icd.nodes for m in node.messages
         }
@@ -174,25 +174,25 @@ class TestRelease:
             "lengths"
         ]
 
-    def test_the_diff_finds_exactly_what_was_taken_out(self, release):
-        found = {
+    def test_the_diff_reports_exactly_the_removed_fields(self, release):
+        reported = {
             (c.code, c.where.message) for c in release.changes if c.layer == "wire"
         }
         expected = {("DIF106", name) for name in facts()["lengths"]} | {
             ("DIF108", "Power and Temperature Measurements")
         }
-        assert found == expected
+        assert reported == expected
         assert [c for c in release.changes if c.layer == "meaning"] == []
         added = {c.where.field for c in release.changes if c.code == "DIF311"}
         assert added == {
             name for names in facts()["removed"].values() for name in names
         }
 
-    def test_only_its_frames_are_no_longer_understood(self, release):
+    def test_only_the_changed_frames_are_no_longer_understood(self, release):
         telemetry, telecommands, _ = release.directions
         assert {frame.message for frame in telemetry.frames} == set(facts()["lengths"])
         assert telecommands.verdict == "yes"
 
     @pytest.mark.parametrize("form", FORMATS)
-    def test_every_format_takes_it(self, release, form):
+    def test_every_format_supports_the_release(self, release, form):
         assert len(reports.get(form)(release)) > 2000

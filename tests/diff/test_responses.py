@@ -1,5 +1,5 @@
-"""Changes of the responses to telecommands, in words that a reader of the report
-understands.
+"""Changes of the responses to telecommands are reported in words that a reader of the
+report understands.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ NAK = "nak: {message: Nak, echo: Command, reason: Reason}"
         ),
     ],
 )
-def test_a_change_says_which_response_and_what_an_old_program_does(
+def test_a_change_names_the_response_and_the_behaviour_of_an_old_program(
     tmp_path, old, new, message, severity, effect
 ):
     text = WHEEL.replace(NAK, old) if old.startswith("nak") else WHEEL
@@ -62,7 +62,7 @@ def test_another_spelling_of_a_response_is_no_change(tmp_path):
 
 
 def changes(folder, text, old, new):
-    """The changes of the rule DIF216 after a replacement in an ICD."""
+    """Return the changes of the rule DIF216 after a replacement in an ICD."""
     assert old in text
     icds = []
     for name, content in (("previous", text), ("current", text.replace(old, new))):

@@ -1,5 +1,5 @@
-"""Every kind of change, by a pair of ICDs: the exact report with its places, and what
-`icdgen rule` says of it.
+"""Each rule of the diff has a pair of ICDs with the exact report and its places, and an
+explanation in `icdgen rule`.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ def test_the_report_is_exactly_the_expected_one(case):
 
 @pytest.mark.parametrize("case", CASES, ids=name)
 def test_the_pair_shows_its_change_at_a_line_of_its_files(case):
-    found = [change for change in compared(case).changes if change.code == case.name]
-    assert found
+    reported = [change for change in compared(case).changes if change.code == case.name]
+    assert reported
     with chdir(case):
-        for change in found:
+        for change in reported:
             places = [place for place in (change.old, change.new) if place is not None]
             assert places
             for place in places:
@@ -47,7 +47,7 @@ def test_there_is_a_pair_for_every_rule():
     assert {case.name for case in CASES} == set(RULES)
 
 
-def test_both_icds_of_every_pair_are_sound():
+def test_both_icds_of_every_pair_pass_the_check():
     assert [
         f
         for case in CASES
@@ -73,8 +73,8 @@ def test_the_example_of_a_rule_shows_it(code, tmp_path):
     assert code in {change.code for change in compare(*sides).changes}
 
 
-def test_titles_are_one_line_and_say_different_things():
-    titles = [one.title for one in RULES.values()]
+def test_titles_have_one_line_and_are_unique():
+    titles = [rule.title for rule in RULES.values()]
     assert len(set(titles)) == len(titles)
     assert all(len(title) < 100 and not title.endswith(".") for title in titles)
 
@@ -89,22 +89,22 @@ def test_an_explanation_has_title_layer_reason_and_both_examples():
 
 
 def test_the_first_digit_of_a_code_is_its_layer():
-    assert {one.layer for one in RULES.values()} == set(LAYERS)
-    assert all(LAYERS[int(code[3]) - 1] == one.layer for code, one in RULES.items())
+    assert {rule.layer for rule in RULES.values()} == set(LAYERS)
+    assert all(LAYERS[int(code[3]) - 1] == rule.layer for code, rule in RULES.items())
     assert all(re.fullmatch("DIF[1-4][0-9]{2}", code) for code in RULES)
 
 
-def test_words_are_never_more_than_a_note_and_an_addition_never_more_than_that():
+def test_text_changes_and_additions_are_notes():
     assert all(
-        one.severity == "note"
-        for one in RULES.values()
-        if one.layer == "text" or one.addition
+        rule.severity == "note"
+        for rule in RULES.values()
+        if rule.layer == "text" or rule.addition
     )
 
 
-def test_the_report_of_equal_icds_says_so():
+def test_the_report_of_equal_icds_states_no_change():
     from icdgen.diff import inputs, reports
 
     with chdir(CASES[0]):
-        one = make_report(*inputs.sides(["current", "current"], []))
-    assert reports.get("text")(one) == "current -> current\nno change\n"
+        equal_report = make_report(*inputs.sides(["current", "current"], []))
+    assert reports.get("text")(equal_report) == "current -> current\nno change\n"

@@ -1,4 +1,4 @@
-"""``--uses``: the lines of a user's own sources that use what changed, and no others."""
+"""``--uses`` lists exactly the lines of a user's sources that use changed names."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def uses(icdgen, *arguments) -> list[tuple]:
     ]
 
 
-def test_every_line_that_uses_a_touched_name_is_found(icdgen, releases, sources):
+def test_every_line_that_uses_a_changed_name_is_listed(icdgen, releases, sources):
     assert uses(icdgen) == [
         ("src/lib.rs", 4, "roll_angle_deg", "DIF201"),
         ("src/main.c", 6, "demo_estimated_roll_roll_angle_deg", "DIF201"),
@@ -94,9 +94,7 @@ def test_the_text_report_shows_line_and_reason(icdgen, releases, sources):
     assert "raw*0.001, was raw*0.01" in out.split("uses in your sources")[1]
 
 
-def test_a_member_means_nothing_in_a_file_that_does_not_speak_of_its_type(
-    icdgen, releases, sources
-):
+def test_a_member_name_is_ignored_in_a_file_without_its_type(icdgen, releases, sources):
     for name in ("main.c", "lib.rs", "deep/log.py"):
         (sources / name).unlink()
     (sources / "other.py").write_text(
@@ -110,7 +108,7 @@ def test_a_member_means_nothing_in_a_file_that_does_not_speak_of_its_type(
     )
 
 
-def test_generated_code_is_nobodys_own(icdgen, releases, sources):
+def test_generated_code_is_not_searched(icdgen, releases, sources):
     for name in ("main.c", "lib.rs", "deep/log.py"):
         (sources / name).unlink()
     icdgen("--lang", "c", "--lang", "python", "--lang", "rust", "--out", "src", "old")
@@ -124,8 +122,8 @@ def test_a_renamed_field_is_found_by_its_old_name(icdgen, releases, sources):
         .replace("name: Roll Angle, ", "name: Body Roll Angle, ", 1)
     )
     (releases[1] / "demo.yaml").write_text(text)
-    found = uses(icdgen)
-    assert ("src/main.c", 7, "roll_angle", "DIF302") in found and len(found) == 5
+    places = uses(icdgen)
+    assert ("src/main.c", 7, "roll_angle", "DIF302") in places and len(places) == 5
 
 
 def test_a_renamed_message_is_found_with_all_its_functions(icdgen, releases, sources):
@@ -144,7 +142,7 @@ def test_a_renamed_message_is_found_with_all_its_functions(icdgen, releases, sou
     } <= names
 
 
-def test_words_touch_nobodys_code(icdgen, releases, sources):
+def test_text_changes_affect_no_code(icdgen, releases, sources):
     text = (
         (releases[0] / "demo.yaml")
         .read_text()
@@ -154,7 +152,9 @@ def test_words_touch_nobodys_code(icdgen, releases, sources):
     assert uses(icdgen) == []
 
 
-def test_a_single_file_can_be_named_and_bad_bytes_do_no_harm(icdgen, releases, sources):
+def test_a_single_file_can_be_named_and_invalid_bytes_are_accepted(
+    icdgen, releases, sources
+):
     (sources / "main.c").write_bytes(b"\xff\xfe demo_set_roll_t /* " + C.encode())
     assert uses(icdgen, "--uses", "src/main.c")[0][2] == "roll_angle_deg"
     result = icdgen("diff", "old", "new", "--uses", "old/demo.yaml")

@@ -1,1 +1,1 @@
-"""The diff and the generated code agree about what changed on the wire."""
+"""Checks that the diff and the generated code agree about changes on the wire."""

@@ -43,7 +43,7 @@ def main(arguments: list[str] | None = None) -> int:
         f"{len(score.by_edit)} kinds of edits, {sum(score.by_edit.values())} edits, code in {options.lang}:"
     )
     print(
-        f"  a change of the wire: {score.wire}; no change of the wire: {score.no_wire}, words only {score.nothing}"
+        f"  a change of the wire: {score.wire}; no change of the wire: {score.no_wire}, words only {score.unchanged}"
     )
     print(f"  disagreements: {len(score.wrong)}")
     print(f"{time.perf_counter() - start:.0f} s")

@@ -1,6 +1,4 @@
-"""What the vectors of an old ICD demand of the code of a new one, on the wire and
-altogether.
-"""
+"""Requests from the vectors of an old ICD to the code of a new one."""
 
 from __future__ import annotations
 
@@ -20,8 +18,8 @@ from tests.conformance.cases import (
 EVERYTHING = ...
 
 
-def altogether(data: dict) -> Iterator[Case]:
-    """Every case of the vectors of a small ICD."""
+def all_cases(data: dict) -> Iterator[Case]:
+    """Yield every case of the vectors of a small ICD."""
     enums = member_names({data["node"]: data})
     for message in data["messages"]:
         yield from MessageCases(data["node"], message, enums, data["never_set"]).all()
@@ -31,11 +29,10 @@ def altogether(data: dict) -> Iterator[Case]:
 
 
 def on_the_wire(
-    data: dict, comparison: Comparison, others: tuple[int, ...]
+    data: dict, comparison: Comparison, other_ids: tuple[int, ...]
 ) -> Iterator[Case]:
-    """The cases that concern bytes and raw values only, in the names of the new ICD.
-
-    ``others``: ids of the new ICD.
+    """Yield the cases about bytes and raw values only, with the names of the new ICD.
+    ``other_ids`` are ids of the new ICD.
     """
     pairs = {
         p.old.name: p
@@ -53,18 +50,19 @@ def on_the_wire(
                     yield _renamed(case, pair)
         yield from (_renamed(case, pair) for case in cases.routes())
         yield from cases.refused_lengths()
-    yield from ids(data, others)
+    yield from ids(data, other_ids)
 
 
-def ids(data: dict, others: tuple[int, ...]) -> Iterator[Case]:
-    """Ids that are known lead to a message, others to none."""
-    known = {direction: data["ids"][direction] for direction in DIRECTIONS}
+def ids(data: dict, other_ids: tuple[int, ...]) -> Iterator[Case]:
+    """Yield cases of ids that select a message, and of ids that must not."""
+    names_by_id = {direction: data["ids"][direction] for direction in DIRECTIONS}
     numbers = sorted(
-        {int(number) for rows in known.values() for number in rows} | {0, 255, *others}
+        {int(number) for rows in names_by_id.values() for number in rows}
+        | {0, 255, *other_ids}
     )
     for direction in DIRECTIONS:
         for number in numbers:
-            if str(number) not in known[direction]:
+            if str(number) not in names_by_id[direction]:
                 request = {
                     "op": "decode",
                     "node": data["node"],
@@ -91,7 +89,7 @@ def _renamed(case: Case, pair: MessagePair) -> Case:
         answer["raw"] = {
             names.get(name, name): value for name, value in answer["raw"].items()
         }
-        for part in pair.parts:  # views that came or went are no bytes
+        for part in pair.parts:  # added or removed overlay fields change no bytes
             if part.before is None and part.new.is_read_only:
                 answer["raw"][part.new.name] = EVERYTHING
             elif part.after is None and part.old.is_read_only:
@@ -101,7 +99,9 @@ def _renamed(case: Case, pair: MessagePair) -> Case:
 
 
 def plain(answer: dict) -> dict:
-    """Raw truth values as numbers, as they are bits on the wire."""
+    """Return the answer with raw booleans as numbers, because they are bits on the
+    wire.
+    """
     raw = answer.get("raw")
     if not isinstance(raw, dict):
         return answer

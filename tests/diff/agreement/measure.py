@@ -1,5 +1,5 @@
-"""Runs the vectors of the old ICDs on code generated from the new ones, and holds the
-outcome against the diff.
+"""Run the vectors of the old ICDs on code generated from the new ones, and compare the
+outcome with the diff.
 """
 
 from __future__ import annotations
@@ -20,30 +20,29 @@ from tests.conformance.cases import Case as Demand
 from tests.conformance.compare import difference
 from tests.conformance.driver import Testee
 from tests.conformance.languages import Language
-from tests.diff.agreement.demands import altogether, on_the_wire, plain
-from tests.diff.agreement.pieces import Case
+from tests.diff.agreement.demands import all_cases, on_the_wire, plain
+from tests.diff.agreement.pieces import EditCase
 
-STEPS = (4, 40, 10**9)  # so many demands are put before the answers are looked at
+STEPS = (4, 40, 10**9)  # requests that are sent before the answers are compared
 
 
 @dataclass
 class Score:
-    """How many edits the diff called a change of the wire, of how many a vector failed,
-    and where the two disagree.
+    """Number of edits by verdict of the diff, number of failed vectors, and the
+    disagreements.
     """
 
     wire: int = 0
     no_wire: int = 0
-    # no wire, meaning or source: all vectors pass, whatever they look at
-    nothing: int = 0
+    # text changes only: all vectors pass
+    unchanged: int = 0
     by_edit: Counter = field(default_factory=Counter)
     wrong: list[str] = field(default_factory=list)
 
 
-def measure(cases: list[Case], language: Language, folder: Path) -> Score:
-    """Builds all new ICDs at once and asks each what the old one's vectors demand.
-
-    Raises `BuildError`.
+def measure(cases: list[EditCase], language: Language, folder: Path) -> Score:
+    """Build all new ICDs at once and send each the requests of the old vectors. Raises
+    `BuildError`.
     """
     score = Score()
     testee = Testee(build(language, Icd(tuple(case.node for case in cases)), folder))
@@ -54,14 +53,18 @@ def measure(cases: list[Case], language: Language, folder: Path) -> Score:
     return score
 
 
-def _judge(case: Case, testee: Testee, score: Score) -> None:
+def _judge(case: EditCase, testee: Testee, score: Score) -> None:
     comparison = compare(case.old, case.new)
     layers = {change.layer for change in comparison.changes}
     data = json.loads(vector_file_text(make_vectors(case.old, case.old.nodes[0])))
-    others = tuple(number for message in case.node.messages for number in message.ids)
-    failure = _first_failure(testee, on_the_wire(data, comparison, others), wire=True)
-    said = [f"{change.code} {change.message}" for change in comparison.changes]
-    about = f"{case.edit} of {case.old.nodes[0].messages[0].name!r}: {said}"
+    other_ids = tuple(
+        number for message in case.node.messages for number in message.ids
+    )
+    failure = _first_failure(
+        testee, on_the_wire(data, comparison, other_ids), wire=True
+    )
+    change_texts = [f"{change.code} {change.message}" for change in comparison.changes]
+    about = f"{case.edit} of {case.old.nodes[0].messages[0].name!r}: {change_texts}"
     if WIRE in layers:
         score.wire += 1
         if failure is None:
@@ -74,12 +77,11 @@ def _judge(case: Case, testee: Testee, score: Score) -> None:
         score.wrong.append(
             f"{about}: no change of the wire, and a vector fails: {failure}"
         )
-    respelled = any(
-        change.code == "DIF406" for change in comparison.changes
-    )  # vectors speak in the manual's names
+    # The vectors use the names of the manual.
+    respelled = any(change.code == "DIF406" for change in comparison.changes)
     if not layers & {MEANING, SOURCE} and not respelled:
-        score.nothing += 1
-        failure = _first_failure(testee, altogether(data), wire=False)
+        score.unchanged += 1
+        failure = _first_failure(testee, all_cases(data), wire=False)
         if failure is not None:
             score.wrong.append(f"{about}: words only, and a vector fails: {failure}")
 
@@ -88,12 +90,14 @@ def _first_failure(testee: Testee, demands: Iterable[Demand], wire: bool) -> str
     rows, first = list(demands), 0
     for last in STEPS:
         part = rows[first:last]
-        replies = testee.ask([json.dumps(one.request).encode() for one in part])
-        for one, reply in zip(part, replies, strict=True):
+        replies = testee.ask([json.dumps(case.request).encode() for case in part])
+        for case, reply in zip(part, replies, strict=True):
             if wire and reply is not None:
                 reply = json.dumps(plain(json.loads(reply))).encode()
-            found = difference(plain(one.answer) if wire else one.answer, reply)
-            if found is not None:
-                return f"{one.about}: {found}"
+            difference_text = difference(
+                plain(case.answer) if wire else case.answer, reply
+            )
+            if difference_text is not None:
+                return f"{case.about}: {difference_text}"
         first = last
     return None

@@ -1,5 +1,5 @@
-"""Small ICDs cut out of the shipped ones, one edit each: so hundreds of edits are nodes
-of one build.
+"""Small ICDs cut out of the shipped ones with one edit each, so that one build contains
+hundreds of edits.
 """
 
 from __future__ import annotations
@@ -14,14 +14,13 @@ from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Enum, Icd, Message, Node
 from tests.diff.edits import BEYOND, EDITS
 
-TRIES = 40  # pieces that are tried for an edit before another edit is taken
+TRIES = 40  # messages that are tried before the next edit
 
 
 @dataclass
-class Case:
-    """An edit of a small ICD.
-
-    Both sides have the same node name, by which the build is asked.
+class EditCase:
+    """An edit of a small ICD. Both sides have the same node name, which the requests
+    use.
     """
 
     name: str
@@ -34,17 +33,17 @@ class Case:
         return self.new.nodes[0]
 
 
-def cases(icd: Icd, count: int, seed: int) -> list[Case]:
-    """So many edits, each kind in turn, of messages chosen at random."""
+def cases(icd: Icd, count: int, seed: int) -> list[EditCase]:
+    """Return ``count`` edits, each kind in turn, of messages chosen at random."""
     rng = random.Random(seed)
     kinds = [kind for kind in EDITS if kind not in BEYOND]
     messages = [(node, message) for node in icd.nodes for message in node.messages]
-    found: list[Case] = []
-    while len(found) < count:
-        kind = kinds[len(found) % len(kinds)]
-        name = f"e{len(found):05}"
-        found.append(next(_attempts(icd, kind, name, messages, rng)))
-    return found
+    drawn_cases: list[EditCase] = []
+    while len(drawn_cases) < count:
+        kind = kinds[len(drawn_cases) % len(kinds)]
+        name = f"e{len(drawn_cases):05}"
+        drawn_cases.append(next(_attempts(icd, kind, name, messages, rng)))
+    return drawn_cases
 
 
 def _attempts(
@@ -53,31 +52,35 @@ def _attempts(
     name: str,
     messages: list[tuple[Node, Message]],
     rng: random.Random,
-) -> Iterator[Case]:
+) -> Iterator[EditCase]:
     while True:
         node, message = rng.choice(messages)
         beside = [m for m in node.messages if m is not message]
-        both = (
+        common = (
             (message, rng.choice(beside))
             if kind == "swap_ids" and beside
             else (message,)
         )
-        old = piece(icd, node, both, name)
+        old = piece(icd, node, common, name)
         done = EDITS[kind](old, rng)
         if done is not None:
-            yield Case(name, kind, old, done.icd)
+            yield EditCase(name, kind, old, done.icd)
 
 
 def piece(icd: Icd, node: Node, messages: tuple[Message, ...], name: str) -> Icd:
-    """The messages and the enumerations that they use, as a node of their own."""
-    made: dict[int, Enum] = {}
+    """Return an ICD with a node of the given messages and the enumerations that they
+    use.
+    """
+    enums: dict[int, Enum] = {}
 
     def own(message: Message) -> Message:
         layout = replace(message.layout, owner=name)
         for visit in walk(message.layout, node.orders):
             scalar = scalar_of(visit.node)
             if scalar is not None and scalar.enum is not None:
-                enum = made.setdefault(id(scalar.enum), replace(scalar.enum, node=name))
+                enum = enums.setdefault(
+                    id(scalar.enum), replace(scalar.enum, node=name)
+                )
                 layout = with_enum(layout, scalar.enum, enum)
         return replace(message, node=name, contains=(), layout=layout)
 
@@ -86,7 +89,7 @@ def piece(icd: Icd, node: Node, messages: tuple[Message, ...], name: str) -> Icd
         node,
         name=name,
         messages=own_messages,
-        enums=tuple(made.values()),
+        enums=tuple(enums.values()),
         includes=(),
         loggable=(),
         missing=(),

@@ -1,4 +1,4 @@
-"""The generated code agrees with the diff, on a sample; ``python -m
+"""The generated code agrees with the diff on a sample of edits. ``python -m
 tests.diff.agreement`` tries 500 edits.
 """
 
@@ -20,19 +20,17 @@ def icd():
     return icd_of()
 
 
-def test_vectors_fail_where_the_diff_says_wire_and_pass_where_it_does_not(
-    icd, tmp_path
-):
+def test_vectors_fail_exactly_if_the_diff_reports_a_wire_change(icd, tmp_path):
     score = measure(cases(icd, 90, seed=7), LANGUAGES["python"], tmp_path)
     assert score.wrong == []
     assert set(score.by_edit) == set(EDITS) - set(BEYOND)
-    assert score.wire > 25 and score.no_wire > 25 and score.nothing > 5
+    assert score.wire > 25 and score.no_wire > 25 and score.unchanged > 5
 
 
 @pytest.mark.parametrize("hidden", ["wire", "others"])
-def test_a_diff_that_lies_is_found_out(icd, tmp_path, monkeypatch, hidden):
-    """A diff that does not see changes of the wire, and one that takes every change for
-    one of the wire.
+def test_the_measurement_detects_a_wrong_diff(icd, tmp_path, monkeypatch, hidden):
+    """Simulate a diff that misses changes of the wire, and one that reports every
+    change as one of the wire.
     """
     wire = next(
         c
@@ -42,13 +40,13 @@ def test_a_diff_that_lies_is_found_out(icd, tmp_path, monkeypatch, hidden):
     )
 
     def lying(old, new):
-        found = compare(old, new)
-        found.changes = (
-            [c for c in found.changes if c.layer != "wire"]
+        comparison = compare(old, new)
+        comparison.changes = (
+            [c for c in comparison.changes if c.layer != "wire"]
             if hidden == "wire"
             else [wire]
         )
-        return found
+        return comparison
 
     monkeypatch.setattr(measuring, "compare", lying)
     chosen = cases(icd, 41, seed=3)

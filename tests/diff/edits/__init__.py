@@ -1,9 +1,8 @@
-"""Single edits of ICD models: what a release may change, and what the diff must say of
-it.
+"""Single edits of ICD models: possible changes of a release, and the codes that the
+diff must report.
 
-Each edit takes a set of ICDs and a source of randomness. It returns the edited set with
-the codes that must be found and those that may be, or None where there is nothing to
-which it applies.
+Each edit takes a set of ICDs and a random source. It returns the edited set with the
+codes that must and those that may be reported, or ``None`` if it does not apply.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What an edit is, and what edits are made of."""
+"""The result type of edits, and functions that edits are built from."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ from icdgen.naming import words
 
 @dataclass(frozen=True)
 class Edited:
-    """``must`` are found, ``may`` possibly, and nothing else.
-
-    ``at`` names the message or enumeration.
+    """An edited set of ICDs. The diff must report the codes in ``must``, may report
+    those in ``may``, and no others. ``at`` names the message or enumeration.
     """
 
     icd: Icd
@@ -28,10 +27,9 @@ class Edited:
 
 Edit = Callable[[Icd, random.Random], "Edited | None"]
 EDITS: dict[str, Edit] = {}
-TEXT: list[str] = []  # edits of words only
-BEYOND: list[
-    str
-] = []  # edits of what no message of the generated code shows: protocol facts, the log mask
+TEXT: list[str] = []  # edits of texts only
+# Edits outside messages: protocol facts, the log mask.
+BEYOND: list[str] = []
 STRANGE = "Zorkmid flux 7"
 
 
@@ -52,7 +50,7 @@ def done(icd: Icd, at: str, *must: str, may: tuple[str, ...] = ()) -> Edited:
     return Edited(icd, frozenset(must), frozenset(may), at)
 
 
-# Putting things in the place of others
+# Replacing objects
 
 
 def with_node(icd: Icd, old: Node, new: Node) -> Icd:
@@ -60,7 +58,9 @@ def with_node(icd: Icd, old: Node, new: Node) -> Icd:
 
 
 def with_message(icd: Icd, node: Node, old: Message, *new: Message) -> Icd:
-    messages = [m for one in node.messages for m in (new if one is old else (one,))]
+    messages = [
+        m for message in node.messages for m in (new if message is old else (message,))
+    ]
     return with_node(icd, node, replace(node, messages=tuple(messages)))
 
 
@@ -71,12 +71,14 @@ def with_layout(icd: Icd, node: Node, message: Message, layout: Layout) -> Icd:
 def with_fields(
     icd: Icd, node: Node, message: Message, fields: list[Scalar], **more: object
 ) -> Icd:
-    """Puts other scalars in the place of those of a message, all other nodes stay;
-    ``more`` is of the layout.
+    """Replace the scalars of a message. Other nodes stay unchanged; ``more`` are
+    changes of the layout.
     """
-    others = [one for one in message.layout.fixed if not isinstance(one, Scalar)]
+    unchanged = [
+        field for field in message.layout.fixed if not isinstance(field, Scalar)
+    ]
     return with_layout(
-        icd, node, message, replace(message.layout, fixed=(*fields, *others), **more)
+        icd, node, message, replace(message.layout, fixed=(*fields, *unchanged), **more)
     )
 
 
@@ -87,9 +89,13 @@ def with_field(icd: Icd, node: Node, message: Message, old: Scalar, new: Scalar)
 
 
 def with_enum(icd: Icd, old: Enum, new: Enum) -> Icd:
-    def message(one: Message) -> Message:
-        layout = layout_copies.with_enum(one.layout, old, new)
-        return one if layout is one.layout else replace(one, layout=layout)
+    def message(candidate: Message) -> Message:
+        layout = layout_copies.with_enum(candidate.layout, old, new)
+        return (
+            candidate
+            if layout is candidate.layout
+            else replace(candidate, layout=layout)
+        )
 
     return Icd(
         tuple(
@@ -109,7 +115,7 @@ def with_member(icd: Icd, enum: Enum, index: int, **values: object) -> Icd:
     return with_enum(icd, enum, replace(enum, members=tuple(members)))
 
 
-# Choosing
+# Choosing objects
 
 
 def pick(rng: random.Random, items: Iterator | list):
@@ -118,20 +124,18 @@ def pick(rng: random.Random, items: Iterator | list):
 
 
 def scalars(message: Message) -> list[Scalar]:
-    """The fields of a message that are no array, struct or overlay."""
-    return [one for one in message.layout.fixed if isinstance(one, Scalar)]
+    """Return the fields of a message except arrays, structs and overlay fields."""
+    return [field for field in message.layout.fixed if isinstance(field, Scalar)]
 
 
 def fields_of(
     icd: Icd, wanted: Callable[[Scalar], bool] = lambda f: True
 ) -> list[tuple[Node, Message, Scalar]]:
-    return [
-        (n, m, f)
-        for n in icd.nodes
-        for m in n.messages
-        for f in scalars(m)
-        if wanted(f)
-    ]
+    fields = []
+    for node in icd.nodes:
+        for message in node.messages:
+            fields += [(node, message, f) for f in scalars(message) if wanted(f)]
+    return fields
 
 
 def messages_of(
@@ -145,7 +149,7 @@ def members_of(icd: Icd) -> list[tuple[Enum, int]]:
 
 
 def is_plain(field: Scalar) -> bool:
-    """A number without anything that depends on its range."""
+    """Return whether a field is a number on whose range nothing else depends."""
     return (
         field.type in ("uint", "int")
         and field.const is None
@@ -161,36 +165,36 @@ def is_free(message: Message, name: str) -> bool:
 
 
 def free_id(icd: Icd) -> int | None:
-    taken = {number for node in icd.nodes for m in node.messages for number in m.ids}
-    return next((number for number in range(250, 0, -1) if number not in taken), None)
+    used = {number for node in icd.nodes for m in node.messages for number in m.ids}
+    return next((number for number in range(250, 0, -1) if number not in used), None)
 
 
-# Edits of one thing, chosen at random
+# Edits of one object, chosen at random
 
 
 def on_field(
     wanted: Callable[[Scalar], bool] = lambda f: True, **kind: bool
 ) -> Callable[[Callable], Edit]:
-    """Registers ``function(icd, rng, node, message, field)``."""
+    """Register ``function(icd, rng, node, message, field)``."""
     return _on(lambda icd: fields_of(icd, wanted), kind)
 
 
 def on_message(
     wanted: Callable[[Message], bool] = lambda m: True, **kind: bool
 ) -> Callable[[Callable], Edit]:
-    """Registers ``function(icd, rng, node, message)``."""
+    """Register ``function(icd, rng, node, message)``."""
     return _on(lambda icd: messages_of(icd, wanted), kind)
 
 
 def _on(
-    found: Callable[[Icd], list[tuple]], kind: dict[str, bool]
+    candidates_of: Callable[[Icd], list[tuple]], kind: dict[str, bool]
 ) -> Callable[[Callable], Edit]:
     def register(function: Callable) -> Edit:
         @wraps(function)
-        def made(icd: Icd, rng: random.Random) -> Edited | None:
-            one = pick(rng, found(icd))
-            return None if one is None else function(icd, rng, *one)
+        def edited(icd: Icd, rng: random.Random) -> Edited | None:
+            choice = pick(rng, candidates_of(icd))
+            return None if choice is None else function(icd, rng, *choice)
 
-        return edit(**kind)(made)
+        return edit(**kind)(edited)
 
     return register

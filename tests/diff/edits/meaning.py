@@ -1,4 +1,4 @@
-"""Edits of what bytes stand for."""
+"""Edits of the meaning of bytes."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from tests.diff.edits.edit import (
 
 
 def _scaled(icd, rng, new: Callable[[Scale], Scale], code: str):
-    one = pick(rng, fields_of(icd, lambda f: f.scale is not None and not f.limits))
-    if one is None:
+    choice = pick(rng, fields_of(icd, lambda f: f.scale is not None and not f.limits))
+    if choice is None:
         return None
-    node, message, field = one
+    node, message, field = choice
     edited = with_field(
         icd, node, message, field, replace(field, scale=new(field.scale), formula="")
     )
@@ -119,7 +119,7 @@ def change_node_type(icd, rng):
 
 @edit()
 def change_member_sense(icd, rng):
-    one = pick(
+    choice = pick(
         rng,
         [
             (e, i)
@@ -127,9 +127,9 @@ def change_member_sense(icd, rng):
             if all(m.name != STRANGE for m in e.members)
         ],
     )
-    if one is None:
+    if choice is None:
         return None
-    enum, index = one
+    enum, index = choice
     edited = with_member(icd, enum, index, name=STRANGE, identifier=None)
     return done(edited, enum.name, "DIF205", "DIF304")
 
@@ -140,7 +140,7 @@ def renumber_member(icd, rng):
         id(f.enum): f.bits
         for _, _, f in reversed(fields_of(icd, lambda f: f.enum is not None))
     }
-    found = []
+    candidates = []
     for enum, index in members_of(icd):
         free = next(
             (
@@ -152,20 +152,20 @@ def renumber_member(icd, rng):
         )
         twins = [m.name for m in enum.members].count(enum.members[index].name)
         if free is not None and twins == 1:
-            found.append((enum, index, free))
-    one = pick(rng, found)
-    if one is None:
+            candidates.append((enum, index, free))
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    enum, index, value = one
+    enum, index, value = choice
     return done(with_member(icd, enum, index, value=value), enum.name, "DIF206")
 
 
 @edit()
 def remove_member(icd, rng):
-    one = pick(rng, [(e, i) for e, i in members_of(icd) if len(e.members) > 1])
-    if one is None:
+    choice = pick(rng, [(e, i) for e, i in members_of(icd) if len(e.members) > 1])
+    if choice is None:
         return None
-    enum, index = one
+    enum, index = choice
     members = tuple(m for i, m in enumerate(enum.members) if i != index)
     return done(
         with_enum(icd, enum, replace(enum, members=members)),

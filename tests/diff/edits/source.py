@@ -24,12 +24,12 @@ from tests.diff.edits.edit import (
 
 @edit()
 def rename_field(icd, rng):
-    one = pick(
+    choice = pick(
         rng, [(n, m, f) for n, m, f in fields_of(icd) if is_free(m, f"{f.name} Value")]
     )
-    if one is None:
+    if choice is None:
         return None
-    node, message, field = one
+    node, message, field = choice
     new = replace(
         field,
         name=f"{field.name} Value",
@@ -40,10 +40,10 @@ def rename_field(icd, rng):
 
 @edit()
 def rename_field_to_another_sense(icd, rng):
-    one = pick(rng, [(n, m, f) for n, m, f in fields_of(icd) if is_free(m, STRANGE)])
-    if one is None:
+    choice = pick(rng, [(n, m, f) for n, m, f in fields_of(icd) if is_free(m, STRANGE)])
+    if choice is None:
         return None
-    node, message, field = one
+    node, message, field = choice
     new = replace(field, name=STRANGE, identifier=None)
     return done(
         with_field(icd, node, message, field, new), message.name, "DIF213", "DIF302"
@@ -52,11 +52,11 @@ def rename_field_to_another_sense(icd, rng):
 
 @edit()
 def rename_message(icd, rng):
-    taken = {m.name for _, m in messages_of(icd)}
-    one = pick(rng, messages_of(icd, lambda m: f"{m.name} Frame" not in taken))
-    if one is None:
+    used = {m.name for _, m in messages_of(icd)}
+    choice = pick(rng, messages_of(icd, lambda m: f"{m.name} Frame" not in used))
+    if choice is None:
         return None
-    node, message = one
+    node, message = choice
     name = f"{message.name} Frame"
     new = replace(
         message,
@@ -79,8 +79,8 @@ def rename_enum(icd, rng):
 
 @edit()
 def mend_member(icd, rng):
-    """A slip of the pen: one letter twice."""
-    found = []
+    """Double a letter of a member's name, like a typing error."""
+    candidates = []
     for enum, index in members_of(icd):
         member = enum.members[index]
         name = member.name[:4] + member.name[3:]
@@ -90,9 +90,9 @@ def mend_member(icd, rng):
             and words(name) != words(member.name)
         ):
             if all(m.name != name for m in enum.members):
-                found.append((enum, index, name))
-    one = pick(rng, found)
-    if one is None:
+                candidates.append((enum, index, name))
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    enum, index, name = one
+    enum, index, name = choice
     return done(with_member(icd, enum, index, name=name), enum.name, "DIF304")

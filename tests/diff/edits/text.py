@@ -1,4 +1,4 @@
-"""Edits of words, and of what is no change at all."""
+"""Edits of texts, and edits that change nothing."""
 
 from __future__ import annotations
 
@@ -48,17 +48,17 @@ def change_message_words(icd, rng, node, message):
 
 @edit(text=True)
 def respell_field(icd, rng):
-    found = []
+    candidates = []
     for node, message, field in fields_of(icd):
         name = field.name.replace(" ", " - ")
         if name != field.name and words(name, node.vocabulary) == words(
             field.name, node.vocabulary
         ):
-            found.append((node, message, field, name))
-    one = pick(rng, found)
-    if one is None:
+            candidates.append((node, message, field, name))
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, message, field, name = one
+    node, message, field, name = choice
     return done(
         with_field(icd, node, message, field, replace(field, name=name)),
         message.name,
@@ -68,10 +68,10 @@ def respell_field(icd, rng):
 
 @edit(text=True)
 def change_enum_words(icd, rng):
-    one = pick(rng, members_of(icd))
-    if one is None:
+    choice = pick(rng, members_of(icd))
+    if choice is None:
         return None
-    enum, index = one
+    enum, index = choice
     if rng.random() < 0.5:
         new = replace(enum, table=(enum.table or 0) + 1)
         return done(with_enum(icd, enum, new), enum.name, "DIF402")
@@ -96,14 +96,15 @@ def note_an_erratum(icd, rng, node, message, field):
 
 @edit(text=True)
 def shuffle(icd, rng):
-    """Order is no change at all."""
+    """Change the order of declarations, which is no change."""
     node = rng.choice(icd.nodes)
     layouts = [
         replace(m.layout, fixed=tuple(rng.sample(m.layout.fixed, len(m.layout.fixed))))
         for m in node.messages
     ]
     messages = [
-        replace(m, layout=one) for m, one in zip(node.messages, layouts, strict=True)
+        replace(m, layout=layout)
+        for m, layout in zip(node.messages, layouts, strict=True)
     ]
     enums = rng.sample(node.enums, len(node.enums))
     rng.shuffle(messages)
@@ -117,7 +118,7 @@ def shuffle(icd, rng):
 
 @on_field(lambda f: f.scale is not None, text=True)
 def respell_formula(icd, rng, node, message, field):
-    """Nor is another spelling of the same formula."""
+    """Write the same formula differently, which is no change."""
     return done(
         with_field(
             icd, node, message, field, replace(field, formula=f"({field.formula})")

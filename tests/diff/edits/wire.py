@@ -1,4 +1,4 @@
-"""Edits of bytes."""
+"""Edits of bytes on the wire."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from tests.diff.edits.edit import (
 
 @edit()
 def move_field(icd, rng):
-    found = [
+    candidates = [
         (n, m, f, g) for n, m, f in fields_of(icd, lambda f: not f.is_bytes) for g in reserved_bits(m, n) if g.bits >= f.bits
     ]  # fmt: skip
-    one = pick(rng, found)
-    if one is None:
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, message, field, gap = one
+    node, message, field, gap = choice
     return done(
         with_field(icd, node, message, field, replace(field, at=gap.at)),
         message.name,
@@ -47,16 +47,16 @@ def move_field(icd, rng):
 
 @edit()
 def swap_fields(icd, rng):
-    found = [
+    candidates = [
         (n, m, a, b)
         for n, m, a in fields_of(icd)
         for b in scalars(m)
         if a.at < b.at and a.bits == b.bits and (a.is_bytes) == (b.is_bytes)
     ]
-    one = pick(rng, found)
-    if one is None:
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, message, a, b = one
+    node, message, a, b = choice
     places = {id(a): b.at, id(b): a.at}
     fields = [replace(f, at=places.get(id(f), f.at)) for f in scalars(message)]
     return done(with_fields(icd, node, message, fields), message.name, "DIF107")
@@ -64,15 +64,15 @@ def swap_fields(icd, rng):
 
 @edit()
 def insert_field(icd, rng):
-    found = [
+    candidates = [
         (n, m, f)
         for n, m, f in fields_of(icd, lambda f: f.at % 8 == 0)
         if is_free(m, "Inserted") and _cut_at(m, f.at)
     ]
-    one = pick(rng, found)
-    if one is None:
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, message, field = one
+    node, message, field = choice
     new = Scalar(name="Inserted", at=field.at, bits=8, type="uint")
     fields = [
         replace(f, at=f.at + 8) if f.at >= field.at else f for f in scalars(message)
@@ -84,7 +84,7 @@ def insert_field(icd, rng):
 
 
 def _cut_at(message: Message, bit: int) -> bool:
-    """Whether no field lies across the bit."""
+    """Return whether no field crosses the bit."""
     return not any(f.at < bit < f.at + f.width for f in lines(message.layout))
 
 
@@ -107,32 +107,34 @@ def drop_field(icd, rng, node, message, field):
 
 @edit()
 def take_field_out(icd, rng):
-    found = fields_of(icd, lambda f: f.at % 8 == 0 and f.bits % 8 == 0)
-    one = pick(rng, found)
-    if one is None:
+    candidates = fields_of(icd, lambda f: f.at % 8 == 0 and f.bits % 8 == 0)
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, message, field = one
-    rest = [f for f in scalars(message) if f is not field]
-    fields = [replace(f, at=f.at - field.bits) if f.at > field.at else f for f in rest]
+    node, message, field = choice
+    remaining = [f for f in scalars(message) if f is not field]
+    fields = [
+        replace(f, at=f.at - field.bits) if f.at > field.at else f for f in remaining
+    ]
     edited = with_fields(
         icd, node, message, fields, length=message.layout.length - field.bits // 8
     )
-    behind = [f for f in rest if f.at > field.at]
+    behind = [f for f in remaining if f.at > field.at]
     must = ("DIF106", "DIF306", *(("DIF108",) if behind else ()))
     return done(edited, message.name, *must, may=() if behind else ("DIF113",))
 
 
 @edit()
 def fill_gap(icd, rng):
-    found = [
+    candidates = [
         (n, m, g)
         for n, m in messages_of(icd, lambda m: is_free(m, "Filler"))
         for g in reserved_bits(m, n)
     ]
-    one = pick(rng, found)
-    if one is None:
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, message, gap = one
+    node, message, gap = choice
     new = Scalar(name="Filler", at=gap.at, bits=min(gap.bits, 8), type="uint")
     return done(
         with_fields(icd, node, message, [*scalars(message), new]),
@@ -201,10 +203,10 @@ def change_length(icd, rng, node, message):
 
 @edit()
 def change_id(icd, rng):
-    number, one = free_id(icd), pick(rng, messages_of(icd))
-    if one is None or number is None:
+    number, choice = free_id(icd), pick(rng, messages_of(icd))
+    if choice is None or number is None:
         return None
-    node, message = one
+    node, message = choice
     key = "set_id" if message.kind == CONFIGURATION else "id"
     return done(
         with_message(icd, node, message, replace(message, **{key: number})),
@@ -215,14 +217,14 @@ def change_id(icd, rng):
 
 @edit()
 def swap_ids(icd, rng):
-    found = [
+    candidates = [
         (n, a, b) for n in icd.nodes for a in n.messages for b in n.messages
         if a.kind == b.kind != CONFIGURATION and a.id < b.id
     ]  # fmt: skip
-    one = pick(rng, found)
-    if one is None:
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, a, b = one
+    node, a, b = choice
     ids = {id(a): b.id, id(b): a.id}
     messages = tuple(
         replace(m, id=ids[id(m)]) if id(m) in ids else m for m in node.messages
@@ -239,14 +241,14 @@ def remove_message(icd, rng, node, message):
 
 @edit()
 def add_message(icd, rng):
-    number, one = free_id(icd), pick(rng, icd.nodes)
-    if number is None or any(m.name == "Added" for m in one.messages):
+    number, choice = free_id(icd), pick(rng, icd.nodes)
+    if number is None or any(m.name == "Added" for m in choice.messages):
         return None
     layout = Layout("Added", 1, (Scalar(name="Level", bits=8, type="uint"),))
     kind = rng.choice([TELECOMMAND, "telemetry"])
-    new = Message("Added", kind, layout, number, node=one.name)
+    new = Message("Added", kind, layout, number, node=choice.name)
     return done(
-        with_node(icd, one, replace(one, messages=(*one.messages, new))),
+        with_node(icd, choice, replace(choice, messages=(*choice.messages, new))),
         "Added",
         "DIF102",
         "DIF311",
@@ -263,12 +265,12 @@ def change_kind(icd, rng, node, message):
 
 @edit()
 def turn_byte_order(icd, rng):
-    found = [
+    candidates = [
         n
         for n in icd.nodes
         if any(not f.is_bytes and f.bits > 8 for m in n.messages for f in scalars(m))
     ]
-    node = pick(rng, found)
+    node = pick(rng, candidates)
     if node is None:
         return None
     other = {"little": "big", "big": "little"}[node.byte_order]
@@ -277,14 +279,20 @@ def turn_byte_order(icd, rng):
 
 @edit()
 def turn_field(icd, rng):
-    found = fields_of(icd, lambda f: f.type in ("uint", "int", "float") and f.bits > 8)
-    one = pick(
-        rng,
-        [(n, m, f) for n, m, f in found if not f.orders.within(m.layout.orders).byte],
+    candidates = fields_of(
+        icd, lambda f: f.type in ("uint", "int", "float") and f.bits > 8
     )
-    if one is None:
+    choice = pick(
+        rng,
+        [
+            (n, m, f)
+            for n, m, f in candidates
+            if not f.orders.within(m.layout.orders).byte
+        ],
+    )
+    if choice is None:
         return None
-    node, message, field = one
+    node, message, field = choice
     other = {"little": "big", "big": "little"}[node.byte_order]
     turned = replace(field, orders=replace(field.orders, byte=other))
     return done(with_field(icd, node, message, field, turned), message.name, "DIF117")
@@ -292,14 +300,14 @@ def turn_field(icd, rng):
 
 @edit(beyond=True)
 def change_fact(icd, rng):
-    found = [
+    candidates = [
         (n, key, part, value) for n in icd.nodes for key, section in n.protocol.items() if isinstance(section, dict)
         for part, value in section.items() if isinstance(value, int) and part != "printed_constant"
     ]  # fmt: skip
-    one = pick(rng, found)
-    if one is None:
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, key, part, value = one
+    node, key, part, value = choice
     new = {
         **node.protocol,
         key: {
@@ -312,20 +320,20 @@ def change_fact(icd, rng):
 
 @edit(beyond=True)
 def change_mask_bit(icd, rng):
-    found = [(n, row) for n in icd.nodes for row in n.loggable]
-    one = pick(rng, found)
-    if one is None:
+    candidates = [(n, row) for n in icd.nodes for row in n.loggable]
+    choice = pick(rng, candidates)
+    if choice is None:
         return None
-    node, row = one
+    node, row = choice
     rows = tuple(replace(r, id=r.id + 1) if r is row else r for r in node.loggable)
     return done(with_node(icd, node, replace(node, loggable=rows)), "", "DIF122")
 
 
 @edit(beyond=True)
 def drop_mask_bit(icd, rng):
-    one = pick(rng, [(n, row) for n in icd.nodes for row in n.loggable])
-    if one is None:
+    choice = pick(rng, [(n, row) for n in icd.nodes for row in n.loggable])
+    if choice is None:
         return None
-    node, row = one
+    node, row = choice
     rows = tuple(r for r in node.loggable if r is not row)
     return done(with_node(icd, node, replace(node, loggable=rows)), "", "DIF123")

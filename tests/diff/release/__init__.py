@@ -1,1 +1,1 @@
-"""An older release of the shipped ICDs, reconstructed: see ``reconstruction.yaml``."""
+"""An older release of the shipped ICDs, reconstructed from ``reconstruction.yaml``."""

@@ -1,5 +1,5 @@
-"""``python -m tests.diff.release FOLDER``: writes the reconstructed older release, made
-from today's ICDs.
+"""Write the reconstructed older release, made from the current ICDs: ``python -m
+tests.diff.release FOLDER``.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def facts() -> dict:
 
 
 def make(folder: Path) -> Path:
-    """Writes ICDs and overlays; the folder."""
-    known = facts()
+    """Write ICDs and overlays and return the folder."""
+    all_facts = facts()
     (folder / "errata").mkdir(parents=True, exist_ok=True)
     longer: dict[str, list[str]] = {}
     for path in sorted(SHIPPED.glob("*.yaml")):
@@ -44,11 +44,13 @@ def make(folder: Path) -> Path:
         head, *messages = re.split(r"(?m)^(?=  - name: )", text)
         for index, message in enumerate(messages):
             name = _first_name(message)
-            if name in known["lengths"] and "\n    length: " in message:
+            if name in all_facts["lengths"] and "\n    length: " in message:
                 messages[index] = _older(
-                    message, known["lengths"][name], known["removed"].get(name, [])
+                    message,
+                    all_facts["lengths"][name],
+                    all_facts["removed"].get(name, []),
                 )
-                if _described(messages[index]) < known["lengths"][name]:
+                if _described(messages[index]) < all_facts["lengths"][name]:
                     longer.setdefault(path.stem, []).append(name)
         (folder / path.name).write_text(
             f"# {_MARK}\n{head}{''.join(messages)}", encoding="utf-8"
@@ -70,11 +72,11 @@ def _first_name(text: str) -> str:
 
 
 def _older(message: str, length: int, removed: list[str]) -> str:
-    """The message without the fields; what stands behind them moves up."""
+    """Return the message without the removed fields; the fields after them move up."""
     lines, gone = [], 0
     for line in message.splitlines(keepends=True):
         if line.startswith("      - {message:") or line == "    contains:\n":
-            continue  # the parts no longer stand where they stood
+            continue  # the contained messages have moved
         if line.startswith("      - {at:"):
             if _first_name(line) in removed:
                 gone += int(re.search(r"bits: ([0-9]+)", line)[1])
@@ -85,19 +87,17 @@ def _older(message: str, length: int, removed: list[str]) -> str:
 
 
 def _described(message: str) -> int:
-    """Bytes up to the end of the last field."""
+    """Return the number of bytes up to the end of the last field."""
     rows = re.findall(r"\{at: +([0-9]+), +bits: +([0-9]+)", message)
     return max((int(at) + int(bits) for at, bits in rows), default=0) // 8
 
 
 def _settle(folder: Path) -> None:
-    """Takes out of the overlays what no longer applies, until nothing is left to take
-    out.
-    """
+    """Remove inapplicable entries from the overlays until none is left."""
     for _ in range(20):
         loaded = load([folder])
         for fault in loaded.findings:
-            if fault.code == "ICD045":  # a frame that the log holds in another length
+            if fault.code == "ICD045":  # the log stores the frame with another length
                 _accept(folder, fault, loaded.texts)
         faults = [
             f for f in loaded.findings if f.code in ("ICD080", "ICD081", "ICD084")
@@ -128,16 +128,16 @@ def _accept(folder: Path, fault: Finding, texts: dict[str, str]) -> None:
 
 
 def _mend(path: Path, lines: set[int]) -> None:
-    """Leaves the entries with faults out; only those places where there are others, and
-    counts `places` anew.
+    """Remove entries with mistakes. If other places of the entry are valid, remove only
+    the invalid ones and correct `places`.
     """
     texts = re.split(r"(?m)^(?=- |[a-z])", path.read_text(encoding="utf-8"))
-    line, kept = 1, []
+    line, text_parts = 1, []
     for text in texts:
         end = line + text.count("\n")
-        hits = {one - line for one in lines if line <= one < end}
+        hits = {number - line for number in lines if line <= number < end}
         if hits and "\n  places: " in text:
-            kept.append(
+            text_parts.append(
                 re.sub(
                     r"(?m)^  places: ([0-9]+)$",
                     lambda m: f"  places: {int(m[1]) - 1}",
@@ -145,32 +145,31 @@ def _mend(path: Path, lines: set[int]) -> None:
                 )
             )
         elif hits:
-            kept.append(_without_places(text, hits))
+            text_parts.append(_without_places(text, hits))
         else:
-            kept.append(text)
+            text_parts.append(text)
         line = end
-    path.write_text("".join(kept), encoding="utf-8")
+    path.write_text("".join(text_parts), encoding="utf-8")
 
 
 def _without_places(entry: str, hits: set[int]) -> str:
-    """The entry without the places in these lines of it; nothing if none is left, or
-    the fault is no place's.
+    """Return the entry without the places in these lines. Empty if no place is left, or
+    if the mistake is outside the places.
     """
-    parts = re.split(
-        r"(?m)^(?=  (?:- |[a-z]))", entry
-    )  # keys of the entry, and items of a list of places
-    at, key, left, kept, found = 0, "", 0, [], set()
+    # Split at the keys of the entry, and at the items of its list of places.
+    parts = re.split(r"(?m)^(?=  (?:- |[a-z]))", entry)
+    at, key, left, text_parts, used_hits = 0, "", 0, [], set()
     for part in parts:
         is_place = key == "where" and part.startswith("  - ")
         here = {hit for hit in hits if at <= hit < at + part.count("\n")}
         if here and is_place:
-            found |= here
+            used_hits |= here
         else:
-            kept.append(part)
+            text_parts.append(part)
             left += is_place
         key = key if part.startswith("  - ") else part.split(":")[0].strip()
         at += part.count("\n")
-    return "".join(kept) if found == hits and left else ""
+    return "".join(text_parts) if used_hits == hits and left else ""
 
 
 def _write(path: Path, overlay: dict) -> None:
@@ -178,7 +177,6 @@ def _write(path: Path, overlay: dict) -> None:
     dump = lambda value: yaml.safe_dump(  # noqa: E731
         value, sort_keys=False, allow_unicode=True, width=10_000
     )
-    end = (
-        f"entries:\n{dump(entries)}" if entries else ""
-    )  # last: places of logs are added behind them
+    # The entries come last, because `_accept` appends further ones.
+    end = f"entries:\n{dump(entries)}" if entries else ""
     path.write_text(f"# {_MARK}\n{dump(overlay)}{end}", encoding="utf-8")
