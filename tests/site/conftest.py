@@ -1,5 +1,5 @@
-"""The site of the shipped ICDs, made once, a site of hostile names, and a browser to
-look at them.
+"""Fixtures: the site of the shipped ICDs, generated once, a site of hostile names, and
+a browser.
 """
 
 from __future__ import annotations
@@ -22,22 +22,26 @@ TOOLS = Path(__file__).parent / "npm" / "node_modules"
 
 
 def program(*names: str) -> str:
-    """The first of the programs that is there; scripts/test installs them."""
-    found = next((path for name in names if (path := shutil.which(name))), None)
-    assert found, f"scripts/test installs {names[0]}"
-    return found
+    """Return the path of the first installed program. scripts/test installs them."""
+    program_path = next((path for name in names if (path := shutil.which(name))), None)
+    assert program_path, f"scripts/test installs {names[0]}"
+    return program_path
 
 
 def tool(path: str) -> Path:
-    """A file of an npm package of ``npm/``."""
-    found = TOOLS / path
-    assert found.exists(), "scripts/test installs it: npm ci --prefix tests/site/npm"
-    return found
+    """Return the path of a file of an npm package of ``npm/``."""
+    path_of_tool = TOOLS / path
+    assert path_of_tool.exists(), (
+        "scripts/test installs it: npm ci --prefix tests/site/npm"
+    )
+    return path_of_tool
 
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory) -> Path:
-    """A folder with the site of the shipped ICDs, compared with an older release."""
+    """Generate the site of the shipped ICDs, compared with an older release, and return
+    its folder.
+    """
     out = tmp_path_factory.mktemp("site")
     pages.shipped(out, tmp_path_factory.mktemp("old"))
     return out
@@ -49,18 +53,18 @@ def shipped():
 
 
 @pytest.fixture(scope="session")
-def strange(tmp_path_factory) -> Path:
-    """A folder with the site of ICDs that try to break it."""
+def hostile_site(tmp_path_factory) -> Path:
+    """Generate the site of ICDs with hostile texts and return its folder."""
     folder = tmp_path_factory.mktemp("strange")
-    made = make_site([hostile.write(folder / "icd")])
-    assert made.ok, made.findings
-    write_site(made, folder / "site")
+    result = make_site([hostile.write(folder / "icd")])
+    assert result.ok, result.findings
+    write_site(result, folder / "site")
     return folder / "site"
 
 
 @pytest.fixture(scope="session")
 def served() -> Iterator[str]:
-    """Address of a server of the shipped site."""
+    """Serve the shipped site and return its address."""
     server = ThreadingHTTPServer((HOST, 0), handler(SiteSource([ROOT / "icd"])))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
@@ -69,16 +73,16 @@ def served() -> Iterator[str]:
     server.server_close()
 
 
-@pytest.fixture(
-    scope="package"
-)  # while it is open, an event loop runs in this thread, and tests of asyncio fail
+# While the browser is open, an event loop runs in this thread, and tests of asyncio
+# fail.
+@pytest.fixture(scope="package")
 def browser():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        found = playwright.chromium.launch(
+        chromium = playwright.chromium.launch(
             executable_path=program("chromium", "chromium-browser", "google-chrome"),
             args=["--no-sandbox"],
         )
-        yield found
-        found.close()
+        yield chromium
+        chromium.close()

@@ -1,5 +1,5 @@
-"""ICDs whose texts are markup, scripts, template code and endless: they are data, and
-nothing else.
+"""ICDs whose texts are markup, scripts, template code or very long. The site must show
+them as plain text.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ ENDLESS = "endless " + "x" * 9_990
 
 
 def write(folder: Path) -> Path:
-    """The folder, with the ICD in it."""
+    """Write the ICD into the folder and return the folder."""
     folder.mkdir()
     (folder / "hostile.yaml").write_text(json.dumps(ICD), encoding="utf-8")
     (folder / "empty.yaml").write_text(json.dumps(EMPTY), encoding="utf-8")

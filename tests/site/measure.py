@@ -1,5 +1,5 @@
-"""``python -m tests.site.measure [SITE]``: what is cut or too long on any page, at each
-width.
+"""List what is cut off or too long on any page at each width: ``python -m
+tests.site.measure [SITE]``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ WIDTHS = (1440, 768, 390)
 HIGHEST = 8000  # pixels of a page before anything is unfolded
 SCHEMES = ("light", "dark")
 
-# Elements that reach beyond the screen and do not stand in something that scrolls.
+# Elements that reach beyond the screen and are not inside a scrolling element.
 _CUT = """() => [...document.querySelectorAll("body *")].filter((one) => {
     const box = one.getBoundingClientRect();
     const hidden = one.closest(".scroll, pre, .hidden, .skip, legend, details:not([open]) > :not(summary), svg, .local, .tabs");
@@ -27,22 +27,24 @@ _CUT = """() => [...document.querySelectorAll("body *")].filter((one) => {
 
 
 def faults(page, width: int) -> list[str]:
-    """What is wrong with the open page at its width."""
+    """Return the layout problems of the open page at its width."""
     wide, high = page.evaluate(
         "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
     )
-    found = [f"cut: {one}" for one in page.evaluate(_CUT)]
-    found += [f"{wide} pixels wide"] if wide > width else []
-    return found + ([f"{high} pixels high"] if high > HIGHEST else [])
+    problems = [f"cut: {text}" for text in page.evaluate(_CUT)]
+    problems += [f"{wide} pixels wide"] if wide > width else []
+    return problems + ([f"{high} pixels high"] if high > HIGHEST else [])
 
 
 def broken_rules(page) -> list[str]:
-    """What axe finds on the open page."""
+    """Return the violations that axe reports on the open page."""
     page.evaluate(tool("axe-core/axe.min.js").read_text("utf-8"))
-    found = page.evaluate("axe.run({ resultTypes: ['violations'], preload: false })")
+    axe_results = page.evaluate(
+        "axe.run({ resultTypes: ['violations'], preload: false })"
+    )
     return [
-        f"{one['id']}: {[node['target'] for node in one['nodes']][:5]}"
-        for one in found["violations"]
+        f"{violation['id']}: {[node['target'] for node in violation['nodes']][:5]}"
+        for violation in axe_results["violations"]
     ]
 
 
@@ -82,14 +84,14 @@ def main() -> int:
             page = browser.new_page(**look)
             for path in pages:
                 page.goto(path.as_uri())
-                found = (
+                problems = (
                     broken_rules(page)
                     if options.axe
                     else faults(page, look["viewport"]["width"])
                 )
-                wrong += bool(found)
-                for one in found:
-                    print(f"{path.relative_to(site.resolve())} {look}: {one}")
+                wrong += bool(problems)
+                for problem in problems:
+                    print(f"{path.relative_to(site.resolve())} {look}: {problem}")
             page.close()
     print(f"{len(pages)} pages, {len(looks)} looks, {wrong} with faults")
     return int(wrong > 0)

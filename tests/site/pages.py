@@ -1,4 +1,4 @@
-"""The site that is looked at, and a page of each kind of it."""
+"""The site under test, and one page of each kind."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ KINDS = {
 
 
 def shipped(out: Path, old: Path) -> None:
-    """Writes the site of the shipped ICDs, compared with an older release that is made
-    in ``old``.
+    """Write the site of the shipped ICDs, compared with an older release that is
+    generated in ``old``.
     """
     shutil.copytree(ROOT / "icd", old / "icd")
     acp = old / "icd" / "cubeacp.yaml"

@@ -1,5 +1,7 @@
-"""``python -m tests.site.pictures FOLDER``: each kind of page on a desk, a tablet and a
-phone, light and dark, and on paper.
+"""Take pictures of each kind of page: on a desktop, a tablet and a phone, light and
+dark, and printed.
+
+Run ``python -m tests.site.pictures FOLDER``.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""ICD of a fictional relay whose link has several packet formats per direction: with an
-id of two parts, with and without length, a request with reserved bytes, a refusal with
-and one without an id.
+"""ICD of a fictional relay whose link has several packet formats per direction.
+
+They have an id of two parts, with and without length, a request with reserved bytes,
+and negative acknowledges with and without an id.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""What people do with the site, in a browser, from the folder and from a server."""
+"""Users search, decode, filter and print on the site in a browser, from the folder and
+from a server.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ NODES = ["common", "bootloader", "cubeacp", "cubemag", "cubewheel"]
 
 @pytest.fixture(params=["file", "server"])
 def top(request, site) -> str:
-    """Where the site is: its address up to the paths of the pages."""
+    """Return the address of the site, which precedes the paths of the pages."""
     return (
         site.as_uri() + "/"
         if request.param == "file"
@@ -27,18 +29,18 @@ def top(request, site) -> str:
 
 @contextmanager
 def opened(browser, top: str, path: str, **options):
-    """A page that complains of nothing and asks for nothing outside."""
+    """Return a page. Fails if it logs an error or requests anything outside the site."""
     context = browser.new_context(**options)
     page = context.new_page()
-    complaints, asked = [], []
+    complaints, requested_urls = [], []
     page.on("console", lambda message: complaints.append(message.text))
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("request", lambda request: asked.append(request.url))
+    page.on("request", lambda request: requested_urls.append(request.url))
     page.goto(top + path)
     yield page
     context.close()
     assert complaints == []
-    assert [url for url in asked if not url.startswith(top)] == []
+    assert [url for url in requested_urls if not url.startswith(top)] == []
 
 
 def wait_until(page, condition: str) -> None:
@@ -75,7 +77,7 @@ def results(page) -> list[tuple[str, str]]:
         ("deg/s", ("unit", "deg/s"), "units.html#unit-deg_per_s"),
     ],
 )  # fmt: skip
-def test_the_search_finds(browser, top, text, expected, url):
+def test_the_search_lists_results(browser, top, text, expected, url):
     with opened(browser, top, KINDS["numbers"]) as page:
         page.keyboard.press("/")
         page.keyboard.type(text)
@@ -86,7 +88,7 @@ def test_the_search_finds(browser, top, text, expected, url):
         page.wait_for_url(top + url)
 
 
-def test_results_are_there_before_the_next_key_is_typed(browser, site):
+def test_results_appear_before_the_next_key_is_typed(browser, site):
     with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
         page.click("#search")
         wait_until(page, "globalThis.icdgenSearchIndex")
@@ -101,7 +103,7 @@ def test_results_are_there_before_the_next_key_is_typed(browser, site):
 
 
 def golden(node: str) -> tuple[str, dict, dict]:
-    """A message of the node's vectors with as many kinds of fields as there are, and a
+    """Return the message of the node's vectors with the most kinds of fields, and a
     random frame of it.
     """
     data = json.loads((COMMITTED / f"{node}.json").read_text("utf-8"))
@@ -186,7 +188,7 @@ def test_the_decoder_takes_framing_and_checksums_and_physical_values(browser, si
         assert "takes -327.68 to 327.67" in page.inner_text("#verdict")
 
 
-def test_drawing_and_table_are_tied_together_by_pointer_and_keyboard(browser, top):
+def test_pointer_and_keyboard_highlight_a_field_in_drawing_and_table(browser, top):
     with opened(browser, top, KINDS["message"]) as page:
         lit = "getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()"
         fill = "(s) => getComputedStyle(document.querySelector(s)).getPropertyValue('--tie').trim()"
@@ -242,13 +244,13 @@ def test_the_chosen_language_is_remembered(browser, served):
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
 @pytest.mark.parametrize("scheme", measure.SCHEMES)
-def test_axe_finds_nothing(browser, site, path, scheme):
+def test_axe_reports_no_violation(browser, site, path, scheme):
     with opened(browser, site.as_uri() + "/", path, color_scheme=scheme) as page:
         assert measure.broken_rules(page) == []
 
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
-def test_nothing_is_cut_and_nothing_endless(browser, site, path):
+def test_no_page_is_too_wide_or_too_long(browser, site, path):
     """No page is wider than the screen, or longer than 8,000 pixels before anything is
     unfolded.
     """
@@ -275,7 +277,7 @@ def test_dark_mode_follows_the_system_and_the_button(browser, served):
     context.close()
 
 
-def test_a_whole_node_prints_with_a_page_for_each_message(browser, site, shipped):
+def test_a_node_prints_with_a_page_for_each_message(browser, site, shipped):
     with opened(browser, site.as_uri() + "/", "bootloader/all-messages.html") as page:
         pdf = page.pdf(prefer_css_page_size=True, print_background=True)
     sheets = pdf.count(b"/Type /Page\n") or pdf.count(b"/Type /Page")
@@ -285,7 +287,7 @@ def test_a_whole_node_prints_with_a_page_for_each_message(browser, site, shipped
     )
 
 
-def test_without_javascript_everything_but_search_and_decoder_is_there(browser, site):
+def test_without_javascript_only_search_and_decoder_are_missing(browser, site):
     with opened(
         browser, site.as_uri() + "/", KINDS["message"], java_script_enabled=False
     ) as page:
@@ -301,9 +303,11 @@ def test_without_javascript_everything_but_search_and_decoder_is_there(browser, 
         assert page.url.endswith("#field-cubecontrol_signal_enabled")
 
 
-def test_hostile_texts_are_shown_and_do_nothing(browser, strange):
-    top = strange.as_uri() + "/"
-    paths = sorted(str(p.relative_to(strange)) for p in strange.rglob("*.html"))
+def test_hostile_texts_are_shown_and_not_executed(browser, hostile_site):
+    top = hostile_site.as_uri() + "/"
+    paths = sorted(
+        str(p.relative_to(hostile_site)) for p in hostile_site.rglob("*.html")
+    )
     # The documents of icdgen have no word of the ICDs.
     paths = [path for path in paths if not path.startswith("icdgen-docs/")]
     assert len(paths) > 8

@@ -1,5 +1,5 @@
-"""What is on disk: small, the same each time, with every link and anchor in its place,
-and valid.
+"""The files of the site are small, reproducible and valid, and every link and anchor
+resolves.
 """
 
 from __future__ import annotations
@@ -22,16 +22,15 @@ from tests.site.conftest import program, tool
 from tests.site.pages import KINDS
 
 
-class Page(HTMLParser):
-    """Anchors and links of a page, and what it would load."""
+class ParsedPage(HTMLParser):
+    """Anchors and links of a page, and the resources that it loads."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.ids: list[str] = []
         self.links: list[str] = []
-        self.refers: list[
-            str
-        ] = []  # ids that labels, aria attributes and the like name
+        # Ids that labels, aria attributes and similar refer to.
+        self.refers: list[str] = []
         self.feed(text)
 
     def handle_starttag(
@@ -51,28 +50,28 @@ class Page(HTMLParser):
                 self.refers += (value or "").split()
 
 
-def broken(folder: Path) -> list[str]:
-    """Every link of the site that leads nowhere, every id that is not unique."""
+def broken_links(folder: Path) -> list[str]:
+    """Return every broken link and every duplicate id of the site."""
     pages = {
-        path.relative_to(folder): Page(path.read_text("utf-8"))
+        path.relative_to(folder): ParsedPage(path.read_text("utf-8"))
         for path in sorted(folder.rglob("*.html"))
     }
-    found = []
+    faults = []
     for path, page in pages.items():
-        found += [
-            f"{path}: id {one} stands {n} times"
-            for one, n in Counter(page.ids).items()
+        faults += [
+            f"{path}: id {name} stands {n} times"
+            for name, n in Counter(page.ids).items()
             if n > 1
         ]
-        found += [
-            f"{path}: nothing has id {one}"
-            for one in page.refers
-            if one not in page.ids
+        faults += [
+            f"{path}: nothing has id {name}"
+            for name in page.refers
+            if name not in page.ids
         ]
         for link in page.links:
             parts = urlsplit(link)
             if parts.scheme or parts.netloc or link.startswith("/"):
-                found.append(f"{path}: {link} leaves the site")
+                faults.append(f"{path}: {link} leaves the site")
                 continue
             target = (
                 (folder / path.parent / unquote(parts.path)).resolve()
@@ -80,18 +79,17 @@ def broken(folder: Path) -> list[str]:
                 else (folder / path).resolve()
             )
             if not target.is_file():
-                found.append(f"{path}: {link} is no file")
+                faults.append(f"{path}: {link} is no file")
             elif parts.fragment and not parts.fragment.startswith("try="):
-                known = pages[target.relative_to(folder.resolve())].ids
-                if unquote(parts.fragment) not in known:
-                    found.append(f"{path}: {link} has no anchor")
-    return found
+                ids = pages[target.relative_to(folder.resolve())].ids
+                if unquote(parts.fragment) not in ids:
+                    faults.append(f"{path}: {link} has no anchor")
+    return faults
 
 
 def test_the_site_is_small_and_has_a_page_for_everything(site, shipped):
-    assert (
-        sum(path.stat().st_size for path in site.rglob("*")) < 12_500_000
-    )  # of it 1 MB the pages of the reference
+    # The pages of the reference take 1 MB.
+    assert sum(path.stat().st_size for path in site.rglob("*")) < 12_500_000
     for node in shipped.nodes:
         pages = {path.name for path in (site / node.name).glob("*.html")}
         talks = bool(shipped.protocol_of(node))
@@ -105,18 +103,18 @@ def test_the_site_is_the_same_each_time():
 
 
 def test_every_link_and_anchor_resolves(site):
-    assert broken(site) == []
+    assert broken_links(site) == []
 
 
-def test_every_link_and_anchor_resolves_whatever_the_names(strange):
-    assert broken(strange) == []
+def test_every_link_and_anchor_resolves_whatever_the_names(hostile_site):
+    assert broken_links(hostile_site) == []
 
 
-def test_the_checker_notices_what_is_broken(tmp_path):
+def test_the_checker_detects_broken_links(tmp_path):
     (tmp_path / "a.html").write_text(
         '<p id="x"></p><p id="x"></p><a href="b.html">b</a><a href="#y">y</a><img src="//x.org/">'
     )
-    assert [line.split(": ")[1] for line in broken(tmp_path)] == [
+    assert [line.split(": ")[1] for line in broken_links(tmp_path)] == [
         "id x stands 2 times", "b.html is no file", "#y has no anchor", "//x.org/ leaves the site",
     ]  # fmt: skip
 
@@ -125,7 +123,7 @@ def test_the_index_of_the_search_leads_to_pages_and_anchors(site):
     text = (site / "search-index.js").read_text("utf-8")
     entries = json.loads(text[text.index("[") : text.rindex("]") + 1])
     pages = {
-        str(p.relative_to(site)): set(Page(p.read_text("utf-8")).ids)
+        str(p.relative_to(site)): set(ParsedPage(p.read_text("utf-8")).ids)
         for p in site.rglob("*.html")
     }
     for _, title, *_, url in entries:
@@ -141,12 +139,12 @@ def test_the_index_of_the_search_leads_to_pages_and_anchors(site):
     )
 
 
-@pytest.mark.parametrize("which", ["site", "strange"])
-def test_the_pages_are_valid_html(which, request, tmp_path):
-    folder = request.getfixturevalue(which)
+@pytest.mark.parametrize("fixture_name", ["site", "hostile_site"])
+def test_the_pages_are_valid_html(fixture_name, request, tmp_path):
+    folder = request.getfixturevalue(fixture_name)
     names = (
         KINDS.values()
-        if which == "site"
+        if fixture_name == "site"
         else [str(p.relative_to(folder)) for p in folder.rglob("*.html")]
     )
     config = Path(__file__).parent / "npm" / ".htmlvalidate.json"
@@ -166,7 +164,7 @@ def test_the_pages_are_valid_html(which, request, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_everything_stands_in_one_json_and_in_llms_txt(site, shipped):
+def test_one_json_and_llms_txt_contain_everything(site, shipped):
     data = json.loads((site / "icd.json").read_text("utf-8"))
     assert [node["name"] for node in data["nodes"]] == [
         node.name for node in shipped.nodes
@@ -189,7 +187,8 @@ def test_a_field_keeps_its_link_when_everything_around_it_changes(tmp_path, demo
     demo.write_text(text.replace("at: 16, bits: 4", "at: 0, bits: 4"), "utf-8")
     after = make_site([demo]).files["demo/estimated_roll.html"]
     assert (
-        "field-roll_angle" in Page(before).ids and "field-roll_angle" in Page(after).ids
+        "field-roll_angle" in ParsedPage(before).ids
+        and "field-roll_angle" in ParsedPage(after).ids
     )
 
 
@@ -239,18 +238,19 @@ def test_the_page_of_changes_draws_both_layouts_as_the_diff_does(tmp_path):
         )
     )
     page = make_site([ROOT / "icd"], str(old)).files["changes.html"]
-    whole = html.report(
+    report_html = html.report(
         report.make_report(one_side(str(old), []), one_side(str(ROOT / "icd"), []))
     )
     drawings = [
         part.partition("</svg>")[0] for part in page.split('<svg class="layouts"')[1:]
     ]
     assert drawings and drawings == [
-        part.partition("</svg>")[0] for part in whole.split('<svg class="layouts"')[1:]
+        part.partition("</svg>")[0]
+        for part in report_html.split('<svg class="layouts"')[1:]
     ]
 
 
-def test_a_message_that_is_gone_stands_on_the_page_of_changes_without_a_link(tmp_path):
+def test_a_removed_message_is_on_the_page_of_changes_without_a_link(tmp_path):
     gone = {
         "name": "Old Mode",
         "id": 250,
@@ -264,5 +264,5 @@ def test_a_message_that_is_gone_stands_on_the_page_of_changes_without_a_link(tmp
         (tmp_path / side / "demo.yaml").write_text(
             DEMO.rstrip("\n") + "\n" + more, "utf-8"
         )
-    made = make_site([tmp_path / "new"], str(tmp_path / "old"))
-    assert made.ok and "<h3><del>Old Mode</del>" in made.files["changes.html"]
+    result = make_site([tmp_path / "new"], str(tmp_path / "old"))
+    assert result.ok and "<h3><del>Old Mode</del>" in result.files["changes.html"]

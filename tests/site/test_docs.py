@@ -1,4 +1,4 @@
-"""``icdgen docs``, and the server behind ``--serve``."""
+"""``icdgen docs`` and the server of ``--serve``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.cli.conftest import icdgen  # noqa: F401
 
 @pytest.fixture
 def ask(demo):
-    """``ask("/demo/", Host=...)`` -> status, body."""
+    """Return a function ``ask("/demo/", Host=...)`` that returns status and body."""
     server = ThreadingHTTPServer((HOST, 0), handler(SiteSource([demo])))
     threading.Thread(target=server.serve_forever, daemon=True).start()
 
@@ -36,18 +36,18 @@ def ask(demo):
     server.server_close()
 
 
-def test_docs_writes_a_site_and_touches_nothing_that_is_current(
+def test_docs_writes_a_site_and_leaves_current_files_unchanged(
     icdgen,  # noqa: F811
     demo,
 ):
     first = icdgen("docs", demo)
     assert first.status == 0 and "Open site/index.html" in first.out
-    again = icdgen("docs", demo)
-    assert again.status == 0 and "files are current" in again.out
+    second = icdgen("docs", demo)
+    assert second.status == 0 and "files are current" in second.out
     assert icdgen("docs", "--check", demo).status == 0
 
 
-def test_docs_check_tells_that_the_site_is_old(icdgen, demo):  # noqa: F811
+def test_docs_check_reports_an_outdated_site(icdgen, demo):  # noqa: F811
     icdgen("docs", demo)
     demo.write_text(
         demo.read_text("utf-8").replace("Roll Angle", "Bank Angle"), "utf-8"
@@ -57,7 +57,7 @@ def test_docs_check_tells_that_the_site_is_old(icdgen, demo):  # noqa: F811
     assert icdgen("docs", "--check", demo).status == 0
 
 
-def test_docs_says_what_is_wrong_with_an_icd_and_writes_nothing(
+def test_docs_reports_an_invalid_icd_and_writes_nothing(
     icdgen,  # noqa: F811
     demo,
     tmp_path,
@@ -71,7 +71,7 @@ def test_docs_says_what_is_wrong_with_an_icd_and_writes_nothing(
     )
 
 
-def test_docs_of_a_release_says_what_changed_since_the_older_one(
+def test_docs_of_a_release_lists_the_changes_since_the_older_one(
     icdgen,  # noqa: F811
     demo,
     tmp_path,
@@ -96,7 +96,7 @@ def test_docs_serve_takes_no_folder(icdgen, demo):  # noqa: F811
     assert icdgen("docs", "--serve", "--out", "x", demo).status == 2
 
 
-def test_the_server_shows_the_icds_as_they_are_now(ask, demo):
+def test_the_server_shows_the_current_icds(ask, demo):
     assert "Estimated Roll" in ask("/demo/")[1]
     demo.write_text(
         demo.read_text("utf-8").replace("Estimated Roll", "Measured Roll"), "utf-8"
@@ -107,7 +107,7 @@ def test_the_server_shows_the_icds_as_they_are_now(ask, demo):
     assert status == 500 and "demo.yaml" in body
 
 
-def test_the_server_answers_to_this_machine_and_gives_nothing_else_away(ask):
+def test_the_server_answers_only_this_machine_and_serves_only_the_site(ask):
     assert ask("/")[0] == 200
     assert ask("/demo")[0] == 301
     assert ask("/", Host="somewhere.example")[0] == 403
@@ -122,7 +122,7 @@ def test_the_server_answers_to_this_machine_and_gives_nothing_else_away(ask):
         assert ask(path.replace(" ", "%20"))[0] == 404
 
 
-def test_a_browser_that_resets_its_connection_is_no_news(demo, capsys):
+def test_a_reset_connection_is_not_reported(demo, capsys):
     reset = struct.pack("ii", 1, 0)  # closing sends a reset instead of an end
     server = ThreadingHTTPServer((HOST, 0), handler(SiteSource([demo])))
     threading.Thread(target=server.serve_forever, daemon=True).start()
@@ -143,7 +143,7 @@ def test_a_browser_that_resets_its_connection_is_no_news(demo, capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_a_path_in_an_error_page_is_text_and_no_markup(ask):
+def test_a_path_in_an_error_page_is_escaped(ask):
     status, body = ask("/%3Cscript%3Ealert(1)%3C/script%3E&amp;")
     assert status == 404 and "<script" not in body
     assert "&lt;script&gt;alert(1)&lt;/script&gt;&amp;amp;" in body

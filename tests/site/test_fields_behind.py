@@ -1,4 +1,4 @@
-"""The decoder of a page: fields behind a part of variable length."""
+"""The decoder of a page supports fields after a variable-length field."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def behind(tmp_path_factory) -> Path:
     return out
 
 
-def test_a_field_behind_is_decoded_and_stays_at_the_end(browser, behind):
+def test_a_field_after_an_array_is_decoded_and_stays_at_the_end(browser, behind):
     with opened(browser, behind.as_uri() + "/", "behind/packet.html") as page:
         page.fill("#frame", "00 01 AA BB CC 34 12")
         crc = page.get_by_label("CRC, raw")
@@ -39,6 +39,6 @@ def test_a_field_behind_is_decoded_and_stays_at_the_end(browser, behind):
         assert tied == "#field-crc"
 
 
-def test_a_page_says_what_is_behind_a_part(behind):
+def test_a_page_shows_the_fields_after_an_array(behind):
     text = (behind / "behind" / "packet.html").read_text("utf-8")
     assert "up to 40 bytes, up to the fields behind it" in text

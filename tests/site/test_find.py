@@ -1,6 +1,4 @@
-"""What people type into the search, and the page that they mean: it comes first, or
-second.
-"""
+"""The search lists the page that a query means first or second."""
 
 from __future__ import annotations
 
@@ -96,7 +94,7 @@ QUERIES = {
     "configuraton adcs": "cubeacp/adcs_configuration.html",
 }
 
-# What somebody types who has not read the manual, and the page that must come first.
+# Queries of a user who has not read the manual, and the page that must come first.
 FIRST = {
     "detumble": "cubeacp/set_detumbling_control_parameters.html",
     "attitude CAN": ANGLES,
@@ -121,8 +119,8 @@ NOTHING = [
 ]
 
 
-def found(site, queries: list[str]) -> list[list[str]]:
-    """The addresses that each query gives, the best first."""
+def search_results(site, queries: list[str]) -> list[list[str]]:
+    """Return the addresses that each query gives, the best first."""
     code = f"""
         const {{ readFileSync }} = require("node:fs");
         const {{ finder }} = require({json.dumps(str(SCRIPT))});
@@ -141,8 +139,8 @@ def found(site, queries: list[str]) -> list[list[str]]:
     return json.loads(done.stdout)
 
 
-def test_what_is_meant_comes_first_or_second(site):
-    results = found(site, list(QUERIES))
+def test_the_wanted_page_is_first_or_second(site):
+    results = search_results(site, list(QUERIES))
     wrong = [
         (q, r[:3])
         for (q, url), r in zip(QUERIES.items(), results, strict=True)
@@ -152,15 +150,17 @@ def test_what_is_meant_comes_first_or_second(site):
 
 
 def fits(url: str, best: list[str]) -> bool:
-    """Whether it is among the best; of a protocol, that of any node that talks so."""
+    """Return whether an address is among the best. For a protocol, the page of any node
+    with it counts.
+    """
     return url in best or (
         "/protocol" in url
-        and any(one.partition("/")[2] == url.partition("/")[2] for one in best)
+        and any(key.partition("/")[2] == url.partition("/")[2] for key in best)
     )
 
 
-def test_words_of_somebody_who_has_not_read_the_manual_lead_to_the_page_first(site):
-    results = found(site, list(FIRST))
+def test_common_words_list_the_page_of_the_manual_first(site):
+    results = search_results(site, list(FIRST))
     assert [
         (q, r[:2])
         for (q, url), r in zip(FIRST.items(), results, strict=True)
@@ -174,11 +174,11 @@ def test_a_quantity_finds_the_fields_of_its_units(tmp_path):
         P31U.read_text("utf-8").replace("aliases: [Battery Voltage], ", "")
     )
     write_site(make_site([without]), tmp_path / "site")
-    ((first, *_),) = found(tmp_path / "site", ["battery voltage"])
+    ((first, *_),) = search_results(tmp_path / "site", ["battery voltage"])
     assert first == "p31u/housekeeping.html#field-power_battery"
 
 
-def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path):
+def test_an_alias_is_listed_before_names_with_its_words(tmp_path):
     text = P31U.read_text("utf-8")
     text = text.replace(
         "  - name: Housekeeping\n",
@@ -199,9 +199,9 @@ def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path
         "operating point": "p31u/enum-tracking.html",
         "battery voltage": "p31u/housekeeping.html#field-power_battery",
         "reason of restart": "p31u/housekeeping.html#field-basics_boot_cause",
-        "battery mode": "p31u/enum-battery_mode.html",  # a name comes before an alias
+        "battery mode": "p31u/enum-battery_mode.html",  # a name precedes an alias
     }
-    results = found(tmp_path / "site", list(wanted))
+    results = search_results(tmp_path / "site", list(wanted))
     assert [
         (q, r[:2])
         for (q, url), r in zip(wanted.items(), results, strict=True)
@@ -217,28 +217,28 @@ def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path
     ).read_text("utf-8")
 
 
-def test_what_is_nothing_finds_nothing(site):
-    assert found(site, NOTHING) == [[]] * len(NOTHING)
+def test_a_meaningless_query_has_no_results(site):
+    assert search_results(site, NOTHING) == [[]] * len(NOTHING)
 
 
 @pytest.mark.parametrize("backend", [CBackend, PythonBackend, RustBackend])
-def test_generated_names_lead_to_what_they_were_made_from(site, shipped, backend):
-    """Types of messages, as the language declares them: each must lead to its page."""
+def test_generated_names_lead_to_the_page_of_their_message(site, shipped, backend):
+    """The query is the type of a message as each language declares it."""
     names = {}
-    for one in backend().identifiers(shipped):
-        kind, _, name = one.owner.partition(" `")
+    for identifier in backend().identifiers(shipped):
+        kind, _, name = identifier.owner.partition(" `")
         if kind == "message":
-            names.setdefault(one.text, set()).add(name.rstrip("`"))
-    asked = sorted(name for name, owners in names.items() if len(owners) == 1)
-    assert len(asked) > 100
+            names.setdefault(identifier.text, set()).add(name.rstrip("`"))
+    unique_names = sorted(name for name, owners in names.items() if len(owners) == 1)
+    assert len(unique_names) > 100
     every = [m for node in shipped.nodes for m in node.messages]
     index = {
         m.name: m for m in every if sum(m.name == other.name for other in every) == 1
     }
     links = Links(shipped)
-    results = found(site, asked)
+    results = search_results(site, unique_names)
     wrong = []
-    for name, urls in zip(asked, results, strict=True):
+    for name, urls in zip(unique_names, results, strict=True):
         (owner,) = names[name]
         if owner in index and links.message(index[owner]) not in urls[:2]:
             wrong.append((name, owner, urls[:2]))

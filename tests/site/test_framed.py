@@ -1,5 +1,5 @@
-"""Pages take messages out of their packets as the command line does, and say what
-these look like.
+"""Pages decode packets of framed links like the command line, and show the packet
+formats.
 """
 
 from __future__ import annotations
@@ -39,44 +39,45 @@ def icd_of(name: str):
 
 
 def traffic(icd, count: int) -> list[str]:
-    """Some messages, whole, damaged, and among noise."""
+    """Return messages of a link: complete, damaged, and among noise."""
     source, device = random.Random(7), icd.nodes[0]
     frames = {
-        one.message.name: [row.frame for row in one.rows]
-        for one in make_vectors(icd, device).messages
+        message.message.name: [row.frame for row in message.rows]
+        for message in make_vectors(icd, device).messages
     }
-    found = []
+    packets = []
     for _ in range(count):
         line = bytearray()
         for name in source.choices(sorted(frames), k=source.randint(1, 3)):
             sent = recorded(icd, device, {name: [source.choice(frames[name])]})
-            line += source.choice([one for one in sent.values() if one] or [b""])
+            line += source.choice([frame for frame in sent.values() if frame] or [b""])
             line += source.randbytes(source.choice([0, 0, 0, 1, 5]))
         if line and source.random() < 0.3:
             at = source.randrange(len(line))
             line[at : at + 1] = source.randbytes(source.randrange(2))
         if line:
-            found.append(bytes(line).hex())
-    return found
+            packets.append(bytes(line).hex())
+    return packets
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_is_pasted_is_what_the_command_line_says_it_is(name):
+def test_pasted_packets_are_decoded_like_on_the_command_line(name):
     icd = icd_of(name)
     index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
     texts = traffic(icd, 200)
     shown = [
-        one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
+        answer if not isinstance(answer, dict) else None
+        for answer in on_the_page(index, texts)
     ]
     expected = [on_the_command_line(icd, text) for text in texts]
     assert [
         row for row in zip(texts, shown, expected, strict=True) if row[1] != row[2]
     ][:2] == []
-    assert sum(isinstance(one, list) for one in expected) > 30
+    assert sum(isinstance(answer, list) for answer in expected) > 30
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_no_piece_of_a_golden_frame_is_decoded_on_the_page_either(name):
+def test_a_truncated_golden_frame_is_not_decoded_on_the_page(name):
     icd = icd_of(name)
     index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
     sent_frames = [packet for _, packet in packets(icd)]
@@ -98,19 +99,20 @@ def test_no_piece_of_a_golden_frame_is_decoded_on_the_page_either(name):
         holes.append((packet[:at] + packet[at + 2 :]).hex())
     texts = [*ends, *holes]
     shown = [
-        one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
+        answer if not isinstance(answer, dict) else None
+        for answer in on_the_page(index, texts)
     ]
     assert shown == [on_the_command_line(icd, text) for text in texts]
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_page_of_a_message_takes_no_piece_of_a_packet_for_its_data_in_silence(name):
+def test_the_page_of_a_message_does_not_decode_a_truncated_packet_as_data(name):
     icd = icd_of(name)
     relations = Relations(icd)
     for message in icd.nodes[0].messages:
         facts = wire.page_facts(message, relations.wire(message))
         cuts = [cut.hex() for _, packet in packets(icd) for cut in prefixes(packet, 20)]
-        found = node(
+        result = node(
             """([wire, length, texts]) => texts.map((text) => attempt(() => {
                 const { data, remarks } = given.messageIn(wire, length, text);
                 const [least, step] = wire.lengths ?? [length, 1];
@@ -120,10 +122,10 @@ def test_the_page_of_a_message_takes_no_piece_of_a_packet_for_its_data_in_silenc
             [facts, message.length, cuts],
         )
         has_sync = bool(sync_of(endpoint_of(icd, icd.nodes[0])))
-        assert found == [] or not has_sync, message.name
+        assert result == [] or not has_sync, message.name
 
 
-def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(
+def test_the_page_gives_the_reasons_of_the_command_line(
     tmp_path,
 ):
     motor = motor_of(MOTOR, tmp_path)
@@ -137,7 +139,7 @@ def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(
         "a5",
         "000102",
     ]
-    for text, one in zip(texts, on_the_page(index, texts), strict=True):
+    for text, answer in zip(texts, on_the_page(index, texts), strict=True):
         with pytest.raises(UserError) as wrong:
             recognize(motor, text)
         plain = (
@@ -147,9 +149,9 @@ def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(
             .replace("motor", "Motor")
         )
         assert (
-            one["error"] == plain
+            answer["error"] == plain
             if plain.startswith("a packet")
-            else "no packet of Motor" in one["error"]
+            else "no packet of Motor" in answer["error"]
         )
 
 
@@ -165,15 +167,17 @@ def test_the_page_reads_packets_of_both_directions_and_reports_the_others(tmp_pa
         [index, text],
     )
     assert left == [
-        one.replace("`", "").replace("motor has", "it has").replace("motor", "Motor")
-        for one in recognize(motor, text)[0].left_out
+        reason.replace("`", "").replace("motor has", "it has").replace("motor", "Motor")
+        for reason in recognize(motor, text)[0].left_out
     ]
 
 
-def test_the_page_of_a_message_takes_its_header_off():
+def test_the_page_of_a_message_removes_the_header():
     icd = icd_of("ubx")
     relations = Relations(icd)
-    message = next(one for one in icd.nodes[0].messages if one.name == "End of Epoch")
+    message = next(
+        message for message in icd.nodes[0].messages if message.name == "End of Epoch"
+    )
     facts = wire.page_facts(message, relations.wire(message))
     sent = recorded(
         icd, icd.nodes[0], {"End of Epoch": [bytes(4), bytes.fromhex("4AB37B0F")]}
@@ -186,49 +190,53 @@ def test_the_page_of_a_message_takes_its_header_off():
         damaged[12:].hex(),
         other.hex(),
     ]
-    found = node(
+    results = node(
         """([wire, length, texts]) => texts.map((text) => attempt(() => {
             const { data, remarks } = given.messageIn(wire, length, text);
             return [Buffer.from(data).toString("hex"), remarks.join("; ")];
         }))""",
         [facts, message.length, texts],
     )
-    assert found[0] == [
+    assert results[0] == [
         "00000000",
         "header with id 01 61 removed; 1 other frame left out",
     ]
     assert (
-        found[1][0] == "4ab37b0f"
-        and "33 bytes around the frame belong to none" in found[1][1]
+        results[1][0] == "4ab37b0f"
+        and "33 bytes around the frame belong to none" in results[1][1]
     )
-    assert "wrong checksum" in str(found[2]) and "another message's" in str(found[3])
+    assert "wrong checksum" in str(results[2]) and "another message's" in str(
+        results[3]
+    )
 
 
-def test_the_page_takes_the_header_off_where_its_bytes_could_be_data_of_the_message_too(
+def test_the_page_removes_a_header_that_could_also_be_data(
     tmp_path,
 ):
     icd = load_pack(tmp_path)
     relations = Relations(icd)
-    message = next(one for one in icd.nodes[0].messages if one.name == "Log")
+    message = next(
+        message for message in icd.nodes[0].messages if message.name == "Log"
+    )
     facts = wire.page_facts(message, relations.wire(message))
     texts = [sent(icd, "telemetry", 261, b"ready"), b"ready".hex(), LIMIT]
-    found = node(
+    results = node(
         """([wire, length, texts]) => texts.map((text) => Buffer.from(given.messageIn(wire, length, text).data).toString("hex"))""",
         [facts, message.length, texts],
     )
-    assert found == [
+    assert results == [
         recognize(icd, text, "pack", "Log")[0].data.hex() for text in texts
     ]
 
 
-def test_the_page_of_the_protocol_says_what_a_packet_looks_like(tmp_path):
+def test_the_page_of_the_protocol_shows_the_packet_format(tmp_path):
     file = tmp_path / "odd.yaml"
     hostile = "</script><img src=x>"
     content = (LINKS / "mavlink2.yaml").read_text().replace("x25", f'"{hostile}"')
     file.write_text(format_text(content, "odd.yaml"))
-    made = make_site([file])
-    assert made.ok, made.findings
-    write_site(made, tmp_path / "site")
+    result = make_site([file])
+    assert result.ok, result.findings
+    write_site(result, tmp_path / "site")
     text = (tmp_path / "site" / "autopilot" / "protocol.html").read_text("utf-8")
     assert hostile not in text and "<img" not in text
     plain = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text))

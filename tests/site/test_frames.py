@@ -1,4 +1,4 @@
-"""What the page makes of pasted bytes, against what the command line makes of them."""
+"""The page reads pasted bytes like the command line."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FRAMES = ROOT / "templates" / "html" / "frames.js"
 
 
 def node(script: str, argument: object) -> object:
-    """What a script gives that is called with the frames module and the argument."""
+    """Return the result of a script that gets the frames module and the argument."""
     code = f"""
         const frames = require({json.dumps(str(FRAMES))});
         const {{ unwrap }} = require({json.dumps(str(FRAMES.with_name("given.js")))});
@@ -50,10 +50,12 @@ def spellings() -> list[str]:
         "2e", "FB", "0x2e", "0x5", "\\x1f", "$7f", "#aa", "x1", ", ", " ", "\n", ":", "-", "{", "}", "b'", "'", '"', "g", "é", "2",
         "٣", "0x", "_", "(", ")", ";", "xz",
     ]  # fmt: skip
-    made = ["".join(source.choices(words, k=source.randint(0, 6))) for _ in range(3000)]
+    texts = [
+        "".join(source.choices(words, k=source.randint(0, 6))) for _ in range(3000)
+    ]
     return [
         "", " ", "2efb 0a00", "0x2e,0xfb", "2E:FB", "{0x2e, 0xfb}", r"\x2e\xfb", 'b"\\x2e"', "'2e'", "0x5, 0x6", "0x", "abc",
-        "1F-7F", "2e fb", "zz", "0x0x", *made,
+        "1F-7F", "2e fb", "zz", "0x0x", *texts,
     ]  # fmt: skip
 
 
@@ -65,13 +67,14 @@ def test_hexadecimal_is_read_as_on_the_command_line():
             return None
 
     texts = spellings()
-    found = node(
+    results = node(
         "(texts) => texts.map((t) => attempt(() => [...frames.parseHex(t)])).map((r) => (r.error ? null : r))",
         texts,
     )
-    assert [t for t, f in zip(texts, found, strict=True) if f != expected(t)] == []
+    assert [t for t, f in zip(texts, results, strict=True) if f != expected(t)] == []
     assert (
-        sum(f is not None for f in found) > 500 and sum(f is None for f in found) > 500
+        sum(f is not None for f in results) > 500
+        and sum(f is None for f in results) > 500
     )
 
 
@@ -88,11 +91,12 @@ def test_checksums_are_those_of_the_generator():
         [facts(seed), list(random.Random(seed).randbytes(seed % 12))]
         for seed in range(300)
     ]
-    found = node(
+    results = node(
         "(cases) => cases.map(([facts, data]) => frames.sum(facts, data))", cases
     )
-    assert found == [
-        links.crc(declared.read_part(Crc, one), bytes(data)) for one, data in cases
+    assert results == [
+        links.crc(declared.read_part(Crc, checksum), bytes(data))
+        for checksum, data in cases
     ]
 
 
@@ -119,13 +123,13 @@ WIRE = {
 }
 
 
-def test_an_id_of_several_bytes_comes_off():
+def test_an_id_of_several_bytes_is_removed():
     wire = {"ids": [0x0135], "id": 0x0135, "id_bytes": 2, "crc": []}
-    found = node(
+    results = node(
         "([wire, texts]) => texts.map((text) => [...unwrap(wire, 2, frames.parseHex(text)).data])",
         [wire, ["01 35 aa bb", "aa bb", "01 36 aa bb", "35 aa bb"]],
     )
-    assert found == [
+    assert results == [
         [0xAA, 0xBB],
         [0xAA, 0xBB],
         [0x01, 0x36, 0xAA, 0xBB],
@@ -146,29 +150,29 @@ WIDER = {  # as the catalogues have them
 @pytest.mark.parametrize("plain_id", [False, True])
 @pytest.mark.parametrize("covers_id", [False, True])
 def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id, little, width):
-    known = facts_of(shipped, shipped.node("cubeacp"))
-    form = replace(known.checksum, covers_id=covers_id, bytes=width // 8)
+    facts = facts_of(shipped, shipped.node("cubeacp"))
+    form = replace(facts.checksum, covers_id=covers_id, bytes=width // 8)
     if WIDER[width]:
         algorithm = replace(form.algorithm, crc=declared.read_part(Crc, WIDER[width]))
         form = replace(form, algorithm=algorithm)
-    known = replace(
-        known,
-        checksums={**known.checksums, form.algorithm.name: form.algorithm},
-        framing=replace(known.framing, escapes_id=not plain_id),
+    facts = replace(
+        facts,
+        checksums={**facts.checksums, form.algorithm.name: form.algorithm},
+        framing=replace(facts.framing, escapes_id=not plain_id),
         checksum=form,
         little=little,
     )
-    wire = {**WIRE, "plain_id": plain_id, "crc": [crc_facts(known)]}
+    wire = {**WIRE, "plain_id": plain_id, "crc": [crc_facts(facts)]}
     cases = [
         list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9))
         for seed in range(100)
     ]
-    found = node(
+    results = node(
         "([wire, cases]) => cases.map((data) => [false, true].map((check) => [...frames.framed(wire, data, check)]))",
         [wire, cases],
     )
-    link = link_of(shipped, known)
-    assert found == [
+    link = link_of(shipped, facts)
+    assert results == [
         [
             list(uart_encode(link, i2c_write(link, 0x1F, bytes(data), check)))
             for check in (False, True)
@@ -185,19 +189,19 @@ def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id, little, 
     assert back == [[data, True] for data in cases]
 
 
-def test_framing_and_checksum_come_off_again_whatever_the_data():
+def test_framing_and_checksum_of_any_data_are_removed():
     cases = [
         list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9))
         for seed in range(200)
     ]
-    found = node(
+    results = node(
         """([wire, cases]) => cases.map((data) => [false, true].map((check) => {
             const { data: back, remarks } = unwrap(wire, data.length, frames.framed(wire, data, check));
             return [[...back], remarks.includes("CRC is right")];
         }))""",
         [WIRE, cases],
     )
-    assert found == [[[data, False], [data, True]] for data in cases]
+    assert results == [[[data, False], [data, True]] for data in cases]
 
 
 @pytest.mark.parametrize(
@@ -215,8 +219,8 @@ def test_framing_and_checksum_come_off_again_whatever_the_data():
         ("01 02 03", 2, "one byte too many: as CRC"),
     ],
 )
-def test_what_is_around_the_data_is_named(text, length, says):
-    found = node(
+def test_a_wrong_header_or_checksum_is_named(text, length, says):
+    result = node(
         """([wire, text, length]) => attempt(() => {
             const { data, remarks } = unwrap(wire, length, frames.parseHex(text));
             if (data.length !== length) throw new Error("wrong length");
@@ -224,4 +228,4 @@ def test_what_is_around_the_data_is_named(text, length, says):
         })""",
         [WIRE, text, length],
     )
-    assert says in found["error"] and bool(says) == bool(found["error"])
+    assert says in result["error"] and bool(says) == bool(result["error"])

@@ -1,4 +1,4 @@
-"""The manual of icdgen as part of the site."""
+"""The manual of icdgen is part of the site."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 from icdgen.backends.html import guide
 from tests import documents
-from tests.site.test_find import found
+from tests.site.test_find import search_results
 
 
 def test_every_page_of_the_manual_is_on_the_site_with_all_its_headings(site):
@@ -21,7 +21,7 @@ def test_every_page_of_the_manual_is_on_the_site_with_all_its_headings(site):
         assert (site / page.url).is_file()
 
 
-def test_html_in_markdown_is_text(tmp_path):
+def test_html_in_markdown_is_escaped(tmp_path):
     path = tmp_path / "strange.md"
     path.write_text(
         "# <script>alert(1)</script>\n\n<img src=x onerror=alert(1)> [x](javascript:alert(1)) ![y](http://z/)\n"
@@ -35,7 +35,7 @@ def test_html_in_markdown_is_text(tmp_path):
     )
 
 
-def test_links_lead_to_pages_and_what_is_not_there_is_text(tmp_path):
+def test_links_lead_to_pages_and_links_to_missing_files_become_text(tmp_path):
     (tmp_path / "b.md").write_text("# B\n")
     path = tmp_path / "a.md"
     path.write_text(
@@ -48,7 +48,7 @@ def test_links_lead_to_pages_and_what_is_not_there_is_text(tmp_path):
     )
 
 
-TASKS = {  # what somebody types -> the page for the task
+TASKS = {  # query -> the page for the task
     "describe a device": "guides/describe-a-device",
     "my device sends SLIP": "guides/serial-link",
     "cobs": "guides/serial-link",
@@ -92,7 +92,7 @@ TASKS = {  # what somebody types -> the page for the task
 
 
 def test_the_first_result_of_the_search_is_the_page_for_the_task(site):
-    results = zip(TASKS.items(), found(site, list(TASKS)), strict=True)
+    results = zip(TASKS.items(), search_results(site, list(TASKS)), strict=True)
     page = re.compile(r"icdgen-docs/(.*)\.html(#.*)?")
     first = {
         words: page.fullmatch(urls[0]) if urls else None for (words, _), urls in results

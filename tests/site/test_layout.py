@@ -1,5 +1,5 @@
-"""Finding one's way: the sidebar, what stays in sight, what is folded, marked and
-copied.
+"""Navigation of the pages: the sidebar, sticky headings, folded sections, marked
+targets and copied text.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from tests.site.test_browser import opened, wait_until
 DESK, PHONE = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
 
 
-def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
+def test_the_sidebar_lists_all_messages_of_the_node(browser, site, shipped):
     node = shipped.node("cubeacp")
     with opened(browser, site.as_uri() + "/", KINDS["message"], viewport=DESK) as page:
         assert (
@@ -30,9 +30,9 @@ def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
             link.inner_text(): link.get_attribute("href")
             for link in page.locator("#sidebar li a").all()
         }
-        assert {one.name for one in (*shipped.messages_of(node), *node.enums)} <= set(
-            listed
-        )
+        assert {
+            thing.name for thing in (*shipped.messages_of(node), *node.enums)
+        } <= set(listed)
         assert [
             url for url in listed.values() if not (site / "cubeacp" / url).is_file()
         ] == []
@@ -40,7 +40,7 @@ def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
         assert page.url.endswith("estimated_attitude_angles.html")
 
 
-def test_on_a_phone_it_is_a_drawer_which_needs_no_script(browser, site):
+def test_on_a_phone_the_sidebar_is_a_drawer_without_a_script(browser, site):
     with opened(
         browser,
         site.as_uri() + "/",
@@ -64,7 +64,7 @@ def test_on_a_phone_it_is_a_drawer_which_needs_no_script(browser, site):
         assert page.url.endswith("errata.html")
 
 
-def test_section_links_and_heads_of_tables_stay_in_sight(browser, site):
+def test_section_links_and_table_headings_stay_visible(browser, site):
     at = "(s) => document.querySelector(s).getBoundingClientRect().top"
     with opened(
         browser, site.as_uri() + "/", KINDS["composite"], viewport=DESK
@@ -93,7 +93,7 @@ def test_section_links_and_heads_of_tables_stay_in_sight(browser, site):
         ("errata.html#ACP-066", "#ACP-066 > summary"),
     ],
 )  # fmt: skip
-def test_what_a_link_leads_to_is_in_sight_and_marked(browser, site, address, marked):
+def test_the_target_of_a_link_is_visible_and_marked(browser, site, address, marked):
     with opened(browser, site.as_uri() + "/", address, viewport=DESK) as page:
         lit = page.evaluate(
             "getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()"
@@ -129,7 +129,7 @@ def test_errata_are_filtered_by_words_node_message_and_confidence(browser, site)
         assert entries.count() > 0
 
 
-def test_flags_stand_in_a_grid_with_their_values(browser, site):
+def test_flags_are_shown_in_a_grid_with_their_values(browser, site):
     with opened(
         browser,
         site.as_uri() + "/",
@@ -144,7 +144,7 @@ def test_flags_stand_in_a_grid_with_their_values(browser, site):
         assert page.locator("#decoder .flag-grid").bounding_box()["height"] < 500
 
 
-def test_bytes_code_and_names_are_copied(browser, served):
+def test_bytes_code_and_names_can_be_copied(browser, served):
     context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
     page = context.new_page()
     page.goto(served + KINDS["numbers"])

@@ -1,5 +1,5 @@
-"""Pages of links with several packet formats per direction: what they show, and that
-their scripts decode every packet as the Python runtime does.
+"""Pages of links with several packet formats per direction show them, and their scripts
+decode every packet like the Python runtime.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ SCRIPTS = ROOT / "templates" / "html"
 CONFORMANCE = ROOT / "tests" / "conformance" / "links"
 FILES = [*sorted(LINKS.glob("*.yaml")), *sorted(CONFORMANCE.glob("*.yaml"))]
 NAMED = {path.stem: path.read_text("utf-8") for path in FILES}
-# The relay with other delimiters, where no length says where a packet ends.
+# The relay with other delimiters, where no length gives the end of a packet.
 DELIMITERS = {name: name for name in ("length", "slip", "cobs", "datagram")}
 DELIMITERS["escape"] = "escape, escape: 0x10, start: 0x02, end: 0x03"
 RELAYS = {
@@ -55,20 +55,20 @@ ICDS = {
 
 
 def packets_of(icd, direction: str, source: random.Random) -> list[bytes]:
-    """Packets of all kinds of a direction: messages, requests, and those without a
-    message, with values that the sender chose at random.
+    """Return packets of all kinds of a direction with random values: messages,
+    requests, and packets without a message.
     """
     link = link_of(icd, facts.of(icd, icd.nodes[0]))
     form = link.stream
-    found = []
+    packets = []
     for row in form.rows(direction):
         for size in {row.least, source.randint(row.least, row.most), row.most}:
-            found.append(stream_encode(link, row.id, bytes(size), direction))
+            packets.append(stream_encode(link, row.id, bytes(size), direction))
             data = source.randbytes(size)
-            found.append(stream_encode(link, row.id, data, direction))
+            packets.append(stream_encode(link, row.id, data, direction))
     for row in form.telemetry if direction == "telecommand" else ():
         if row.is_requested:
-            found.append(stream_encode_request(link, row.id))
+            packets.append(stream_encode_request(link, row.id))
     for number, packet in enumerate(form.packets):
         if packet.content == "none" and direction in packet.directions:
             ids = [row.id for row in (*form.telecommands, *form.telemetry)]
@@ -79,12 +79,14 @@ def packets_of(icd, direction: str, source: random.Random) -> list[bytes]:
                     )
                 except IcdError:  # no room for the value
                     sent = stream_encode_packet(link, number, id, direction)
-                found.append(sent)
-    return found
+                packets.append(sent)
+    return packets
 
 
 def lines_of(icd, direction: str, count: int) -> list[bytes]:
-    """Traffic of a direction: whole and damaged packets, and noise between them."""
+    """Return traffic of a direction: complete and damaged packets, and noise between
+    them.
+    """
     source = random.Random(11)
     packets = packets_of(icd, direction, source)
     one_packet = facts.of(icd, icd.nodes[0]).stream.delimited_by == "datagram"
@@ -103,7 +105,7 @@ def lines_of(icd, direction: str, count: int) -> list[bytes]:
 
 
 def decoded(icd, direction: str, line: bytes) -> list[object]:
-    """What the decoder of the Python runtime makes of a line."""
+    """Return the result of the decoder of the Python runtime for a line."""
     decoder = StreamDecoder(link_of(icd, facts.of(icd, icd.nodes[0])), direction)
     events = [
         [
@@ -146,9 +148,9 @@ def test_the_page_decodes_every_packet_as_the_python_runtime_does(name, tmp_path
         )
         expected = [decoded(icd, direction, line) for line in lines]
         different = [
-            (line.hex(), *both)
-            for line, *both in zip(lines, shown, expected, strict=True)
-            if both[0] != both[1]
+            (line.hex(), *pair)
+            for line, *pair in zip(lines, shown, expected, strict=True)
+            if pair[0] != pair[1]
         ]
         assert different[:2] == []
         kinds.update(event[0] for events, _ in expected for event in events)
@@ -167,9 +169,9 @@ def site(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("site")
     file = folder / "relay.yaml"
     file.write_text(RELAY, "utf-8")
-    made = make_site([file, LINKS / "jbd.yaml"])
-    assert made.ok, made.findings
-    write_site(made, folder / "site")
+    result = make_site([file, LINKS / "jbd.yaml"])
+    assert result.ok, result.findings
+    write_site(result, folder / "site")
     return folder / "site"
 
 
@@ -186,14 +188,14 @@ JBD = {
 }
 
 
-def test_what_is_pasted_is_a_request_a_refusal_or_a_message():
+def test_requests_naks_and_messages_can_be_pasted():
     icd = load([LINKS / "jbd.yaml"]).icd
     request, refusal = [*JBD][:2]
-    # The request is also a refusal of the id 165, but no message has this id.
+    # The request is also a NAK of the id 165, but no message has this id.
     texts = [*JBD, " ".join(JBD), f"{request} {refusal} DD 99 80 00 FF 80 77"]
     shown = on_the_page(index_of(icd), texts)
-    both = [JBD[request], JBD[refusal]]
-    assert shown == [*([row] for row in JBD.values()), [*JBD.values()], both]
+    two_packets = [JBD[request], JBD[refusal]]
+    assert shown == [*([row] for row in JBD.values()), [*JBD.values()], two_packets]
     assert shown == [on_the_command_line(icd, text) for text in texts]
     first, *_ = recognize(icd, texts[-1])
     assert first.left_out == (
@@ -203,10 +205,10 @@ def test_what_is_pasted_is_a_request_a_refusal_or_a_message():
     assert "7 bytes around the frame belong to none" in first.remarks
 
 
-def test_traffic_of_several_packet_formats_is_what_the_command_line_says(relay):
+def test_traffic_of_several_packet_formats_is_decoded_like_on_the_command_line(relay):
     for icd in (relay, load([LINKS / "tfmini.yaml"]).icd):
         texts = [line.hex() for side in DIRECTIONS for line in lines_of(icd, side, 40)]
-        # The command line has no reading without a message: of `busy`.
+        # The command line has no interpretation without a message, as for `busy`.
         texts = [text for text in texts if "d5d6" not in text]
         shown = [
             row if not isinstance(row, dict) else None
@@ -221,7 +223,7 @@ def test_traffic_of_several_packet_formats_is_what_the_command_line_says(relay):
 
 
 def remarks_of(icd, texts: list[str]) -> list[object]:
-    """Title and remarks of the only reading of each text, or what is wrong with it."""
+    """Return title and remarks of the only interpretation of each text, or the error."""
     script = json.dumps(str(SCRIPTS / "recognize.js"))
     return node(
         f"""([index, texts]) => texts.map((text) => attempt(() => {{
@@ -232,11 +234,11 @@ def remarks_of(icd, texts: list[str]) -> list[object]:
     )
 
 
-def test_a_refusal_names_its_reason_and_a_response_without_id_needs_no_message(relay):
+def test_a_nak_has_its_reason_and_a_response_without_id_needs_no_message(relay):
     link = link_of(relay, facts.of(relay, relay.nodes[0]))
     names = [packet.name for packet in link.stream.packets]
     refusal, busy = names.index("refusal"), names.index("busy")
-    taken = names.index("taken")
+    used = names.index("taken")
     sent = [
         stream_encode_packet(link, refusal, 0x0203, reason=1),
         stream_encode_packet(link, refusal, 0x0203, reason=7),
@@ -244,7 +246,7 @@ def test_a_refusal_names_its_reason_and_a_response_without_id_needs_no_message(r
         stream_encode_packet(link, refusal, 0x0999, reason=2),
         stream_encode_request(link, 0x0203),
         stream_encode(link, 0x0102, bytes(2), "telemetry", status=1),
-        stream_encode_packet(link, taken, 0x0103),
+        stream_encode_packet(link, used, 0x0103),
     ]
     shown = remarks_of(relay, [packet.hex() for packet in sent])
     assert shown[:3] == [
@@ -306,18 +308,16 @@ def test_a_refusal_names_its_reason_and_a_response_without_id_needs_no_message(r
         ),
     ],
 )
-def test_the_page_says_why_a_packet_of_any_format_cannot_be_decoded(
-    relay, packet, text
-):
+def test_the_page_gives_the_reason_for_any_undecodable_packet(relay, packet, text):
     (shown,) = remarks_of(relay, [packet])
     assert text in str(shown)
     with pytest.raises(UserError) as wrong:
         recognize(relay, packet)
-    given = str(wrong.value).replace("`", "").replace("relay has", "it has")
-    assert text in given.replace("relay", "Relay")
+    reason = str(wrong.value).replace("`", "").replace("relay has", "it has")
+    assert text in reason.replace("relay", "Relay")
 
 
-def test_the_page_of_a_message_takes_it_from_its_packet_and_names_other_packets(relay):
+def test_the_page_of_a_message_decodes_its_packet_and_names_other_packets(relay):
     relations = Relations(relay)
     link = link_of(relay, facts.of(relay, relay.nodes[0]))
     telecommand, beat, temperature, request, refusal = (
@@ -329,7 +329,7 @@ def test_the_page_of_a_message_takes_it_from_its_packet_and_names_other_packets(
     )
     shown = {}
     for message in relay.nodes[0].messages:
-        found = node(
+        results = node(
             """([wire, length, texts]) => texts.map((text) => attempt(() =>
                 Buffer.from(given.messageIn(wire, length, text).data).toString("hex")))""",
             [
@@ -339,7 +339,7 @@ def test_the_page_of_a_message_takes_it_from_its_packet_and_names_other_packets(
             ],
         )
         shown[message.name] = [
-            text if isinstance(text, str) else text["error"] for text in found
+            text if isinstance(text, str) else text["error"] for text in results
         ]
     assert shown["Set Contact"][0] == "0102"
     assert shown["Temperature"][1] == "0607" and shown["Beat"][1] == "030405"
@@ -409,7 +409,7 @@ def test_a_link_with_one_format_shows_it_without_a_name(tmp_path):
     )
 
 
-def test_a_refusal_pasted_on_the_first_page_leads_to_its_message(browser, site):
+def test_a_nak_pasted_on_the_first_page_leads_to_its_message(browser, site):
     with opened(browser, site.as_uri() + "/", "index.html") as page:
         page.fill("#paste", "DD A5 03 00 FF FD 77 DD 03 80 00 FF 80 77")
         page.wait_for_selector("#pasted li")
@@ -421,15 +421,15 @@ def test_a_refusal_pasted_on_the_first_page_leads_to_its_message(browser, site):
         assert page.inner_text("#pasted li a") == "refusal"
 
 
-def test_names_of_packets_are_text_whatever_they_contain(tmp_path):
+def test_names_of_packets_are_escaped(tmp_path):
     hostile = "</script><img src=x>"
     content = RELAY.replace(" refusal:", f' "{hostile}":')
     content = content.replace("packet: refusal", f'packet: "{hostile}"')
     file = tmp_path / "relay.yaml"
     file.write_text(content, "utf-8")
-    made = make_site([file])
-    assert made.ok, made.findings
-    write_site(made, tmp_path / "site")
+    result = make_site([file])
+    assert result.ok, result.findings
+    write_site(result, tmp_path / "site")
     pages = [page.read_text("utf-8") for page in (tmp_path / "site").rglob("*.html")]
     assert not [page for page in pages if "<img" in page]
     anchors = re.findall('id="(packet-[^"]*)"', "".join(pages))

@@ -1,4 +1,4 @@
-"""A frame pasted anywhere leads to its message, with its values."""
+"""A frame pasted on any page leads to its message with its values."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PASTE = """(text) => {
 }"""
 
 
-def test_the_box_of_the_first_page_leads_there_from_every_way(browser, site):
+def test_the_first_page_accepts_every_form_of_a_frame(browser, site):
     top = site.as_uri() + "/"
     with opened(browser, top, KINDS["home"]) as page:
         for text in WHOLE.values():
@@ -36,7 +36,7 @@ def test_the_box_of_the_first_page_leads_there_from_every_way(browser, site):
         assert page.input_value("#value-1") == "-12.34"
 
 
-def test_in_every_way_page_and_command_line_give_the_same_values(
+def test_page_and_command_line_give_the_same_values_for_every_form(
     browser,
     site,
     icdgen,  # noqa: F811
@@ -44,7 +44,7 @@ def test_in_every_way_page_and_command_line_give_the_same_values(
     with opened(browser, site.as_uri() + "/", ANGLES.partition("#")[0]) as page:
         for way, text in {**BARE, **WHOLE}.items():
             page.fill("#frame", "")
-            told = icdgen(
+            decoded = icdgen(
                 "decode",
                 "--icd",
                 ROOT / "icd",
@@ -54,19 +54,19 @@ def test_in_every_way_page_and_command_line_give_the_same_values(
                 "json",
                 text,
             )
-            fields = json.loads(told.out)["fields"]
+            fields = json.loads(decoded.out)["fields"]
             page.fill("#frame", text)
             shown = [
                 (page.input_value(f"#raw-{key}"), page.input_value(f"#value-{key}"))
                 for key in (1, 2, 3)
             ]
             assert shown == [
-                (str(one["raw"]), f"{one['value']:.2f}") for one in fields
+                (str(field["raw"]), f"{field['value']:.2f}") for field in fields
             ], way
             assert not page.locator("#verdict.wrong").count()
 
 
-def test_in_every_way_without_an_id_both_ask_which_message_it_is(
+def test_page_and_command_line_need_the_message_for_a_frame_without_id(
     browser,
     site,
     icdgen,  # noqa: F811
@@ -74,16 +74,18 @@ def test_in_every_way_without_an_id_both_ask_which_message_it_is(
     with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
         for way, text in BARE.items():
             page.fill("#paste", "")
-            told = icdgen("decode", "--icd", ROOT / "icd", text)
+            decoded = icdgen("decode", "--icd", ROOT / "icd", text)
             page.fill("#paste", text)
             page.wait_for_selector("#pasted li")
-            assert told.status == 2 and "6 bytes without an id can be" in told.err, way
+            assert (
+                decoded.status == 2 and "6 bytes without an id can be" in decoded.err
+            ), way
             assert page.inner_text("#pasted .note").startswith(
                 "6 bytes without an id can be several"
             ), way
 
 
-def test_where_a_frame_can_be_several_messages_they_are_listed(browser, site):
+def test_all_possible_messages_of_a_frame_are_listed(browser, site):
     with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
         page.fill("#paste", BARE["pairs"])
         page.wait_for_selector("#pasted li")
@@ -106,7 +108,7 @@ def test_where_a_frame_can_be_several_messages_they_are_listed(browser, site):
         "08BE0201#00010203040506" + "00\n05920201#2EFB0A000000",
     ],
 )
-def test_the_search_field_of_every_page_takes_a_frame(browser, site, text):
+def test_the_search_field_of_every_page_accepts_a_frame(browser, site, text):
     top = site.as_uri() + "/"
     with opened(browser, top, KINDS["enumeration"]) as page:
         page.focus("#search")
@@ -118,7 +120,7 @@ def test_the_search_field_of_every_page_takes_a_frame(browser, site, text):
         assert page.input_value("#value-1") == "-12.34"
 
 
-def test_the_search_field_says_what_is_wrong_with_a_frame(browser, site):
+def test_the_search_field_reports_an_invalid_frame(browser, site):
     with opened(browser, site.as_uri() + "/", KINDS["units"]) as page:
         page.click("#search")
         page.fill("#search", "1F 7F 92 2E FB 1F FF")
@@ -126,7 +128,7 @@ def test_the_search_field_says_what_is_wrong_with_a_frame(browser, site):
         assert "has 6 bytes, 2 given" in page.inner_text("#results")
 
 
-def test_another_message_s_frame_leaves_nothing_and_links_to_it(browser, site):
+def test_a_frame_of_another_message_clears_the_values_and_links_to_it(browser, site):
     with opened(browser, site.as_uri() + "/", ANGLES) as page:
         assert page.input_value("#value-1") == "-12.34"
         page.fill("#frame", "1F 7F 93 10 00 20 00 30 00 1F FF")
@@ -140,7 +142,7 @@ def test_another_message_s_frame_leaves_nothing_and_links_to_it(browser, site):
         assert page.url.endswith("estimated_angular_rates.html#try=100020003000")
 
 
-def test_what_the_message_may_not_hold_is_an_error_and_not_green(browser, site):
+def test_values_out_of_range_are_shown_as_errors(browser, site):
     with opened(
         browser, site.as_uri() + "/", "cubeacp/set_attitude_control_mode.html"
     ) as page:
@@ -171,7 +173,7 @@ def test_the_decoder_shows_can_identifiers_and_lines_of_candump(browser, site):
         assert "08BE0100#0001020304050607" in shown and shown.count("08BE0100#") == 8
 
 
-def test_boxes_of_the_drawing_hold_the_values(browser, site):
+def test_the_drawing_shows_the_values(browser, site):
     with opened(browser, site.as_uri() + "/", ANGLES) as page:
         assert page.locator("svg.layout .lit .value").all_text_contents() == [
             "-12.34 deg",

@@ -1,4 +1,4 @@
-"""The page takes what the command line takes, and makes the same of it."""
+"""The page accepts the same forms of frames as the command line, with the same results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GIVEN = ROOT / "templates" / "html" / "given.js"
 
 
 def node(script: str, argument: object) -> object:
-    """What a script gives that is called with the argument."""
+    """Return the result of a script that gets the argument."""
     code = f"""
         const given = require({json.dumps(str(GIVEN))});
         const pasted = require({json.dumps(str(GIVEN.with_name("pasted.js")))});
@@ -48,7 +48,7 @@ def node(script: str, argument: object) -> object:
 def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
     texts = [*BARE.values(), *WHOLE.values(), *REMOTE]
     source = random.Random(1)
-    for text in list(texts):  # and what a slip of the hand makes of them
+    for text in list(texts):  # and with typing errors
         for _ in range(30):
             at = source.randrange(len(text))
             texts.append(
@@ -59,16 +59,16 @@ def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
 
     def expected(text: str) -> object:
         try:
-            found = read_pasted(text)
+            paste = read_pasted(text)
         except BadHex:
             return None
         return [
-            list(found.data),
-            [[p.id, list(p.data), p.extended, p.time] for p in found.packets],
-            found.form,
+            list(paste.data),
+            [[p.id, list(p.data), p.extended, p.time] for p in paste.packets],
+            paste.form,
         ]
 
-    found = node(
+    results = node(
         """(texts) => texts.map((text) => attempt(() => {
             const { data, form, packets } = pasted.read(text);
             return [[...(data ?? [])], (packets ?? []).map((p) => [p.id, [...p.data], p.extended, p.time]), form ?? ""];
@@ -77,40 +77,47 @@ def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
     )
     assert [
         (t, f, expected(t))
-        for t, f in zip(texts, found, strict=True)
+        for t, f in zip(texts, results, strict=True)
         if f != expected(t)
     ] == []
-    assert sum(f is None for f in found) > 100
+    assert sum(f is None for f in results) > 100
 
 
 def facts(icd, id: int) -> tuple[dict, int]:
     owner = icd.node("cubeacp")
-    known = of(icd, owner)
-    message = known.telemetry[id]
-    section, link = owner.protocol, link_of(icd, known)
+    facts_of_owner = of(icd, owner)
+    message = facts_of_owner.telemetry[id]
+    section, link = owner.protocol, link_of(icd, facts_of_owner)
     return (
         wire.page_facts(
             message,
-            wire.Wire(known, section, link, [wire.Speaker(known, section, link)]),
+            wire.Wire(
+                facts_of_owner,
+                section,
+                link,
+                [wire.Speaker(facts_of_owner, section, link)],
+            ),
         ),
         message.length,
     )
 
 
-def test_the_page_of_the_message_takes_every_way(shipped):
+def test_the_page_of_the_message_accepts_every_form(shipped):
     texts = [*BARE.values(), *WHOLE.values()]
-    found = node(
+    results = node(
         "([[wire, length], texts]) => texts.map((t) => attempt(() => [...given.messageIn(wire, length, t).data]))",
         [facts(shipped, 146), texts],
     )
-    assert [(t, f) for t, f in zip(texts, found, strict=True) if f != list(DATA)] == []
+    assert [
+        (t, f) for t, f in zip(texts, results, strict=True) if f != list(DATA)
+    ] == []
 
 
 def around(source: random.Random, message, ids: list[int]) -> str:
-    """Frames of the message and of others, whole and damaged, with noise between them,
-    or no framing at all.
+    """Return frames of this and other messages, complete and damaged, with noise
+    between them, or without framing.
     """
-    found = b""
+    stream = b""
     for _ in range(source.randint(1, 3)):
         id = source.choice([*message.ids, source.choice(ids)])
         body = bytes([id]) + source.randbytes(
@@ -118,87 +125,95 @@ def around(source: random.Random, message, ids: list[int]) -> str:
         )
         line = b"\x1f\x7f" + body.replace(b"\x1f", b"\x1f\x1f") + b"\x1f\xff"
         at = source.randrange(len(line)) if source.random() < 0.2 else len(line)
-        found += (
+        stream += (
             source.choice([line, body])
             if source.random() < 0.2
             else line[:at] + line[at + 1 :]
         )
-        found += source.randbytes(source.choice([0, 0, 1, 4]))
-    return found.hex(" ")
+        stream += source.randbytes(source.choice([0, 0, 1, 4]))
+    return stream.hex(" ")
 
 
 @pytest.mark.parametrize("key", ["146", "1", "Commanded Attitude Angles"])
-def test_the_page_of_a_message_makes_of_a_stream_what_the_command_line_makes(
-    shipped, key
-):
+def test_the_page_of_a_message_decodes_a_stream_like_the_command_line(shipped, key):
     source = random.Random(key)
     message = find_message(shipped, "cubeacp", key)
-    ids = [id for one in shipped.messages_of(shipped.node("cubeacp")) for id in one.ids]
+    ids = [
+        id
+        for message in shipped.messages_of(shipped.node("cubeacp"))
+        for id in message.ids
+    ]
     texts = [around(source, message, ids) for _ in range(400)]
 
     def expected(text: str) -> str | None:
         try:
-            found = recognize(shipped, text, "cubeacp", key)
+            findings = recognize(shipped, text, "cubeacp", key)
         except UserError:
             return None
-        whole = [
-            one.data
-            for one in found
-            if one.what in ("telecommand", "telemetry", "configuration")
+        frames = [
+            piece.data
+            for piece in findings
+            if piece.what in ("telecommand", "telemetry", "configuration")
         ]
-        return whole[0].hex() if whole else None
+        return frames[0].hex() if frames else None
 
-    known = of(shipped, shipped.node("cubeacp"))
+    facts = of(shipped, shipped.node("cubeacp"))
     travels = Relations(shipped).wire(message)
     travels = travels._replace(
-        facts=known,
-        checked=[one for one in travels.checked if one.facts.node is known.node],
+        facts=facts,
+        checked=[
+            checked for checked in travels.checked if checked.facts.node is facts.node
+        ],
     )
-    found = node(
+    results = node(
         """([wire, length, texts]) => texts.map((text) =>
             attempt(() => Buffer.from(given.messageIn(wire, length, text).data).toString("hex")))""",
         [wire.page_facts(message, travels), message.length, texts],
     )
     shown = [
-        one if isinstance(one, str) and len(one) == 2 * message.length else None
-        for one in found
+        answer
+        if isinstance(answer, str) and len(answer) == 2 * message.length
+        else None
+        for answer in results
     ]
     assert [
         (t, f, expected(t))
-        for t, s, f in zip(texts, shown, found, strict=True)
+        for t, s, f in zip(texts, shown, results, strict=True)
         if s != expected(t)
     ] == []
-    assert 50 < sum(one is not None for one in shown) < 390
+    assert 50 < sum(frame is not None for frame in shown) < 390
 
 
-def test_the_page_of_a_message_takes_the_packet_whose_identifier_is_its_id_and_no_other(
+def test_the_page_of_a_message_only_decodes_packets_with_its_identifier(
     tmp_path,
 ):
     icd = train(tmp_path)
     relations, message = Relations(icd), find_message(icd, "train", "Brake")
     texts = [f"101#{BRAKE}", f"100#{DRIVE}\n101#{BRAKE}", f"100#{DRIVE}"]
-    found = node(
+    results = node(
         """([wire, length, texts]) => texts.map((text) => attempt(() => {
             const { data, remarks } = given.messageIn(wire, length, text);
             return [Buffer.from(data).toString("hex"), ...remarks];
         }))""",
         [wire.page_facts(message, relations.wire(message)), message.length, texts],
     )
-    taken = [BRAKE, "CAN identifier 0x101 removed"]
-    assert found[:2] == [taken, [*taken, "1 other CAN packet left out"]]
-    assert "CAN identifier 0x100, which is not this message's" in str(found[2])
+    used = [BRAKE, "CAN identifier 0x101 removed"]
+    assert results[:2] == [used, [*used, "1 other CAN packet left out"]]
+    assert "CAN identifier 0x100, which is not this message's" in str(results[2])
 
 
-def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
-    known = of(shipped, shipped.node("cubeacp"))
-    id, message = next((i, m) for i, m in known.telemetry.items() if m.length > 21)
+def test_packets_of_a_long_message_are_joined_in_any_order(shipped):
+    facts_of_node = of(shipped, shipped.node("cubeacp"))
+    id, message = next(
+        (i, m) for i, m in facts_of_node.telemetry.items() if m.length > 21
+    )
     data = bytes(range(message.length))
     pieces = [data[at : at + 7].ljust(7, b"\0") for at in range(0, len(data), 7)]
     lines = [
         f"08{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n:02x}"
         for n, piece in enumerate(pieces)
     ]
-    found = node(
+    results = node(
         """([[wire, length], lines]) => [
             [...given.messageIn(wire, length, [...lines].reverse().join("\\n")).data],
             attempt(() => given.messageIn(wire, length, lines.slice(1).join("\\n"))).error,
@@ -208,8 +223,8 @@ def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
         [facts(shipped, id), lines],
     )
     assert (
-        found[0] == list(data)
-        and "packets are missing" in found[1]
-        and "another message's" in found[2]
+        results[0] == list(data)
+        and "packets are missing" in results[1]
+        and "another message's" in results[2]
     )
-    assert "carry no data" in found[3]
+    assert "carry no data" in results[3]

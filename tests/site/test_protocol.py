@@ -1,4 +1,6 @@
-"""The page that says how a node talks."""
+"""The protocol page of a node shows every fact, assumption, checksum and procedure of
+its link.
+"""
 
 from __future__ import annotations
 
@@ -34,17 +36,17 @@ def test_the_calculator_computes_the_checksums_of_the_icd(browser, site, shipped
         )
 
 
-def test_every_fact_and_every_assumption_stands_there(site, shipped):
+def test_the_page_shows_every_fact_and_every_assumption(site, shipped):
     text = (site / PAGE).read_text("utf-8")
     plain = (
         re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text))
         .replace("&#39;", "'")
         .replace("&#34;", '"')
     )
-    known = facts_of(shipped, shipped.node("cubeacp"))
-    assert len(known.assumptions) > 30
-    for one in known.assumptions:
-        assert " ".join(one.why.split()) in plain, one.key
+    facts = facts_of(shipped, shipped.node("cubeacp"))
+    assert len(facts.assumptions) > 30
+    for assumption in facts.assumptions:
+        assert " ".join(assumption.why.split()) in plain, assumption.key
     for words in (
         "115,200",
         "29",
@@ -64,7 +66,7 @@ def test_procedures_lead_to_their_messages(site):
         assert f'href="../common/{name}.html"' in section
 
 
-def test_a_node_of_which_nothing_is_said_has_no_such_page(site):
+def test_a_node_without_protocol_has_no_protocol_page(site):
     assert not (site / "cubemag" / "protocol.html").exists()
 
 
@@ -92,7 +94,7 @@ WIDE = {  # CRC-16/IBM-3740 and CRC-32/ISO-HDLC, as the catalogues have them
 
 
 @pytest.mark.parametrize("width", WIDE)
-def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(
+def test_a_checksum_of_several_bytes_is_computed_shown_and_removed(
     browser,
     tmp_path,
     icdgen,  # noqa: F811
@@ -120,11 +122,11 @@ def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(
         assert check in page.inner_text(
             "#crc-values"
         ) and f"CRC-{width}" in page.inner_text("main")
-    known = facts_of(loaded := load([path]).icd, loaded.node("battery"))
+    facts = facts_of(loaded := load([path]).icd, loaded.node("battery"))
     id = next(
-        id for id, message in known.telecommands.items() if message.name == "Reset"
+        id for id, message in facts.telecommands.items() if message.name == "Reset"
     )
-    link = link_of(loaded, known)
+    link = link_of(loaded, facts)
     body = i2c_write(link, id, b"\x5a", True)
     line = uart_encode(link, body).hex(" ").upper()
     assert len(body) == 2 + width // 8

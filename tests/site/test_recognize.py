@@ -1,6 +1,4 @@
-"""The page knows what a frame is wherever the command line does, and says the same of
-it.
-"""
+"""The page recognises the same frames as the command line, with the same results."""
 
 from __future__ import annotations
 
@@ -24,7 +22,9 @@ SCRIPT = ROOT / "templates" / "html" / "recognize.js"
 
 
 def on_the_page(index: dict, texts: list[str]) -> list[object]:
-    """Of each text: the readings, how many messages are as likely, or what is wrong."""
+    """Return for each text the interpretations, the number of equally likely messages,
+    or the error.
+    """
     code = f"""
         const {{ recognize, Ambiguous }} = require({json.dumps(str(SCRIPT))});
         const [index, texts] = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
@@ -46,24 +46,30 @@ def on_the_page(index: dict, texts: list[str]) -> list[object]:
 
 def on_the_command_line(icd, text: str) -> object:
     try:
-        found = recognize(icd, text)
+        findings = recognize(icd, text)
     except Ambiguous:
         return "ambiguous"
     except UserError:
         return None
     return [
-        [one.endpoint.node.name, one.message.name, one.what, one.data.hex(), one.id]
-        for one in found
+        [
+            finding.endpoint.node.name,
+            finding.message.name,
+            finding.what,
+            finding.data.hex(),
+            finding.id,
+        ]
+        for finding in findings
     ]
 
 
 def streams(icd) -> list[str]:
-    """Random traffic, whole and damaged: framed, bare, with and without ids, as packets
-    of CAN.
+    """Return random traffic, complete and damaged: framed, unframed, with and without
+    ids, as CAN packets.
     """
     source = random.Random(7)
     messages = [m for node in icd.nodes for m in icd.messages_of(node)]
-    found = []
+    texts = []
     for _ in range(700):
         message = source.choice(messages)
         data = source.randbytes(
@@ -80,11 +86,13 @@ def streams(icd) -> list[str]:
             )
         at = source.randrange(len(line))
         damaged = line[:at] + source.randbytes(source.randrange(2)) + line[at + 1 :]
-        found += [one.hex() for one in (line, body, data, damaged) if one]
-        found.append("\n".join(one.hex(" ") for one in (body, body[:3]) if one))
+        texts += [stream.hex() for stream in (line, body, data, damaged) if stream]
+        texts.append(
+            "\n".join(stream.hex(" ") for stream in (body, body[:3]) if stream)
+        )
         kind = 1 if message.telecommand_id == id else 5
         if len(data) <= 8:
-            found.append(f"can0 {kind:02X}{id:02X}0201#{data.hex()}")
+            texts.append(f"can0 {kind:02X}{id:02X}0201#{data.hex()}")
             continue
         pieces = [data[at : at + 7].ljust(7, b"\0") for at in range(0, len(data), 7)]
         kind = 7 if message.telecommand_id == id else 8
@@ -92,8 +100,8 @@ def streams(icd) -> list[str]:
             f"{kind:02X}{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n & 255:02x}"
             for n, piece in enumerate(pieces)
         ]
-        found.append("\n".join(rows if source.random() < 0.7 else rows[1:]))
-    return found
+        texts.append("\n".join(rows if source.random() < 0.7 else rows[1:]))
+    return texts
 
 
 @pytest.fixture(scope="module")
@@ -108,10 +116,11 @@ def test_every_way_to_paste_a_frame_leads_to_the_same_message(shipped, index):
     assert expected.count("ambiguous") == len(BARE)
 
 
-def test_random_traffic_is_what_the_command_line_says_it_is(shipped, index):
+def test_random_traffic_is_decoded_like_on_the_command_line(shipped, index):
     texts = streams(shipped)
     shown = [
-        one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
+        answer if not isinstance(answer, dict) else None
+        for answer in on_the_page(index, texts)
     ]
     expected = [on_the_command_line(shipped, text) for text in texts]
     different = [
@@ -137,16 +146,18 @@ def test_identifiers_that_are_ids_are_read_as_the_command_line_reads_them(tmp_pa
     shown = on_the_page(
         json.loads(json.dumps(recognition.frame_index(Relations(icd)))), texts
     )
-    assert [one if not isinstance(one, dict) else None for one in shown] == expected
+    assert [
+        answer if not isinstance(answer, dict) else None for answer in shown
+    ] == expected
     assert (
         "no message has the CAN identifier 0x7FF" in str(shown)
         and "ambiguous" in expected
     )
-    assert sum(isinstance(one, list) for one in expected) == 10
+    assert sum(isinstance(answer, list) for answer in expected) == 10
 
 
-def test_what_is_wrong_is_said(index):
-    said = {
+def test_invalid_input_is_reported(index):
+    expected = {
         "1F 7F 92 2E FB": "end of the message is missing",
         "1F 7F 92 2E 1F 02 1F FF": "followed by neither",
         "1F 7F 92 2E FB 1F FF": "has 6 bytes, 2 given after the id 146",
@@ -155,15 +166,15 @@ def test_what_is_wrong_is_said(index):
         "2exb01": "not hexadecimal",
         "1F 7F 6F 1F FF": "no message has the id",
     }
-    found = on_the_page(index, list(said))
+    answers = on_the_page(index, list(expected))
     assert [
-        (text, one)
-        for (text, says), one in zip(said.items(), found, strict=True)
-        if says not in one["error"]
+        (text, answer)
+        for (text, says), answer in zip(expected.items(), answers, strict=True)
+        if says not in answer["error"]
     ] == []
 
 
-def test_the_page_keeps_the_times_of_candump_and_reports_packets_that_no_message_has(
+def test_the_page_shows_times_of_candump_and_reports_unknown_packets(
     tmp_path,
 ):
     icd = train(tmp_path)

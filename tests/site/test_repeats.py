@@ -1,5 +1,5 @@
 """Arrays on the page of a message: one element is drawn, all can be decoded, and the
-page stays quick.
+page stays fast.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def ublox(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def many_satellites(tmp_path_factory) -> Path:
-    """A site with up to 1,024 satellites in NAV-SAT."""
+    """Generate a site with up to 1,024 satellites in NAV-SAT."""
     folder = tmp_path_factory.mktemp("many")
     text = (DEVICES / "ublox" / "ublox.yaml").read_text("utf-8")
     text = text.replace("bits: 8, name: numSvs", "bits: 16, name: numSvs")
@@ -78,7 +78,7 @@ def icds(tmp_path_factory):
     ]
 
 
-def test_each_field_stands_in_the_tables_once_and_can_be_decoded(icds):
+def test_each_field_is_in_the_tables_once_and_can_be_decoded(icds):
     for icd in icds:
         relations = Relations(icd)
         for node in icd.nodes:
@@ -89,11 +89,11 @@ def test_each_field_stands_in_the_tables_once_and_can_be_decoded(icds):
                     relations, message
                 ) or sections.field_sections(message, relations.links.repeats(message))
                 keys = [
-                    one.key
+                    flag.key
                     for cells in fields.split(rows, parts)
                     for cell in cells
-                    for one in getattr(cell, "flags", [cell])
-                    if one.key
+                    for flag in getattr(cell, "flags", [cell])
+                    if flag.key
                 ]
                 assert sorted(keys) == [
                     field.key for field in shown if not field.place.is_count
@@ -115,11 +115,11 @@ def test_the_page_lists_the_fields_of_all_elements_itself(icds):
     assert len(nav_sat["fields"]) == 4
 
 
-def test_what_repeats_has_one_section_with_how_often_it_is_there(icds):
+def test_an_array_has_one_section_with_its_count(icds):
     ublox = next(icd for icd in icds if icd.nodes[0].name == "ublox")
     titles = [
-        one.title
-        for one in sections.part_sections(
+        band.title
+        for band in sections.part_sections(
             Relations(ublox), message_of(ublox, "NAV-SAT")
         )
     ]
@@ -127,7 +127,7 @@ def test_what_repeats_has_one_section_with_how_often_it_is_there(icds):
     nested = next(icd for icd in icds if icd.nodes[0].name == "nested")
     relations, message = Relations(nested), message_of(nested, "State")
     parts = sections.part_sections(relations, message)
-    assert [(one.title, one.first, one.end) for one in parts] == [
+    assert [(part.title, part.first, part.end) for part in parts] == [
         ("Byte 0", 0, 1),
         ("Channels × 3", 1, 2),
         ("Channels[].Signals × 4", 2, 4),
@@ -157,9 +157,9 @@ def message_of(icd, name: str):
 def test_a_page_of_64_satellites_loads_within_a_second(browser, ublox):
     with opened(browser, ublox.as_uri() + "/", NAV_SAT) as page:
         times = []
-        for _ in range(
-            3
-        ):  # the fastest, as other programs take their part of the machine
+        # The fastest of three runs counts, because other programs use the machine
+        # too.
+        for _ in range(3):
             page.reload()
             times.append(
                 page.evaluate("performance.getEntriesByType('navigation')[0].duration")
@@ -168,7 +168,9 @@ def test_a_page_of_64_satellites_loads_within_a_second(browser, ublox):
         assert page.evaluate("document.querySelectorAll('*').length") < 3000
 
 
-def test_a_field_that_is_pointed_at_lights_up_within_50_milliseconds(browser, ublox):
+def test_a_field_under_the_pointer_is_highlighted_within_50_milliseconds(
+    browser, ublox
+):
     with opened(browser, ublox.as_uri() + "/", NAV_SAT) as page:
         page.fill("#frame", FRAME)
         times = page.evaluate("""async () => {
@@ -265,7 +267,7 @@ def test_text_is_drawn_in_its_colour(browser, ublox, scheme):
         assert len(fills) == 3 and "rgb(0, 0, 0)" not in fills
 
 
-def test_how_many_bytes_are_left_out_stands_beside_the_name(browser, ublox):
+def test_the_number_of_omitted_bytes_is_next_to_the_name(browser, ublox):
     with opened(browser, ublox.as_uri() + "/", MON_VER) as page:
         overlaps = page.evaluate("""() => {
             const boxes = (selector) => [...document.querySelectorAll(selector)].map((one) => one.getBoundingClientRect());

@@ -1,4 +1,4 @@
-"""Pages about the responses to telecommands on a framed link."""
+"""Pages show the responses to telecommands on a framed link."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.conftest import ROOT
 
 
 def plain(page: Path) -> str:
-    """The text of a page, without tags and repeated space."""
+    """Return the text of a page without tags and repeated space."""
     text = re.sub(r"<[^>]+>", " ", page.read_text(encoding="utf-8"))
     return " ".join(text.split())
 

@@ -1,4 +1,4 @@
-"""Texts on the pages read and are typed as the reference codec has them."""
+"""Texts on the pages are shown and entered like in the reference codec."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _typed(text: str) -> list[int] | None:
         return None
 
 
-def test_texts_read_and_are_typed_as_the_reference_has_them():
+def test_texts_are_shown_and_entered_like_in_the_reference_codec():
     source = random.Random(1)
     raw = [
         bytes(source.choice((0, 65, 97, 127, 128, 255)) for _ in range(8))
@@ -48,7 +48,7 @@ def test_texts_read_and_are_typed_as_the_reference_has_them():
         )
         for _ in range(300)
     ]
-    request = json.dumps({"raw": [list(one) for one in raw], "texts": texts})
+    request = json.dumps({"raw": [list(data) for data in raw], "texts": texts})
     done = subprocess.run(
         [program("node"), "-e", SCRIPT],
         input=request,
@@ -57,9 +57,9 @@ def test_texts_read_and_are_typed_as_the_reference_has_them():
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    assert found == {
-        "shown": [codec.text(one) for one in raw],
+    results = json.loads(done.stdout)
+    assert results == {
+        "shown": [codec.text(data) for data in raw],
         "typed": [_typed(text) for text in texts],
     }
-    assert None in found["typed"] and any(found["typed"])
+    assert None in results["typed"] and any(results["typed"])

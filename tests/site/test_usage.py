@@ -1,6 +1,4 @@
-"""The code that pages show is code: it compiles, and runs, with what the backends
-generate.
-"""
+"""The code on the pages compiles and runs with the output of the backends."""
 
 from __future__ import annotations
 
@@ -25,11 +23,11 @@ def snippets(icd, key: str) -> list[str]:
 
 
 def snippet(message, key: str) -> str:
-    """The code of a message in a language, with the default names of packages."""
+    """Return the code of a message in a language, with the default names of packages."""
     return next(
-        one.text
-        for one in usage.snippets(message, message, Packages(), RENDER)
-        if one.key == key
+        snippet.text
+        for snippet in usage.snippets(message, message, Packages(), RENDER)
+        if snippet.key == key
     )
 
 

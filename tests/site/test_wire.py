@@ -1,4 +1,4 @@
-"""The bytes that a page shows for each bus."""
+"""The pages show the bytes of a message on each bus."""
 
 from __future__ import annotations
 
@@ -13,41 +13,46 @@ from tests import links
 
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
     message = next(m for m in icd.node(node).messages if m.name == name)
-    found = wire.buses(message, Relations(icd).wire(message), data)
+    buses = wire.buses(message, Relations(icd).wire(message), data)
     return {
         bus.name: [
             (line.label, " ".join(c.text for c in line.chunks)) for line in bus.lines
         ]
-        for bus in found
+        for bus in buses
     }
 
 
-def test_a_telecommand_on_each_bus(shipped):
-    found = lines(shipped, "cubeacp", "ASGP4 Run Mode", b"\x1f")
-    assert found["UART"][0] == ("Telecommand", "1F 7F 1F 1F 1F 1F 1F FF")
-    assert found["I²C"][0] == ("Telecommand", "AE 1F 1F")
-    assert found["CAN"] == [("Telecommand", "011F0001 1F")]
+def test_a_telecommand_has_its_bytes_on_each_bus(shipped):
+    lines_by_bus = lines(shipped, "cubeacp", "ASGP4 Run Mode", b"\x1f")
+    assert lines_by_bus["UART"][0] == ("Telecommand", "1F 7F 1F 1F 1F 1F 1F FF")
+    assert lines_by_bus["I²C"][0] == ("Telecommand", "AE 1F 1F")
+    assert lines_by_bus["CAN"] == [("Telecommand", "011F0001 1F")]
 
 
 def test_an_optional_checksum_covers_the_parameters(shipped):
-    found = lines(shipped, "cubeacp", "Trigger ADCS Loop", b"")
-    assert found["UART"] == [
+    lines_by_bus = lines(shipped, "cubeacp", "Trigger ADCS Loop", b"")
+    assert lines_by_bus["UART"] == [
         ("Telecommand", "1F 7F 12 1F FF"),
         ("with CRC", "1F 7F 12 FF 1F FF"),
     ]
 
 
-def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
+def test_the_bytes_follow_the_id_rules_of_the_icd(shipped):
     message = next(
         m for m in shipped.node("cubeacp").messages if m.name == "ASGP4 Run Mode"
     )
-    known, section, _, checked = Relations(shipped).wire(message)
+    facts, section, _, checked = Relations(shipped).wire(message)
     covering = [
-        replace(one.facts, checksum=replace(one.facts.checksum, covers_id=True))
-        for one in checked
+        replace(
+            checked_bus.facts,
+            checksum=replace(checked_bus.facts.checksum, covers_id=True),
+        )
+        for checked_bus in checked
     ]
-    plain = replace(known, framing=replace(known.framing, escapes_id=False))
-    speakers = [wire.Speaker(one, section, link_of(shipped, one)) for one in covering]
+    plain = replace(facts, framing=replace(facts.framing, escapes_id=False))
+    speakers = [
+        wire.Speaker(facts, section, link_of(shipped, facts)) for facts in covering
+    ]
     other = wire.Wire(plain, section, link_of(shipped, plain), speakers)
     uart = wire.buses(message, other, b"\x1f")[0]
     texts = [" ".join(chunk.text for chunk in line.chunks) for line in uart.lines]
@@ -57,35 +62,35 @@ def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
     assert check != of_data
 
 
-def test_a_telemetry_frame_on_each_bus(shipped):
-    found = lines(
+def test_a_telemetry_frame_has_its_bytes_on_each_bus(shipped):
+    lines_by_bus = lines(
         shipped, "cubeacp", "Estimated Attitude Angles", bytes.fromhex("2efb1f000000")
     )
-    assert found["UART"] == [
+    assert lines_by_bus["UART"] == [
         ("Request", "1F 7F 92 1F FF"),
         ("Answer", "1F 7F 92 2E FB 1F 1F 00 00 00 1F FF"),
     ]
-    assert found["I²C"][0] == (
+    assert lines_by_bus["I²C"][0] == (
         "Request and answer",
         "AE 92 repeated start AF 2E FB 1F 00 00 00",
     )
-    assert found["CAN"] == [
+    assert lines_by_bus["CAN"] == [
         ("Request", "04920001"),
         ("Answer", "05920100 2E FB 1F 00 00 00"),
     ]
 
 
-def test_long_frames_are_cut_into_packets_that_count_down(shipped):
-    found = lines(shipped, "cubeacp", "ADCS State", bytes(range(54)))["CAN"]
-    assert found[1] == ("Answer 1/8", "08BE0100 00 01 02 03 04 05 06 07")
-    assert found[-1][0] == "Answer 8/8" and found[-1][1].endswith(" 00")
+def test_long_frames_are_split_into_packets_that_count_down(shipped):
+    packets = lines(shipped, "cubeacp", "ADCS State", bytes(range(54)))["CAN"]
+    assert packets[1] == ("Answer 1/8", "08BE0100 00 01 02 03 04 05 06 07")
+    assert packets[-1][0] == "Answer 8/8" and packets[-1][1].endswith(" 00")
 
 
 def test_a_node_without_protocol_facts_has_no_bytes_on_a_wire(shipped):
     assert lines(shipped, "cubemag", "State", bytes(3)) == {}
 
 
-def test_the_page_says_the_same(site):
+def test_the_page_shows_the_same_bytes(site):
     text = (site / "cubeacp" / "asgp4_run_mode.html").read_text("utf-8")
     section = text[text.index('id="wire"') :]
     shown = re.sub(
