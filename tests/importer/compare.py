@@ -1,4 +1,4 @@
-"""What differs between two ICD trees in the facts that a manual's tables print."""
+"""Compare two ICD trees in the facts that the tables of a manual contain."""
 
 from __future__ import annotations
 
@@ -7,35 +7,33 @@ _FIELD = ("bits", "type", "enum", "unit", "formula", "formula_for", "const")
 
 
 def differences(wanted: dict, got: dict, tables: bool = True) -> list[str]:
-    """One line per difference; empty where every message, field, enumeration and
-    loggable frame is equal.
-
-    ``tables``: the table numbers too.
+    """Return one line per difference; empty if all messages, fields, enumerations and
+    loggable frames are equal. ``tables``: compare the table numbers too.
     """
-    found: list[str] = []
-    found += _named(
+    texts: list[str] = []
+    texts += _named(
         "message",
         _messages(wanted),
         _messages(got),
         lambda a, b: _message(a, b, tables),
     )
-    found += _named(
+    texts += _named(
         "enumeration",
         wanted.get("enums", []),
         got.get("enums", []),
         lambda a, b: _enum(a, b, tables),
     )
-    found += _same(
+    texts += _same(
         "loggable",
         [(r["bit"], r["id"], r.get("name")) for r in wanted.get("loggable", [])],
         [(r["bit"], r["id"], r.get("name")) for r in got.get("loggable", [])],
     )
-    return found
+    return texts
 
 
 def _messages(tree: dict) -> list[dict]:
-    """With what is announced of all formulas of a kind of messages at each of their
-    fields.
+    """Return the messages with formulas that are announced for all fields of a kind of
+    message.
     """
     announced = tree.get("formula_for", {})
     return [
@@ -56,32 +54,32 @@ def _messages(tree: dict) -> list[dict]:
 
 def _named(what: str, wanted: list, got: list, compare) -> list[str]:
     left, right = {i["name"]: i for i in wanted}, {i["name"]: i for i in got}
-    found = [f"{what} {name} is missing" for name in left if name not in right]
-    found += [
+    texts = [f"{what} {name} is missing" for name in left if name not in right]
+    texts += [
         f"{what} {name} is not in the manual" for name in right if name not in left
     ]
     for name in left:
         if name in right:
-            found += [
+            texts += [
                 f"{what} {name}: {line}" for line in compare(left[name], right[name])
             ]
-    if not found and list(left) != list(right):
-        found.append(f"{what}s stand in another order")
-    return found
+    if not texts and list(left) != list(right):
+        texts.append(f"{what}s stand in another order")
+    return texts
 
 
 def _message(wanted: dict, got: dict, tables: bool) -> list[str]:
-    found = [
+    texts = [
         line for key in _MESSAGE for line in _same(key, wanted.get(key), got.get(key))
     ]
     if tables:
-        found += _same("table", _table(wanted), _table(got))
+        texts += _same("table", _table(wanted), _table(got))
     left = {(f["at"], f["name"]): f for f in wanted.get("fields", [])}
     right = {(f["at"], f["name"]): f for f in got.get("fields", [])}
-    found += [
+    texts += [
         f"field {at} {name} is missing" for at, name in left if (at, name) not in right
     ]
-    found += [
+    texts += [
         f"field {at} {name} is not in the manual"
         for at, name in right
         if (at, name) not in left
@@ -89,27 +87,27 @@ def _message(wanted: dict, got: dict, tables: bool) -> list[str]:
     for key in left:
         if key in right:
             for fact in _FIELD:
-                found += [
+                texts += [
                     f"field {key}: {line}"
                     for line in _same(fact, left[key].get(fact), right[key].get(fact))
                 ]
-    return found
+    return texts
 
 
 def _enum(wanted: dict, got: dict, tables: bool) -> list[str]:
-    found = _same(
+    texts = _same(
         "members",
         [(m["value"], m["name"]) for m in wanted["members"]],
         [(m["value"], m["name"]) for m in got["members"]],
     )
     if tables:
-        found += _same("table", _table(wanted), _table(got))
-        found += _same(
+        texts += _same("table", _table(wanted), _table(got))
+        texts += _same(
             "also",
             [s.get("table") for s in wanted.get("also", [])],
             [s.get("table") for s in got.get("also", [])],
         )
-    return found
+    return texts
 
 
 def _table(item: dict) -> object:

@@ -1,4 +1,4 @@
-"""Shared by the tests of the importer."""
+"""Fixtures of the importer tests."""
 
 from __future__ import annotations
 
@@ -16,28 +16,24 @@ VENDOR = Path(os.environ.get("ICDGEN_MANUALS") or ROOT.parent / "shared" / "manu
 
 @pytest.fixture
 def vendor() -> Path:
-    """The folder of the vendor's manuals, which are no part of the repository."""
+    """Return the folder of the vendor's manuals, which are not part of the repository."""
     if not VENDOR.is_dir():
         pytest.skip("the vendor's manuals are not at hand")
     return VENDOR
 
 
-RULES = (
-    Path(__file__).parent / "rules" / "layouts.yaml"
-)  # of the documents that `manuals` draws
+# The profile of the documents that `manuals` draws.
+RULES = Path(__file__).parent / "rules" / "layouts.yaml"
 
 
 def imported(
     manual: Path, words: str | Path = RULES, jobs: int = 1
 ) -> tuple[run.Result, dict[str, dict]]:
-    """Return what an import of a document gives.
-
-    Raises `Findings` also if that is nothing.
-    """
+    """Return the result of an import. Raises `Findings`, also if nothing was imported."""
     result, trees = run.run(manual, profile.load(profile.find(str(words))), jobs=jobs)
     if not trees:
-        nothing = next(t for t in result.import_findings if t.code == "IMP004")
+        finding = next(t for t in result.import_findings if t.code == "IMP004")
         raise Findings(
-            [Finding(nothing.code, nothing.message, Place(str(manual)), nothing.help)]
+            [Finding(finding.code, finding.message, Place(str(manual)), finding.help)]
         )
     return result, trees

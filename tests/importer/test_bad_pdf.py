@@ -1,4 +1,4 @@
-"""PDFs from which nothing, or not everything, can be read."""
+"""PDFs that cannot be read, or only in part, give findings."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def drawn(
         (b"%PDF-1.7\n", "", ""),
     ],
 )
-def test_it_is_a_finding_with_a_remedy(tmp_path, data, message, help):
+def test_an_unreadable_pdf_is_a_finding_with_a_remedy(tmp_path, data, message, help):
     path = tmp_path / "manual.pdf"
     path.write_bytes(data)
     with pytest.raises(Findings) as error:

@@ -1,4 +1,4 @@
-"""``icdgen import`` as its user meets it."""
+"""``icdgen import`` as a user runs it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENU
 
 
 def icdgen(*arguments, cwd) -> subprocess.CompletedProcess:
-    """Run icdgen; an import of `pump.txt` gets the rules of the pump unless it has a
-    profile of its own.
+    """Run icdgen. An import of `pump.txt` gets the rules of the pump unless another
+    profile is given.
     """
     rules = (
         ["--profile", "pump.yaml"]
@@ -70,7 +70,7 @@ def test_an_import_gives_an_icd_that_checks_formats_and_compiles(folder):
     assert icdgen("--lang", "c", "--out", "include", "icd", cwd=folder).returncode == 0
 
 
-def test_an_existing_icd_is_not_overwritten_unless_told(folder):
+def test_an_existing_icd_is_only_overwritten_with_an_option(folder):
     icdgen("import", "pump.txt", cwd=folder)
     before = (folder / "icd" / "pump.yaml").read_bytes()
     result = icdgen("import", "pump.txt", cwd=folder)
@@ -79,7 +79,7 @@ def test_an_existing_icd_is_not_overwritten_unless_told(folder):
     assert (folder / "icd" / "pump.yaml").read_bytes() == before
 
 
-def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
+def test_update_keeps_manual_edits_and_lists_the_changes(folder):
     icdgen("import", "pump.txt", cwd=folder)
     path = folder / "icd" / "pump.yaml"
     ours = path.read_text(encoding="utf-8")
@@ -103,8 +103,8 @@ def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
     (folder / "icd" / "errata").mkdir()
     overlay = folder / "icd" / "errata" / "pump.yaml"
     overlay.write_text("errata: 1\nnode: pump\nentries: []\n", encoding="utf-8")
-    again = icdgen("import", "pump.txt", "--update", cwd=folder)
-    assert "icd/pump.yaml: unchanged" in again.stdout
+    second = icdgen("import", "pump.txt", "--update", cwd=folder)
+    assert "icd/pump.yaml: unchanged" in second.stdout
     assert path.read_text(encoding="utf-8") == ours
 
     new = TEXT.replace("RAWVAL*0.1", "RAWVAL*0.2").replace(
@@ -138,7 +138,7 @@ def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
     assert icdgen("fmt", "--check", "icd/pump.yaml", cwd=folder).returncode == 0
 
 
-def test_update_takes_over_what_is_announced_of_all_formulas(folder):
+def test_update_adopts_statements_about_all_formulas(folder):
     icdgen("import", "pump.txt", cwd=folder)
     path = folder / "icd" / "pump.yaml"
     (folder / "pump.txt").write_text(TEXT.replace(MESSAGE, RAW), encoding="utf-8")
@@ -161,7 +161,7 @@ def test_a_dry_run_writes_nothing(folder):
     assert not (folder / "icd").exists()
 
 
-def test_a_dry_run_says_what_an_update_would_change_in_an_icd_that_is_there(folder):
+def test_a_dry_run_lists_the_changes_to_an_existing_icd(folder):
     icdgen("import", "pump.txt", cwd=folder)
     path = folder / "icd" / "pump.yaml"
     assert (
@@ -201,7 +201,7 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
 
 
 @pytest.mark.parametrize(
-    "line, said",
+    "line, expected",
     [
         ("captions: [1]", "this entry of `captions` must be text, not the number 1"),
         ("phrases: {unit: a}", "`unit` must be a list, not the text 'a'"),
@@ -225,13 +225,13 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
         ("shares: [Common]", "did you mean `shared`?"),
     ],
 )
-def test_each_fault_of_a_profile_has_its_remedy(tmp_path, line, said):
+def test_each_mistake_in_a_profile_has_a_remedy(tmp_path, line, expected):
     path = tmp_path / "words.yaml"
     path.write_text(f"profile: 1\n{line}\nrules: []\n", encoding="utf-8")
     with pytest.raises(Findings) as caught:
         profile.load(path)
     assert {(f.code, f.place.line) for f in caught.value.findings} == {("IMP001", 2)}
-    assert any(said in f"{f.message}: {f.help}" for f in caught.value.findings)
+    assert any(expected in f"{f.message}: {f.help}" for f in caught.value.findings)
 
 
 def test_a_profile_without_rules_is_an_error_with_a_remedy(folder):
@@ -250,7 +250,7 @@ def test_a_profile_without_rules_is_an_error_with_a_remedy(folder):
         assert "--explore" in result.stderr and "--workbench" in result.stderr
 
 
-def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
+def test_a_missing_profile_is_reported_with_the_available_ones(folder):
     result = icdgen("import", "pump.txt", "--profile", "nobody", cwd=folder)
     assert result.returncode == 2
     assert "addendum, cubeadcs" in result.stderr
@@ -259,19 +259,17 @@ def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
 @pytest.mark.parametrize("option", [[], ["--dry-run"], ["--format", "json"]])
 def test_an_import_whose_result_has_errors_ends_with_1(folder, option):
     wide = MESSAGE.replace("\t4\n", "\t3\n", 1)
-    (folder / "pump.txt").write_text(
-        wide + ENUM, encoding="utf-8"
-    )  # a field lies beyond the message
+    # A field lies beyond the message.
+    (folder / "pump.txt").write_text(wide + ENUM, encoding="utf-8")
     result = icdgen("import", "pump.txt", *option, cwd=folder)
     assert result.returncode == 1, result.stdout
     if "json" in option:
-        assert {one["severity"] for one in json.loads(result.stdout)["check"]} == {
-            "error"
-        }
+        assert {
+            finding["severity"] for finding in json.loads(result.stdout)["check"]
+        } == {"error"}
     else:
-        assert (
-            "error[" not in result.stdout
-        )  # the manual was read; only the result has errors
+        # The manual was read; only the resulting ICD has errors.
+        assert "error[" not in result.stdout
         assert "`icdgen check icd/pump.yaml`" in result.stdout.splitlines()[-1]
         assert "1 error" in result.stdout.splitlines()[-1]
     assert (folder / "icd").exists() == ("--dry-run" not in option)
@@ -292,7 +290,7 @@ def test_a_definition_whose_result_has_errors_ends_with_1(folder):
     assert "`icdgen check icd/fan.yaml` would have 1 error" in result.stdout
 
 
-def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(folder):
+def test_an_incomplete_manual_ends_with_1_and_the_icd_is_written(folder):
     (folder / "pump.txt").write_text(
         TEXT.replace("\t16\t8", "\tl6\t8"), encoding="utf-8"
     )
@@ -303,7 +301,7 @@ def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(f
     assert (folder / "icd" / "pump.yaml").is_file()
 
 
-def test_nothing_is_written_where_one_of_several_files_is_there(folder):
+def test_nothing_is_written_if_one_of_several_files_exists(folder):
     two = TEXT.replace("List of Telemetry", "List of Pump Telemetry")
     two += (
         two.replace("Pump", "Tank")
@@ -323,9 +321,10 @@ def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
 
     manual = content.manual(content.shipped("common"), {"common": "Common"})
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
+    # The fields have no type.
     rules = RULES.read_text(encoding="utf-8").replace(
         "Data Type: type", "Data Type: text"
-    )  # fields have no type
+    )
     (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
     result = icdgen(
         "import",

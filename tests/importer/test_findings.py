@@ -1,5 +1,5 @@
-"""What an import says is explained, is said in one order, is never merged, and never
-ends in a traceback.
+"""Findings of an import are explained, in a fixed order, never merged, and never a
+traceback.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from icdgen.import_results.findings import CERTAIN
 from icdgen.importer import findings
 from tests.conftest import ROOT
 from tests.importer.test_command import TEXT, icdgen
-from tests.importer.test_text import ENUM, MESSAGE, found, read
+from tests.importer.test_text import ENUM, MESSAGE, findings_of, read
 
 SOURCES = [
     *(ROOT / "codegen" / "icdgen" / "importer").rglob("*.py"),
@@ -24,12 +24,12 @@ SOURCES = [
 
 
 def test_every_code_that_an_import_gives_has_a_page_with_an_example():
-    given = {
+    codes = {
         code
         for path in SOURCES
         for code in re.findall(r'"(IMP[0-9]{3})"', path.read_text("utf-8"))
     }
-    assert given == set(findings.pages())
+    assert codes == set(findings.pages())
     assert all(
         re.search(r"^ {4}\S", page.text, re.M) for page in findings.pages().values()
     )
@@ -41,8 +41,8 @@ def test_icdgen_rule_explains_and_lists_the_findings_of_an_import(tmp_path):
 
 
 def draw_message(path, below: float = 0, crop=None) -> None:
-    """A ruled message table near the lower edge of the page; ``below``: points by which
-    its last row lies under it.
+    """Draw a ruled message table near the lower edge of the page. ``below``: points by
+    which its last row is below the edge.
     """
     canvas = Canvas(str(path), pagesize=(400, 300), invariant=1)
     if crop:
@@ -61,7 +61,7 @@ def draw_message(path, below: float = 0, crop=None) -> None:
     canvas.save()
 
 
-def test_text_below_the_edge_of_the_page_is_left_out_and_said(tmp_path):
+def test_text_below_the_edge_of_the_page_is_left_out_with_a_finding(tmp_path):
     canvas = Canvas(str(tmp_path / "edge.pdf"), pagesize=(400, 300), invariant=1)
     canvas.drawString(20, 200, "Nothing but prose")
     canvas.drawString(20, -40, "under the edge")
@@ -74,7 +74,7 @@ def test_text_below_the_edge_of_the_page_is_left_out_and_said(tmp_path):
 
 
 @pytest.mark.parametrize("crop", [None, (0, 50, 400, 300), (0, 150, 200, 300)])
-def test_a_table_over_the_edge_of_the_page_costs_neither_summary_nor_report(
+def test_a_table_over_the_edge_of_the_page_does_not_stop_summary_and_report(
     tmp_path, crop
 ):
     draw_message(tmp_path / "pump.pdf", below=30, crop=crop)
@@ -104,7 +104,7 @@ def test_equal_findings_of_one_place_are_counted(tmp_path):
         MESSAGE.replace("\t16\t8\tMode", "\tx\t8\tMode\tUINT\tx\n\tx\t8\tMode") + ENUM
     )
     result, _ = read(tmp_path, text)
-    assert found(result, "IMP023") == [
+    assert findings_of(result, "IMP023") == [
         "table 1 (`Pump State Telemetry Format`), field `Mode`: `bit` is `x`, which is not a number; the same in 1 more row"
     ]
 
@@ -113,7 +113,8 @@ def test_a_message_that_is_left_out_is_not_called_certain(tmp_path):
     result, tree = read(tmp_path, MESSAGE.replace("ID\t140", "Id\tx") + ENUM)
     assert "messages" not in tree
     assert (
-        "its rule gives no id; the message was left out" in found(result, "IMP031")[0]
+        "its rule gives no id; the message was left out"
+        in findings_of(result, "IMP031")[0]
     )
     assert result.sureness()[CERTAIN] == 1  # the enumeration
 
@@ -147,9 +148,9 @@ def test_a_row_without_offset_does_not_vanish_in_the_row_above(tmp_path):
     result, _ = read(
         tmp_path, MESSAGE.replace("\t24\t1\tValve Open", "\t\t\tValve Open") + ENUM
     )
-    assert (
-        result.failed
-    )  # its name and type stand below those of the row above, which then are none
+    # Its name and type are read as further lines of the row above, which makes them
+    # invalid.
+    assert result.failed
 
 
 def test_a_column_without_a_role_is_named_with_its_cells(tmp_path):
@@ -157,10 +158,10 @@ def test_a_column_without_a_role_is_named_with_its_cells(tmp_path):
         "Data Type\tDescription", "Data Type\tDescription\tGain"
     ).replace("Valve open\n", "Valve open\t2.5\n")
     result, _ = read(tmp_path, text + ENUM)
-    assert "gives the column `Gain` no role: `2.5`" in found(result, "IMP102")[0]
+    assert "gives the column `Gain` no role: `2.5`" in findings_of(result, "IMP102")[0]
 
 
-def test_words_that_stand_on_their_side_are_said_to_be_left_out(tmp_path):
+def test_rotated_words_are_left_out_with_a_finding(tmp_path):
     canvas = Canvas(str(tmp_path / "turned.pdf"), invariant=1)
     canvas.drawString(72, 700, "Upright")
     canvas.rotate(90)

@@ -1,4 +1,4 @@
-"""PDFs made to hurt: a clear finding in bounded time and memory."""
+"""Hostile PDFs give a clear finding in limited time and memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MEMORY = 2_000_000_000  # bytes
 
 
 def objects(*bodies: bytes, root: int = 1, xref: bool = True) -> bytes:
-    """A PDF of these objects, numbered from 1."""
+    """Return a PDF of these objects, numbered from 1."""
     data, places = b"%PDF-1.7\n", []
     for number, body in enumerate(bodies, 1):
         places.append(len(data))

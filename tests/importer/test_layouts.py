@@ -1,4 +1,4 @@
-"""Manuals drawn from ICDs, imported again: the ICDs come back whatever the layout."""
+"""ICDs that are drawn as manuals and imported are the same again in every layout."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ TITLES = {
 }
 
 
-def back(manual: content.Manual, layout: str, path) -> list[str]:
-    """What differs after drawing and importing."""
+def differences_after_import(manual: content.Manual, layout: str, path) -> list[str]:
+    """Draw and import a manual and return the differences."""
     LAYOUTS[layout](manual, path)
     result, trees = imported(path)
     assert set(trees) == set(manual.trees)
@@ -53,7 +53,12 @@ def test_shipped_icds_come_back_from_every_layout(layout, tmp_path):
         | content.shipped("cubemag")
         | content.shipped("cubewheel")
     )
-    assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
+    assert (
+        differences_after_import(
+            content.manual(trees, TITLES), layout, tmp_path / "manual.pdf"
+        )
+        == []
+    )
 
 
 @pytest.mark.parametrize(
@@ -61,7 +66,12 @@ def test_shipped_icds_come_back_from_every_layout(layout, tmp_path):
 )
 def test_large_tables_come_back_from_every_layout(layout, skip, tmp_path):
     trees = content.shipped("cubeacp", most=14, skip=8 + skip % 100)
-    assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
+    assert (
+        differences_after_import(
+            content.manual(trees, TITLES), layout, tmp_path / "manual.pdf"
+        )
+        == []
+    )
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -85,7 +95,10 @@ def test_a_manual_of_one_page_without_lists_and_prose_comes_back(layout, tmp_pat
 def test_random_icds_come_back(tree, layout, tmp_path_factory):
     path = tmp_path_factory.mktemp("random") / "manual.pdf"
     assert (
-        back(content.manual({"device": tree}, {"device": "Device"}), layout, path) == []
+        differences_after_import(
+            content.manual({"device": tree}, {"device": "Device"}), layout, path
+        )
+        == []
     )
 
 
@@ -109,7 +122,7 @@ def test_the_rest_of_a_name_that_reads_like_headings_begins_no_table(tmp_path):
     }
     tree = {"icdgen": 1, "node": {"name": "device"}, "messages": [message]}
     assert (
-        back(
+        differences_after_import(
             content.manual({"device": tree}, {"device": "Device"}),
             "small",
             tmp_path / "manual.pdf",
@@ -130,18 +143,18 @@ def test_the_rest_of_a_name_with_a_word_between_headings_begins_no_table(tmp_pat
     }
     tree = {"icdgen": 1, "node": {"name": "device"}, "messages": [message]}
     manual = content.manual({"device": tree}, {"device": "Device"})
-    assert back(manual, "booktabs", tmp_path / "manual.pdf") == []
+    assert differences_after_import(manual, "booktabs", tmp_path / "manual.pdf") == []
 
 
 def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_path):
     manual = content.manual(content.shipped("common"), TITLES)
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
-    one, two = (
+    first, two = (
         imported(tmp_path / "manual.pdf", jobs=1),
         imported(tmp_path / "manual.pdf", jobs=2),
     )
-    assert one[1] == two[1]
-    assert one[0].import_findings == two[0].import_findings
+    assert first[1] == two[1]
+    assert first[0].import_findings == two[0].import_findings
 
 
 def test_one_job_starts_no_process_on_systems_that_do_not_count_usable_processors(

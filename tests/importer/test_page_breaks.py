@@ -1,5 +1,5 @@
-"""Tables go on over page breaks whatever the engine, the paper, the rules, the captions
-and the repetition of headings.
+"""Tables continue over page breaks with any engine, paper, rules, captions and
+repetition of headings.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tests.importer.test_layouts import TITLES
     ("layout", "skip"),
     [(name, (60, 20, 34, 60)[i % 4]) for i, name in enumerate(FURTHER)],
 )
-def test_tables_over_page_breaks_come_back_whole(layout, skip, tmp_path):
+def test_tables_over_page_breaks_are_imported_completely(layout, skip, tmp_path):
     if FURTHER[layout].func is browser.draw and browser.program() is None:
         pytest.skip("Chromium is not at hand")
     manual = content.manual(content.shipped("cubeacp", most=12, skip=skip), TITLES)
@@ -33,12 +33,12 @@ def test_tables_over_page_breaks_come_back_whole(layout, skip, tmp_path):
     ] == []
 
 
-def test_captions_that_lean_for_want_of_an_italic_font_are_told_from_prose(tmp_path):
+def test_captions_in_slanted_letters_are_distinguished_from_prose(tmp_path):
     manual = content.manual(content.shipped("cubeacp", most=12, skip=60), TITLES)
     freehand.draw(
         manual,
         tmp_path / "manual.pdf",
-        freehand.Look(caption_style="", caption_slant=14),
+        freehand.FreehandLook(caption_style="", caption_slant=14),
     )
     _, trees = imported(tmp_path / "manual.pdf")
     assert differences(manual.trees["cubeacp"], trees.get("cubeacp", {})) == []

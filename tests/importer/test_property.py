@@ -1,5 +1,5 @@
-"""Whatever a page's text is turned into: never a traceback, and never a field that the
-page does not show.
+"""Any change to the text of a page gives neither a traceback nor a field that the page
+does not show.
 """
 
 from __future__ import annotations
@@ -43,49 +43,51 @@ TEXT = LIST + MESSAGE + ENUM + (
 
 
 def shown_numbers(text: str) -> set[int]:
-    """Every number of the page, and what arrays, ranges and units of bytes may make of
-    them.
+    """Return every number of the page, and the numbers that arrays, ranges and units of
+    bytes give.
     """
-    found = {int(n) for n in re.findall("[0-9]+", text)} | {
+    numbers = {int(n) for n in re.findall("[0-9]+", text)} | {
         int(n, 16) for n in re.findall("0x([0-9A-Fa-f]+)", text)
     }
-    return found | {8 * n for n in found}
+    return numbers | {8 * n for n in numbers}
 
 
 def _is_shown(word: str, squeezed: str) -> bool:
-    """Whether the page shows a word; or two that touch after one of them was moved."""
+    """Return whether the page shows a word, or two adjacent words of which one was
+    moved.
+    """
     return word in squeezed or any(
         word[:i] in squeezed and word[i:] in squeezed for i in range(1, len(word))
     )
 
 
 def check(trees: dict, text: str) -> None:
-    """Nothing in the ICD that the text does not show: names, factors, units, widths."""
+    """Check that the ICD contains only names, factors, units and widths of the text."""
     squeezed = re.sub(r"\s+", "", text)
     numbers = shown_numbers(text)
     widths = {8, 16, 32, 64, 1}
     for tree in trees.values():
         for message in tree.get("messages", ()):
-            for one in message.get("fields", ()):
+            for field in message.get("fields", ()):
                 for factor in re.findall(
-                    r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?", one.get("formula", "")
+                    r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?", field.get("formula", "")
                 ):
-                    assert factor in text or factor.removeprefix("0") in text, one
+                    assert factor in text or factor.removeprefix("0") in text, field
                 assert all(
                     _is_shown(word, squeezed)
-                    for word in re.findall("[A-Za-z]+", one["name"])
-                ), one
-                assert all(word in squeezed for word in one.get("unit", "").split()), (
-                    one
-                )
+                    for word in re.findall("[A-Za-z]+", field["name"])
+                ), field
+                assert all(
+                    word in squeezed for word in field.get("unit", "").split()
+                ), field
                 spans = (
                     {b - a + 1 for a in numbers for b in numbers if b >= a}
                     if len(numbers) < 60
                     else numbers
                 )
-                assert one["bits"] in numbers | widths | spans | {
+                assert field["bits"] in numbers | widths | spans | {
                     8 * s for s in spans
-                }, one
+                }, field
 
 
 @settings(
@@ -147,7 +149,7 @@ def test_shuffled_and_dropped_words_of_pages_are_read_or_reported(
         chance = random.Random(seed)
         spoiled = [_spoiled(page, chance) for page in pages]
         monkeypatch.setattr(
-            pdf, "_pages", lambda path, wanted, jobs, made=spoiled: iter(made)
+            pdf, "_pages", lambda path, wanted, jobs, pages=spoiled: iter(pages)
         )
         try:
             _, trees = run.run(tmp_path / "motor.pdf", words, jobs=1)

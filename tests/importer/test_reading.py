@@ -1,4 +1,4 @@
-"""What descriptions, labels, masks and wrapped cells say."""
+"""The importer reads formulas, labels, masks and wrapped cells of descriptions."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_a_formula_that_cannot_be_read_is_a_problem_and_not_a_shorter_one(text):
     st.fractions(min_value=Fraction(1, 1000), max_value=1000, max_denominator=1000),
     st.integers(-500, 500),
 )
-def test_what_a_formula_computes_survives_being_printed(factor, offset):
+def test_a_printed_formula_computes_the_same(factor, offset):
     shift = f"{'+' if offset >= 0 else '-'} {abs(offset)}"
     printed = f"(formatted value) [V] = RAWVAL * {factor.numerator}/{factor.denominator} {shift}"
     read = descriptions.read(printed, WORDS)
@@ -113,7 +113,7 @@ def test_a_magic_number_is_one_only_without_an_alternative(text, const):
     ],
 )
 def test_labels_are_read_in_whatever_cells_they_stand(text, values):
-    assert {one.what: one.value for one in labels.parse(text, WORDS)} == values
+    assert {part.what: part.value for part in labels.parse(text, WORDS)} == values
     assert labels.begins(text, WORDS)
 
 
@@ -125,7 +125,7 @@ def test_prose_and_fields_do_not_begin_a_message(text):
 
 
 @pytest.mark.parametrize(
-    ("parts", "known", "whole"),
+    ("parts", "vocabulary", "joined"),
     [
         (["RAWVAL/", "10000.0"], (), "RAWVAL/10000.0"),
         (["format/", "erase"], (), "format/erase"),
@@ -136,8 +136,8 @@ def test_prose_and_fields_do_not_begin_a_message(text):
         (["deg", "ree"], (), "deg ree"),
     ],
 )
-def test_wrapped_cells_are_joined_as_they_were_meant(parts, known, whole):
-    assert join(parts, frozenset(known)) == whole
+def test_wrapped_cells_are_joined(parts, vocabulary, joined):
+    assert join(parts, frozenset(vocabulary)) == joined
 
 
 @given(st.integers(0, 79))
@@ -146,5 +146,5 @@ def test_a_mask_with_one_bit_is_that_bit(bit):
 
 
 @pytest.mark.parametrize("mask", ["00 00", "03 00", "zz", "1"])
-def test_a_mask_with_none_or_several_bits_is_none(mask):
+def test_a_mask_with_no_or_several_bits_has_no_position(mask):
     assert lists.bit_of_mask(mask) is None

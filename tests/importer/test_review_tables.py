@@ -37,10 +37,8 @@ def generate(language: str, out: Path, *more: object) -> subprocess.CompletedPro
 
 
 def layouts(node: Node) -> dict:
-    """What the tables show of a node: each message with the places and values of its
-    fields.
-    """
-    made = {}
+    """Return each message of the tables with the positions and values of its fields."""
+    layouts_by_name = {}
     for message in node.messages:
         if message.node != node.name:
             continue
@@ -50,17 +48,17 @@ def layouts(node: Node) -> dict:
             for line in lines(message.layout) if not line.is_read_only and not line.is_count
         ]  # fmt: skip
         ids = message.id, message.set_id, message.get_id
-        made[message.name] = (
+        layouts_by_name[message.name] = (
             message.kind,
             ids,
             message.length,
             sorted(fields, key=lambda field: field[1]),
         )
-    return made
+    return layouts_by_name
 
 
-def back(table: Path, rules: Path | None, folder: Path) -> dict:
-    """The layouts of the ICD that an import of a table gives."""
+def layouts_after_import(table: Path, rules: Path | None, folder: Path) -> dict:
+    """Return the layouts of the ICD that an import of a table gives."""
     from icdgen.icd.fmt import emit
 
     result, trees = run.run(
@@ -82,7 +80,7 @@ def test_the_shipped_icds_come_back_from_their_tables(language, tmp_path):
     tables = {path.stem: path for path in (tmp_path / "tables").glob(f"*.{language}")}
     assert set(tables) == {name for name, messages in wanted.items() if messages}
     for name, path in tables.items():
-        got = back(path, None, tmp_path / f"back-{name}")
+        got = layouts_after_import(path, None, tmp_path / f"back-{name}")
         assert list(got) == list(wanted[name])
         assert {m: got[m] for m in got if got[m] != wanted[name][m]} == {}
 
@@ -131,7 +129,7 @@ def test_arrays_structs_constants_and_messages_without_fields_come_back(
     )
     (tmp_path / "rules.yaml").write_text(orders, encoding="utf-8")
     (node,) = load([tmp_path / "device.yaml"]).icd.nodes
-    assert back(
+    assert layouts_after_import(
         tmp_path / "tables" / f"device.{language}",
         tmp_path / "rules.yaml",
         tmp_path / "back",

@@ -1,5 +1,5 @@
-"""Rows where pages end and begin, drawn line by line as engines set them: nothing moves
-to the row beside it.
+"""Rows at page breaks, drawn line by line like engines place them, never move to the
+next row.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ STEP = 11  # points from line to line of a cell
 
 
 class Sheet:
-    """Text at places of pages; y grows downwards."""
+    """Text at positions on pages; y grows downwards."""
 
     def __init__(self, path: Path) -> None:
         self.canvas = Canvas(str(path), pagesize=(500, 400), invariant=1)
@@ -43,7 +43,7 @@ class Sheet:
         self.canvas.showPage()
 
     def message(self) -> None:
-        """The beginning of a message with one field, 16 bits wide."""
+        """Draw the start of a message with one field of 16 bits."""
         self.line(250, "Table 1: Pump State Telemetry Format", bold=True)
         self.line(270, "ID", "140", "Frame Length (bytes)", "4")
         self.line(
@@ -109,7 +109,7 @@ LIST = (40, 62, 84, 200, 400)
 
 
 def groups(path: Path) -> dict[str, str | None]:
-    """The groups of the messages by their names."""
+    """Return the groups of the messages by name."""
     _, trees = imported(path)
     return {
         message["name"]: message.get("group")
@@ -130,11 +130,11 @@ TITLES = ("Set", "Get", "Name", "Description", "Length (bytes)")
 
 
 def formats(sheet: Sheet, y: float) -> None:
-    """The formats of the messages of the list."""
-    for number, (one, two, name, _, _) in enumerate(MESSAGES, 2):
+    """Return the formats of the messages of the list."""
+    for number, (first_id, two, name, _, _) in enumerate(MESSAGES, 2):
         sheet.line(y, f"Table {number}: {name} Message Format", bold=True)
         sheet.line(
-            y + 16, "Set ID/Get ID", f"{one}/{two}", columns=(40, 110), bold=True
+            y + 16, "Set ID/Get ID", f"{first_id}/{two}", columns=(40, 110), bold=True
         )
         sheet.line(
             y + 16, "Parameters Length (bytes)", "1", columns=(200, 330), bold=True

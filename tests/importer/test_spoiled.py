@@ -1,5 +1,5 @@
-"""A figure or a heading that cannot be read, in each layout of `wild.py`: a finding
-says so, on its page.
+"""An unreadable number or heading, in each layout of `wild.py`, is a finding on its
+page.
 """
 
 from __future__ import annotations
@@ -53,10 +53,8 @@ def spoilt(page: Page, index: int) -> Page:
 
 
 def matters(word: Word, result: run.Result, page: Page, names: set[str]) -> bool:
-    """Whether a word stands in a table, or says which byte a line is of, and is a
-    figure or a heading.
-
-    Any name is right that the page prints.
+    """Return whether a word is a number or heading in a table, or the byte number of a
+    line. Any name that the page contains is correct.
     """
     boxes = [
         box
@@ -77,7 +75,7 @@ def matters(word: Word, result: run.Result, page: Page, names: set[str]) -> bool
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(
+def test_an_unreadable_cell_that_changes_the_icd_is_a_finding_on_its_page(
     layout, tmp_path, monkeypatch
 ):
     path = drawn(layout, tmp_path / "motor.pdf")
@@ -88,38 +86,38 @@ def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(
     )
     names = {
         part
-        for one in wanted["messages"]
-        for f in one["fields"]
-        for part in (one["name"], f["name"])
+        for message in wanted["messages"]
+        for f in message["fields"]
+        for part in (message["name"], f["name"])
     }
     with pdfplumber.open(path) as file:
         pages = [extract(page) for page in file.pages]
 
-    def imported(made: list[Page]) -> tuple[run.Result, dict]:
-        monkeypatch.setattr(pdf, "_pages", lambda path, wanted, jobs: iter(made))
+    def imported(pages: list[Page]) -> tuple[run.Result, dict]:
+        monkeypatch.setattr(pdf, "_pages", lambda path, wanted, jobs: iter(pages))
         result, trees = run.run(path, words, jobs=1)
         return result, next(iter(trees.values()), {})
 
-    whole, tree = imported(pages)
+    unspoiled, tree = imported(pages)
     assert differences(wanted, tree, tables=False) == []
-    before = {(t.code, t.message) for t in whole.import_findings}
+    before = {(t.code, t.message) for t in unspoiled.import_findings}
     tried, silent = 0, []
     for number, page in enumerate(pages):
         for index, word in enumerate(page.words):
-            if not matters(word, whole, page, names):
+            if not matters(word, unspoiled, page, names):
                 continue
             tried += 1
             result, tree = imported(
                 [*pages[:number], spoilt(page, index), *pages[number + 1 :]]
             )
-            said = [
+            reported = [
                 t
                 for t in result.import_findings
                 if (t.severity != "note" or t.code == "IMP032")
                 and t.spot.page == page.number
             ]
             if differences(wanted, tree, tables=False) and all(
-                (t.code, t.message) in before for t in said
+                (t.code, t.message) in before for t in reported
             ):
                 silent.append(word.text)
     assert tried > 5

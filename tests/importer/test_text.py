@@ -1,4 +1,4 @@
-"""Manuals as text with tab-separated tables, and the flaws that such texts have."""
+"""Manuals as text with tab-separated tables, and the typical defects of such texts."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ LISTED = """  - rule: frames
 
 
 def read(tmp_path, text: str, rules: str = ""):
-    """What an import gives by the rules of the pump and ``rules``."""
+    """Return the result of an import by the rules of the pump and ``rules``."""
     path = tmp_path / "pump.txt"
     path.write_text(text, encoding="utf-8")
     profile = PUMP.read_text(encoding="utf-8").replace("phrases:", f"{rules}phrases:")
@@ -104,7 +104,7 @@ def test_a_message_and_its_enumeration_are_read(tmp_path):
         ("text that begins like a caption", MESSAGE + "\nTable 9: Valve Telemetry Format and the like are not explained.\n"),
     ],
 )  # fmt: skip
-def test_flaws_of_the_text_are_mended(tmp_path, what, torn):
+def test_typical_defects_of_the_text_are_repaired(tmp_path, what, torn):
     assert torn != MESSAGE
     _, tree = read(tmp_path, torn + ENUM)
     assert len(tree["messages"]) == 1
@@ -114,11 +114,11 @@ def test_flaws_of_the_text_are_mended(tmp_path, what, torn):
     assert (tree["messages"][0]["id"], tree["messages"][0]["length"]) == (140, 4)
 
 
-def found(result, code: str) -> list[str]:
+def findings_of(result, code: str) -> list[str]:
     return [t.message for t in result.import_findings if t.code == code]
 
 
-def test_what_cannot_be_read_is_reported_and_not_invented(tmp_path):
+def test_unreadable_content_is_reported(tmp_path):
     text = (
         MESSAGE.replace("\t16\t8\t", "\tl6\t8\t")
         .replace("RAWVAL*0.1", "RAWVAL**2")
@@ -130,17 +130,17 @@ def test_what_cannot_be_read_is_reported_and_not_invented(tmp_path):
     assert "formula" not in tree["messages"][0]["fields"][0]
     assert (
         "field `Mode`: `bit` is `l6`, which is not a number"
-        in found(result, "IMP023")[0]
+        in findings_of(result, "IMP023")[0]
     )
-    assert "a formula is there and cannot be read" in found(result, "IMP040")[0]
-    assert "the type `WORD` is unknown" in found(result, "IMP026")[0]
-    assert "no field covers bit 16 to 31" in found(result, "IMP035")[0]
+    assert "a formula is there and cannot be read" in findings_of(result, "IMP040")[0]
+    assert "the type `WORD` is unknown" in findings_of(result, "IMP026")[0]
+    assert "no field covers bit 16 to 31" in findings_of(result, "IMP035")[0]
     assert result.failed
 
 
 def test_a_reference_to_a_table_that_is_not_there_is_reported(tmp_path):
     result, tree = read(tmp_path, MESSAGE)
-    assert "points to table 8, which is not there" in found(result, "IMP050")[0]
+    assert "points to table 8, which is not there" in findings_of(result, "IMP050")[0]
     assert tree["messages"][0]["fields"][1]["type"] == "uint"
 
 
@@ -149,11 +149,13 @@ def test_number_and_title_that_point_to_different_tables_are_reported(tmp_path):
     result, tree = read(
         tmp_path, MESSAGE.replace("Table 8:", "Table 9:") + ENUM + other
     )
-    assert "points to table 9 by number and to table 8" in found(result, "IMP051")[0]
+    assert (
+        "points to table 9 by number and to table 8" in findings_of(result, "IMP051")[0]
+    )
     assert tree["messages"][0]["fields"][1]["enum"] == "PumpMode"
 
 
-def test_words_that_contradict_their_formula_are_kept_and_reported(tmp_path):
+def test_a_text_that_contradicts_its_formula_stays_and_is_reported(tmp_path):
     text = (
         MESSAGE.replace(
             "Formatted value is obtained", "Raw parameter value is obtained"
@@ -163,7 +165,8 @@ def test_words_that_contradict_their_formula_are_kept_and_reported(tmp_path):
     result, tree = read(tmp_path, text)
     assert tree["messages"][0]["fields"][0]["formula_for"] == "raw"
     assert (
-        "`Pressure` is announced as giving the raw value" in found(result, "IMP041")[0]
+        "`Pressure` is announced as giving the raw value"
+        in findings_of(result, "IMP041")[0]
     )
 
 
@@ -175,7 +178,7 @@ RAW = MESSAGE.replace(
 )
 
 
-def test_words_that_contradict_every_formula_of_a_kind_are_kept_once(tmp_path):
+def test_a_text_that_contradicts_every_formula_of_a_kind_is_stored_once(tmp_path):
     _, tree = read(tmp_path, RAW + ENUM)
     assert tree["formula_for"] == {"telemetry": "raw"}
     assert [
@@ -204,17 +207,18 @@ def test_lists_and_details_that_disagree_are_reported(tmp_path):
     assert tree["messages"][0]["listed"] == {"length": 6}
     assert tree["messages"][0]["group"] == "General"
     assert (
-        "its length is `4`, the list (table 1) says `6`" in found(result, "IMP060")[0]
+        "its length is `4`, the list (table 1) says `6`"
+        in findings_of(result, "IMP060")[0]
     )
     assert tree["missing"][0]["id"] == 141
-    assert "`Tank State` is listed" in found(result, "IMP061")[0]
+    assert "`Tank State` is listed" in findings_of(result, "IMP061")[0]
 
 
 def test_a_table_without_a_rule_is_named(tmp_path):
     result, _ = read(
         tmp_path, "Table 3: Colours\n\nShade\tHue\nred\t1\n\n" + MESSAGE + ENUM
     )
-    assert found(result, "IMP100") == [
+    assert findings_of(result, "IMP100") == [
         "no rule applies to table 1 with the headings `Shade | Hue`"
     ]
 
@@ -240,7 +244,7 @@ def test_a_field_that_names_no_table_has_no_enumeration(tmp_path):
         " Possible values are in Table 8: PumpMode Enumeration Values", ""
     )
     result, tree = read(tmp_path, tables + ENUM)
-    assert "field `Mode`: its values are not given" in found(result, "IMP050")[0]
+    assert "field `Mode`: its values are not given" in findings_of(result, "IMP050")[0]
     assert tree["messages"][0]["fields"][1]["type"] == "uint"
 
 

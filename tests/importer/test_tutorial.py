@@ -1,4 +1,4 @@
-"""The tutorial does what it says."""
+"""Each step of the tutorial gives the result that it shows."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""The two pages from a data sheet to C that talks: what they tell one to type gives
-what they show.
+"""Each command of the two pages from a data sheet to running C gives the output that
+they show.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def blocks(name: str, language: str) -> list[str]:
 
 
 def steps(name: str) -> Iterator[tuple[str, str]]:
-    """Each command, and what it shows."""
+    """Return each command with the output that the page shows."""
     for block in blocks(name, "console"):
         for step in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
             command, _, shown = step.partition("\n")
@@ -39,7 +39,7 @@ def steps(name: str) -> Iterator[tuple[str, str]]:
 
 @pytest.fixture
 def folder(tmp_path) -> Path:
-    """What the first lines of the first page make of a clone."""
+    """Return a clone after the first lines of the first page."""
     (commands,) = blocks(PAGES[0], "sh")
     *_, make, copy, enter = commands.strip().split("\n")
     subprocess.run(
@@ -105,16 +105,16 @@ def test_every_command_gives_what_the_page_shows(name, folder, free_port):
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_what_a_page_prints_of_a_file_is_what_the_file_holds(name, folder):
+def test_excerpts_on_the_pages_equal_the_files(name, folder):
     for language in ("c", "yaml"):
         for block in blocks(name, language):
             files = [
                 path for path in FILES.rglob("*.*") if path.suffix in (".c", ".yaml")
             ]
-            held = any(
+            is_printed = any(
                 block.strip() in path.read_text(encoding="utf-8") for path in files
             )
-            assert held or "source: {page: 1}" in block, block
+            assert is_printed or "source: {page: 1}" in block, block
 
 
 def test_the_excerpt_of_the_icd_is_what_the_import_writes(folder):
@@ -133,13 +133,13 @@ def test_the_excerpt_of_the_icd_is_what_the_import_writes(folder):
     assert excerpt in (folder / "icd" / "sirocco.yaml").read_text(encoding="utf-8")
 
 
-def test_what_the_pages_need_comes_with_the_extra():
+def test_the_extra_installs_the_requirements_of_the_pages():
     import tomllib
 
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
         "project"
     ]["optional-dependencies"]
-    named = {re.split("[>=<]", one)[0] for one in extras["tutorial"]}
+    named = {re.split("[>=<]", requirement)[0] for requirement in extras["tutorial"]}
     imported = {"fpdf": "fpdf2", "reportlab": "reportlab"}
     for script in FILES.glob("*.py"):
         for module in re.findall(

@@ -1,4 +1,6 @@
-"""The manuals of the vendor whose ICDs are shipped, where they are at hand."""
+"""The manuals of the vendor give the shipped ICDs. Skipped where the manuals are not
+available.
+"""
 
 from __future__ import annotations
 
@@ -28,13 +30,14 @@ def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
         "cubeacp": [],
     }
     assert (
-        len([one for one in result.survey.found if one.table.label is not None]) == 216
+        len([table for table in result.survey.found if table.table.label is not None])
+        == 216
     )
-    assert not [one for one in result.survey.found if one.what == UNKNOWN]
+    assert not [table for table in result.survey.found if table.what == UNKNOWN]
     assert (
         sum(
-            one.what == BACKGROUND and one.table.label is not None
-            for one in result.survey.found
+            table.what == BACKGROUND and table.table.label is not None
+            for table in result.survey.found
         )
         == 8
     )
@@ -43,7 +46,7 @@ def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
         for import_finding in result.import_findings
         if import_finding.severity == "error"
     ] == []
-    assert result.interpretation is not None  # by rules, and by nothing else
+    assert result.interpretation is not None  # the rules alone read the document
 
 
 @pytest.mark.parametrize("form", ["pdf", "txt"])
@@ -61,7 +64,7 @@ def test_tables_as_files_give_the_same_vendor_layer_byte_for_byte(
 ):
     result, trees = imported(vendor / f"cubemag-cubewheel-addendum.{form}", "addendum")
     table_files.write(result.tables, tmp_path / "tables", result.document)
-    _, again = imported(tmp_path / "tables", "addendum")
-    assert {name: emit.canonical_yaml(tree) for name, tree in again.items()} == {
+    _, second = imported(tmp_path / "tables", "addendum")
+    assert {name: emit.canonical_yaml(tree) for name, tree in second.items()} == {
         name: emit.canonical_yaml(tree) for name, tree in trees.items()
     }

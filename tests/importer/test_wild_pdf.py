@@ -1,6 +1,4 @@
-"""Documents as vendors of sensors and modems set them: the rules of each give its ICD
-back.
-"""
+"""Documents in the style of sensor and modem vendors give their ICD by short rules."""
 
 from __future__ import annotations
 
@@ -17,7 +15,7 @@ from tests.importer.manuals.wild import MESSAGES, PROSE, UNSEEN, WILD, rule
 
 
 @pytest.mark.parametrize("layout", [*WILD, *UNSEEN, *TYPESET, *office.OFFICE])
-def test_a_document_in_the_wild_comes_back(layout, tmp_path):
+def test_a_vendor_style_document_gives_its_icd(layout, tmp_path):
     wild = (WILD | UNSEEN | TYPESET | office.OFFICE)[layout]
     if browser.program() is None and layout in ("prose", "ranges", "frames", "sheet"):
         pytest.skip("Chromium is not at hand")
@@ -42,7 +40,9 @@ def test_a_document_in_the_wild_comes_back(layout, tmp_path):
 @pytest.mark.parametrize(
     "caption", ["{name} (0x{id:02X})", "Table {number}: {name} (0x{id:02X})"]
 )
-def test_prose_between_a_caption_and_its_table_parts_them_not(tmp_path, caption):
+def test_prose_between_a_caption_and_its_table_does_not_separate_them(
+    tmp_path, caption
+):
     style = getSampleStyleSheet()
     body = style["BodyText"]
     story: list = [Paragraph("Telemetry", style["Heading1"]), Paragraph(PROSE, body)]

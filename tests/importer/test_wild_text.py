@@ -1,12 +1,12 @@
-"""What documents print besides plain numbers: factors, signs of units, wide ids,
-chapters, frames in lines.
+"""The importer reads factors, signs of units, wide ids, chapter numbers and frames in
+lines.
 """
 
 from __future__ import annotations
 
 import pytest
 
-from tests.importer.rules.test_rules import fields, found, read
+from tests.importer.rules.test_rules import fields, findings_of, read
 
 HEADING = "5 Telemetry\n\n5.1 State (0x21)\n\n"
 NODE = "profile: 1\nnode: {byte_order: little, bit_order: lsb0}\n"
@@ -58,7 +58,7 @@ def test_a_factor_that_cannot_be_read_is_an_error_and_not_guessed(tmp_path, cell
         tmp_path, HEADING + table, FACTORS.replace("COLUMN", "Scale: formula"), NODE
     )
     assert "formula" not in tree["messages"][0]["fields"][0]
-    assert found(result, "IMP040") and result.failed
+    assert findings_of(result, "IMP040") and result.failed
 
 
 def test_a_unit_that_is_not_built_in_is_declared_with_its_sign_in_letters(tmp_path):
@@ -83,7 +83,7 @@ def test_an_id_that_the_node_has_no_room_for_is_one_line_of_the_report(tmp_path)
     text = f"5 Telemetry\n\n5.1 Fast (0x107)\n\n{BYTES}\n5.2 Slow (0x21)\n\n{BYTES}"
     result, tree = read(tmp_path, text, RULE, NODE)
     assert [m["name"] for m in tree["messages"]] == ["Slow"]
-    assert "its id 263 (0x107) is above 255" in found(result, "IMP037")[0]
+    assert "its id 263 (0x107) is above 255" in findings_of(result, "IMP037")[0]
     _, tree = read(tmp_path, text, RULE, NODE.replace("lsb0}", "lsb0, id_bits: 16}"))
     assert [m["id"] for m in tree["messages"]] == [263, 33] and tree["node"][
         "id_bits"
@@ -103,7 +103,7 @@ def test_bytes_or_bits_are_stated_and_never_inferred(tmp_path):
         RULE.replace("Offset: byte, Size: bytes", "Offset: bit, Size: bits"),
         NODE,
     )
-    (message,) = found(result, "IMP105")
+    (message,) = findings_of(result, "IMP105")
     assert (
         "its type `U8` has 8 bits, its size is 1; the same in 2 more rows: `Speed`, `Time`"
         in message
@@ -114,7 +114,7 @@ def test_a_heading_that_gives_an_id_without_a_table_is_reported(tmp_path):
     text = f"{HEADING}{BYTES}\n6 Telecommands\n\n6.1 Halt (0x12)\n\nStops it.\n\n6.2 Notes\n"
     result, tree = read(tmp_path, text, RULE, NODE)
     assert [m["name"] for m in tree["messages"]] == ["State"]
-    assert found(result, "IMP039") == [
+    assert findings_of(result, "IMP039") == [
         "`6.1 Halt (0x12)` gives the id of a message, and no table below it was read as one"
     ]
     inner, _ = read(
@@ -123,7 +123,7 @@ def test_a_heading_that_gives_an_id_without_a_table_is_reported(tmp_path):
         RULE,
         NODE,
     )
-    assert not found(inner, "IMP039")
+    assert not findings_of(inner, "IMP039")
 
 
 CHAPTERS = """5 Telemetry
@@ -157,9 +157,8 @@ def test_tables_numbered_by_chapter_are_found_by_their_numbers(tmp_path, a, b):
     _, tree = read(tmp_path, CHAPTERS.format(a=a, b=b), CHAPTER_RULES, NODE)
     [message] = tree["messages"]
     assert message["fields"][0]["enum"] == "Modes"
-    assert message.get("source", {}).get("table") == (
-        None if a else 1
-    )  # an ICD has whole numbers
+    # Ids of an ICD are integers.
+    assert message.get("source", {}).get("table") == (None if a else 1)
 
 
 LINES = "Byte0~Byte1: voltage, 10 mV\nByte2~Byte3: current, 1 mA\nByte4: state\n"
@@ -189,10 +188,10 @@ def test_a_byte_that_is_missing_between_lines_is_reported(tmp_path, wrong):
     result, _ = read(
         tmp_path, HEADING + LINES.replace("Byte2~Byte3", wrong), LINE_RULES, NODE
     )
-    assert found(result, "IMP035") or found(result, "IMP105")
+    assert findings_of(result, "IMP035") or findings_of(result, "IMP105")
 
 
-def test_a_cell_below_a_heading_that_melt_does_not_take_is_an_error(tmp_path):
+def test_a_cell_below_a_heading_that_melt_does_not_use_is_an_error(tmp_path):
     rules = r"""rules:
   - tables: {head: Byte0 | Byte1}
     message: {heading: '^[\d.]+ {message} \({id}\)$', kind: telemetry}
@@ -203,4 +202,4 @@ def test_a_cell_below_a_heading_that_melt_does_not_take_is_an_error(tmp_path):
     _, tree = read(tmp_path, f"{HEADING}Byte0\tByte1\tByte2\na\tb\tc\n", rules, NODE)
     assert fields(tree) == [(0, 8, "a"), (8, 8, "b"), (16, 8, "c")]
     result, _ = read(tmp_path, f"{HEADING}Byte0\tByte1\tB?yte2\na\tb\tc\n", rules, NODE)
-    assert "gives the column `B?yte2` no role: `c`" in found(result, "IMP102")[0]
+    assert "gives the column `B?yte2` no role: `c`" in findings_of(result, "IMP102")[0]

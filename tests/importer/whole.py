@@ -1,8 +1,8 @@
-"""The whole manual of the shipped ICDs, drawn in each layout and imported again: how
-much differs.
+"""Draw the complete manual of the shipped ICDs in each layout, import it and count the
+differences.
 
-python -m tests.importer.whole [LAYOUT ...]     # minutes; without names the eight
-layouts of `further.py`
+Run ``python -m tests.importer.whole [LAYOUT ...]``. It takes minutes; without names it
+tests the eight layouts of `further.py`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tests.importer.test_layouts import TITLES
 
 
 def main() -> int:
-    """One line for each layout, and its differences below; fails where there is one."""
+    """Print one line per layout with its differences below. Returns 1 if there are any."""
     failed = False
     for name in sys.argv[1:] or FURTHER:
         manual = content.manual(
@@ -33,21 +33,21 @@ def main() -> int:
             start = time.process_time()
             result, got = imported(path)
         took = time.process_time() - start
-        found = [
+        texts = [
             line
             for node, tree in manual.trees.items()
             for line in differences(tree, got.get(node, {}))
         ]
         print(
-            f"{name}: {len(found)} differences, {result.document.pages} pages, {took:.0f} s, {dict(result.sureness())}"
+            f"{name}: {len(texts)} differences, {result.document.pages} pages, {took:.0f} s, {dict(result.sureness())}"
         )
         print(
-            *(f"    {line}" for line in found),
+            *(f"    {line}" for line in texts),
             sep="\n",
-            end="\n" * bool(found),
+            end="\n" * bool(texts),
             flush=True,
         )
-        failed = failed or bool(found)
+        failed = failed or bool(texts)
     return failed
 
 

@@ -1,3 +1,1 @@
-"""Manuals drawn from ICDs, in layouts that differ in everything that a page can differ
-in.
-"""
+"""Manuals drawn from ICDs, in layouts that differ in every property of a page."""

@@ -1,4 +1,4 @@
-"""Manuals set by a browser: HTML printed to PDF."""
+"""Manuals made by a browser: HTML printed to PDF."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from tests.importer.manuals.content import (
 
 
 @dataclass(frozen=True)
-class Look:
-    """Everything that a layout decides."""
+class BrowserLook:
+    """The properties of a layout."""
 
     page: str = "A4"
     font: str = "serif"
@@ -45,25 +45,25 @@ _BORDERS = {
 
 
 def program() -> str | None:
-    """The browser, if there is one."""
+    """Return the path of the browser, or ``None``."""
     return next(
         (
-            found
+            path
             for name in ("chromium", "chromium-browser", "google-chrome")
-            if (found := shutil.which(name))
+            if (path := shutil.which(name))
         ),
         None,
     )
 
 
-def draw(manual: Manual, path: Path, look: Look) -> None:
-    """Writes the PDF."""
+def draw(manual: Manual, path: Path, look: BrowserLook) -> None:
+    """Write the PDF."""
     with tempfile.TemporaryDirectory() as folder:
         print_page(html(manual, look), path, Path(folder))
 
 
 def print_page(text: str, path: Path, folder: Path) -> None:
-    """Prints a page of HTML; ``folder`` is for what the browser needs meanwhile."""
+    """Print a page of HTML. ``folder`` is for temporary files of the browser."""
     browser = program()
     assert browser, "the tests need Chromium"
     page = folder / "page.html"
@@ -73,8 +73,8 @@ def print_page(text: str, path: Path, folder: Path) -> None:
     subprocess.run(command, check=True, capture_output=True, timeout=120)
 
 
-def html(manual: Manual, look: Look) -> str:
-    """The page that is printed."""
+def html(manual: Manual, look: BrowserLook) -> str:
+    """Return the page that is printed."""
     side = "justify" if look.justify else "left"
     under = ("1mm", "6mm", "before") if look.caption_below else ("5mm", "1mm", "after")
     style = f"""
@@ -96,7 +96,7 @@ def html(manual: Manual, look: Look) -> str:
     )
 
 
-def _part(part: object, look: Look) -> str:
+def _part(part: object, look: BrowserLook) -> str:
     if isinstance(part, Prose):
         tag = {"heading": "h2", "code": "pre"}.get(part.style, "p")
         return f"<{tag}>{escape(part.text)}</{tag}>"
@@ -108,15 +108,15 @@ def _part(part: object, look: Look) -> str:
     return table + caption if look.caption_below else caption + table
 
 
-def _title(text: str, look: Look) -> str:
-    made = escape(text)
-    return made.replace(" ", "<br>", 1) if look.two_lines else made
+def _title(text: str, look: BrowserLook) -> str:
+    html = escape(text)
+    return html.replace(" ", "<br>", 1) if look.two_lines else html
 
 
-def _message(part: MessageTable, look: Look) -> str:
-    (first, one), (second, two) = part.pairs
+def _message(part: MessageTable, look: BrowserLook) -> str:
+    (first, first_value), (second, two) = part.pairs
     head = (
-        f"<tr><th>{first}</th><td>{one}</td><th colspan=2>{second}</th><td colspan=2>{two}</td></tr>"
+        f"<tr><th>{first}</th><td>{first_value}</td><th colspan=2>{second}</th><td colspan=2>{two}</td></tr>"
         f"<tr><th>Description</th><td colspan=5>{escape(part.description)}</td></tr>"
     )
     if not part.rows:
@@ -129,16 +129,15 @@ def _message(part: MessageTable, look: Look) -> str:
         for row in part.rows
     )
     inner = f"<thead><tr>{titles}</tr></thead><tbody>{rows}</tbody>"
-    if (
-        look.repeat
-    ):  # only the headings repeat, so what stands above them is a table of its own
+    # Only the headings repeat, so the rows above them are a separate table.
+    if look.repeat:
         above = f'<table style="margin: 0">{_columns((12, 10, 9, 24, 11, 34))}<tbody>{head}</tbody></table>'
         return f"{above}<table>{_columns((12, 10, 9, 24, 11, 34))}{inner}</table>"
     body = f"<tbody>{head}<tr>{titles}</tr>{rows}</tbody>"
     return f"<table>{_columns((12, 10, 9, 24, 11, 34))}{body}</table>"
 
 
-def _plain(part: PlainTable, look: Look) -> str:
+def _plain(part: PlainTable, look: BrowserLook) -> str:
     count = len(part.titles)
     widths = {2: (40, 60), 3: (25, 35, 40), 4: (10, 30, 45, 15), 5: (9, 9, 27, 40, 15)}[
         count

@@ -1,5 +1,5 @@
-"""An ICD as the parts of a manual: captions, rows and prose, before anybody decides how
-they look.
+"""The content of a manual for an ICD: captions, rows and prose, independent of the
+layout.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ Part = MessageTable | PlainTable | Prose
 
 @dataclass
 class Manual:
-    """What is printed, and the ICDs that an import must give."""
+    """The printed content, and the ICDs that an import must give."""
 
     title: str
     parts: list[Part] = field(default_factory=list)
@@ -71,44 +71,48 @@ class Manual:
 
 
 def shipped(*names: str, most: int | None = None, skip: int = 0) -> dict[str, dict]:
-    """The vendor layer of shipped nodes; ``most`` messages of each, after ``skip``."""
-    made = {}
+    """Return the vendor layer of shipped nodes with up to ``most`` messages each, after
+    ``skip``.
+    """
+    trees = {}
     for name in names:
         text = Path(ROOT, "icd", f"{name}.yaml").read_text(encoding="utf-8")
         tree = yaml.load(text, yaml.CSafeLoader)
         tree["messages"] = tree["messages"][skip : skip + most if most else None]
-        made[name] = tree
-    known = {e["name"] for tree in made.values() for e in tree.get("enums", [])}
-    for tree in made.values():
+        trees[name] = tree
+    enum_names = {e["name"] for tree in trees.values() for e in tree.get("enums", [])}
+    for tree in trees.values():
         announced = tree.pop("formula_for", {})
         for message in tree["messages"]:
-            for one in message.get("fields", []):
-                if "formula" in one and message["kind"] in announced:
-                    one.setdefault("formula_for", announced[message["kind"]])
-                if one.get("enum") not in (None, *known):
-                    one["type"] = "uint"
-                    del one["enum"]
-    return made
+            for entry in message.get("fields", []):
+                if "formula" in entry and message["kind"] in announced:
+                    entry.setdefault("formula_for", announced[message["kind"]])
+                if entry.get("enum") not in (None, *enum_names):
+                    entry["type"] = "uint"
+                    del entry["enum"]
+    return trees
 
 
 def manual(
     trees: dict[str, dict], titles: dict[str, str], noise: bool = True
 ) -> Manual:
-    """The manual of these nodes. ``titles``: what it calls each node."""
-    made = Manual("Reference Manual", trees=trees)
+    """Return the manual of these nodes. ``titles`` are the names of the nodes in it."""
+    result = Manual("Reference Manual", trees=trees)
     number = 1
     if noise:
-        made.parts += _introduction()
+        result.parts += _introduction()
     for section, (name, tree) in enumerate(trees.items(), 3):
-        number = _node(made, tree, titles[name], section, number + 1, noise)
-    return made
+        number = _node(result, tree, titles[name], section, number + 1, noise)
+    return result
 
 
 def _node(
-    made: Manual, tree: dict, title: str, section: int, number: int, noise: bool
+    result: Manual, tree: dict, title: str, section: int, number: int, noise: bool
 ) -> int:
     enums = {enum["name"]: enum for enum in tree.get("enums", [])}
-    everywhere = {e["name"]: e for t in made.trees.values() for e in t.get("enums", [])}
+    everywhere = {
+        e["name"]: e for t in result.trees.values() for e in t.get("enums", [])
+    }
     tables: dict[str, int] = {}
     kinds = [k for k in _LISTS if any(m["kind"] == k for m in tree["messages"])]
     plan: list[tuple[str, object]] = []
@@ -117,10 +121,10 @@ def _node(
         plan.append(("list", kind))
         for message in (m for m in tree["messages"] if m["kind"] == kind):
             plan.append(("message", message))
-            for one in message.get("fields", []):
-                if one.get("enum") in enums and one["enum"] not in printed:
-                    printed.add(one["enum"])
-                    plan.append(("enum", enums[one["enum"]]))
+            for entry in message.get("fields", []):
+                if entry.get("enum") in enums and entry["enum"] not in printed:
+                    printed.add(entry["enum"])
+                    plan.append(("enum", enums[entry["enum"]]))
     plan += [("enum", enum) for name, enum in enums.items() if name not in printed]
     for what, item in plan:
         tables[f"{what} {item if isinstance(item, str) else item['name']}"] = number
@@ -129,18 +133,18 @@ def _node(
             item.pop("also", None)
         number += 1
     by_name = {n: (e.get("source") or {}).get("table") for n, e in everywhere.items()}
-    made.parts.append(Prose(f"{section}. {title} messages", "heading"))
+    result.parts.append(Prose(f"{section}. {title} messages", "heading"))
     for position, (what, item) in enumerate(plan):
         if what == "list":
-            made.parts.append(_list(tree, item, title, tables))
+            result.parts.append(_list(tree, item, title, tables))
         elif what == "message":
-            made.parts.append(
+            result.parts.append(
                 _message(item, tables[f"message {item['name']}"], by_name)
             )
         else:
-            made.parts.append(_enum(item, tables[f"enum {item['name']}"]))
+            result.parts.append(_enum(item, tables[f"enum {item['name']}"]))
         if noise and position % 5 == 3:
-            made.parts += _chatter(
+            result.parts += _chatter(
                 position,
                 tables.get(
                     f"{what} {item if isinstance(item, str) else item['name']}", 1
@@ -151,7 +155,7 @@ def _node(
     if not tree["enums"]:
         del tree["enums"]
     if tree.get("loggable"):
-        made.parts.append(_log(tree["loggable"], number))
+        result.parts.append(_log(tree["loggable"], number))
         number += 1
     return number
 

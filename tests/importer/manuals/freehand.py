@@ -22,8 +22,8 @@ _FONTS = Path(os.path.dirname(reportlab.__file__), "fonts")
 
 
 @dataclass(frozen=True)
-class Look:
-    """Everything that a layout decides."""
+class FreehandLook:
+    """The properties of a layout."""
 
     page: str | tuple[float, float] = "A4"
     font: str = "Times"  # or "Vera", embedded
@@ -40,13 +40,13 @@ class Look:
     two_lines: bool = False
     padding: float = 1.0
     line: float = 1.3
-    apart: bool = False  # head and fields as two tables, one below the other
+    has_two_tables: bool = False  # head and fields as two tables, one below the other
     widths: tuple[int, ...] = (14, 9, 9, 26, 11, 40)
     repeat: bool = True
 
 
-def draw(manual: Manual, path: Path, look: Look) -> None:
-    """Writes the PDF."""
+def draw(manual: Manual, path: Path, look: FreehandLook) -> None:
+    """Write the PDF."""
     artist = _Artist(manual, look)
     for part in manual.parts:
         artist.part(part)
@@ -68,7 +68,7 @@ class _Page(FPDF):
 
 
 class _Artist:
-    def __init__(self, manual: Manual, look: Look) -> None:
+    def __init__(self, manual: Manual, look: FreehandLook) -> None:
         self.look = look
         self.pdf = pdf = _Page(format=look.page)
         pdf.set_title(manual.title)
@@ -169,13 +169,13 @@ class _Artist:
 
     def message(self, part: MessageTable) -> None:
         self.font()
-        (first, one), (second, two) = part.pairs
+        (first, first_value), (second, two) = part.pairs
         strong = FontFace(emphasis="BOLD")
-        if self.look.apart:
+        if self.look.has_two_tables:
             with self.table((20, 12, 34, 34), False) as table:
                 row = table.row()
                 row.cell(first, style=strong)
-                row.cell(one)
+                row.cell(first_value)
                 row.cell(second, style=strong)
                 row.cell(two)
                 row = table.row()
@@ -188,7 +188,7 @@ class _Artist:
         with self.table(self.look.widths, False) as table:
             row = table.row()
             row.cell(first, style=strong)
-            row.cell(one)
+            row.cell(first_value)
             row.cell(second, colspan=2, style=strong)
             row.cell(two, colspan=2)
             row = table.row()

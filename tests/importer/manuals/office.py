@@ -1,5 +1,5 @@
-"""A layout set by an office suite: a document with heading styles, ruled tables whose
-headings repeat, ids in the headings.
+"""A layout made by an office suite: heading styles, ruled tables with repeated
+headings, ids in the headings.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ HEADS = ["Byte Offset", "Bytes", "Parameter", "Type", "Unit", "Scale"]
 
 
 def program() -> str | None:
-    """LibreOffice, if it is there."""
+    """Return the path of LibreOffice, or ``None``."""
     return shutil.which("soffice") or shutil.which("libreoffice")
 
 
 def draw(path: Path) -> None:
-    """Writes a document of the office suite, and has it made a PDF."""
+    """Write a document and let the office suite convert it to PDF."""
     suite = program()
     assert suite, "the layout needs LibreOffice"
     with tempfile.TemporaryDirectory() as folder:
@@ -87,14 +87,14 @@ def _paragraph(text: str) -> str:
 def _table(message: dict) -> str:
     rows = [
         [
-            str(one["at"] // 8),
-            str(one["bits"] // 8),
-            one["name"],
-            size(one),
-            unit(one),
-            one.get("formula", "raw*1").removeprefix("raw*"),
+            str(field["at"] // 8),
+            str(field["bits"] // 8),
+            field["name"],
+            size(field),
+            unit(field),
+            field.get("formula", "raw*1").removeprefix("raw*"),
         ]
-        for one in message["fields"]
+        for field in message["fields"]
     ]
     head = f"<table:table-header-rows>{_row(HEADS)}</table:table-header-rows>"
     return (
@@ -104,11 +104,11 @@ def _table(message: dict) -> str:
 
 
 def _row(cells: list[str]) -> str:
-    made = "".join(
+    row_xml = "".join(
         f'<table:table-cell table:style-name="Cell" office:value-type="string">{_paragraph(cell)}</table:table-cell>'
         for cell in cells
     )
-    return f"<table:table-row>{made}</table:table-row>"
+    return f"<table:table-row>{row_xml}</table:table-row>"
 
 
 OFFICE = {

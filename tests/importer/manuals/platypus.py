@@ -39,8 +39,8 @@ _ALIGN = {
 
 
 @dataclass(frozen=True)
-class Look:
-    """Everything that a layout decides."""
+class PlatypusLook:
+    """The properties of a layout."""
 
     page: tuple[float, float] = A4
     margin: float = 60
@@ -67,8 +67,8 @@ class Look:
     ligatures: bool = False
 
 
-def draw(manual: Manual, path: Path, look: Look) -> None:
-    """Writes the PDF."""
+def draw(manual: Manual, path: Path, look: PlatypusLook) -> None:
+    """Write the PDF."""
     if look.font == "Vera":
         for name in ("Vera", "VeraBd", "VeraIt"):
             pdfmetrics.registerFont(TTFont(name, f"{name}.ttf"))
@@ -96,7 +96,7 @@ def draw(manual: Manual, path: Path, look: Look) -> None:
 
 
 class _Artist:
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: PlatypusLook) -> None:
         self.look = look
         self.width = look.page[0] - 2 * look.margin
         base = {
@@ -188,15 +188,15 @@ class _Artist:
         ]
 
     def titles(self, texts: list[str], figures: set[int]) -> list:
-        made = []
+        flowables = []
         for index, text in enumerate(texts):
             words = self.markup(text)
             if self.look.two_lines and " " in text:
                 words = words.replace(" ", "<br/>", 1)
-            made.append(
+            flowables.append(
                 Paragraph(words, self.figure_title if index in figures else self.title)
             )
-        return made
+        return flowables
 
     def message(self, part: MessageTable) -> list:
         look = self.look
@@ -213,8 +213,8 @@ class _Artist:
                 )
                 style.append(("SPAN", (1, len(rows) - 1), (-1, len(rows) - 1)))
         else:
-            (first, one), (second, two) = part.pairs
-            rows.append([Paragraph(first, self.title), Paragraph(one, self.cell), Paragraph(second, self.title), "",
+            (first, first_value), (second, two) = part.pairs
+            rows.append([Paragraph(first, self.title), Paragraph(first_value, self.cell), Paragraph(second, self.title), "",
                          Paragraph(two, self.cell), ""])  # fmt: skip
             style += [("SPAN", (2, 0), (3, 0)), ("SPAN", (4, 0), (5, 0))]
         rows.append(
@@ -287,7 +287,7 @@ class _Artist:
 
     def rules(self, rows: list, head: int | None, body_from: int = 0) -> list[tuple]:
         look = self.look
-        made: list[tuple] = [
+        style: list[tuple] = [
             ("VALIGN", (0, 0), (-1, -1), "MIDDLE" if look.middle else "TOP"),
             *[
                 (f"{side}PADDING", (0, 0), (-1, -1), look.padding)
@@ -295,23 +295,23 @@ class _Artist:
             ],
         ]
         if look.rules == "grid":
-            made.append(("GRID", (0, 0), (-1, -1), 0.5, colors.black))
+            style.append(("GRID", (0, 0), (-1, -1), 0.5, colors.black))
         elif look.rules == "horizontal":
-            made.append(("LINEABOVE", (0, 0), (-1, 0), 1, colors.black))
-            made.append(("LINEBELOW", (0, 0), (-1, -1), 0.4, colors.black))
+            style.append(("LINEABOVE", (0, 0), (-1, 0), 1, colors.black))
+            style.append(("LINEBELOW", (0, 0), (-1, -1), 0.4, colors.black))
         elif look.rules == "frame":
-            made.append(("BOX", (0, 0), (-1, -1), 0.8, colors.black))
-            made.append(("LINEBEFORE", (1, 0), (-1, -1), 0.4, colors.black))
+            style.append(("BOX", (0, 0), (-1, -1), 0.8, colors.black))
+            style.append(("LINEBEFORE", (1, 0), (-1, -1), 0.4, colors.black))
             if head is not None:
-                made.append(("LINEBELOW", (0, head), (-1, head), 0.8, colors.black))
-                made.append(("LINEABOVE", (0, head), (-1, head), 0.8, colors.black))
+                style.append(("LINEBELOW", (0, head), (-1, head), 0.8, colors.black))
+                style.append(("LINEABOVE", (0, head), (-1, head), 0.8, colors.black))
         if look.head_fill and head is not None:
-            made.append(
+            style.append(
                 ("BACKGROUND", (0, head), (-1, head), colors.HexColor("#d9d9d9"))
             )
         if look.stripes:
-            made += [
+            style += [
                 ("BACKGROUND", (0, i), (-1, i), colors.HexColor("#f0f4ff"))
                 for i in range((head or 0) + 2, len(rows), 2)
             ]
-        return made
+        return style

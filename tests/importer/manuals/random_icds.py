@@ -1,5 +1,5 @@
-"""Random ICDs such as a manual prints: names of several words, gaps, long tables, every
-type and kind of formula.
+"""Random ICDs like those in manuals: long names, gaps, long tables, every type and kind
+of formula.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _FORMULAS = (
 
 
 @st.composite
-def name(draw, taken: set[str], lead: str = "") -> str:
-    """A name that nothing else in its scope has. It begins and ends with a word."""
+def name(draw, used: set[str], lead: str = "") -> str:
+    """Draw a name that is unique in its scope. It starts and ends with a word."""
     middle = draw(st.lists(st.sampled_from(_WORDS), min_size=0, max_size=4))
     text = " ".join(
         [
@@ -33,18 +33,18 @@ def name(draw, taken: set[str], lead: str = "") -> str:
             draw(st.sampled_from(("Value", "State", "Gain", "Level"))),
         ]
     )
-    while text in taken:
-        text += f" {len(taken)}"
-    taken.add(text)
+    while text in used:
+        text += f" {len(used)}"
+    used.add(text)
     return text
 
 
 @st.composite
 def trees(draw) -> dict:
-    """An ICD of one node."""
+    """Draw an ICD of one node."""
     enums = []
     for number in range(draw(st.integers(1, 3))):
-        taken: set[str] = set()
+        used: set[str] = set()
         values = draw(
             st.lists(st.integers(0, 255), min_size=1, max_size=30, unique=True)
         )
@@ -52,14 +52,14 @@ def trees(draw) -> dict:
             {
                 "name": f"Choice{number}Type",
                 "members": [
-                    {"value": v, "name": draw(name(taken))} for v in sorted(values)
+                    {"value": v, "name": draw(name(used))} for v in sorted(values)
                 ],
             }
         )
-    messages, taken = [], set()
+    messages, used = [], set()
     for number in range(draw(st.integers(2, 8))):
         kind = draw(st.sampled_from(("telecommand", "telemetry", "configuration")))
-        message: dict = {"name": draw(name(taken, f"M{number}")), "kind": kind}
+        message: dict = {"name": draw(name(used, f"M{number}")), "kind": kind}
         if kind == "configuration":
             message |= {"set_id": number + 1, "get_id": number + 201}
         else:
@@ -84,12 +84,12 @@ def trees(draw) -> dict:
 
 @st.composite
 def _fields(draw, enums: list[dict]) -> list[dict]:
-    fields, taken, at = [], set(), 0
+    fields, used, at = [], set(), 0
     for _ in range(draw(st.sampled_from((0, 1, 2, 3, 5, 8, 60)))):
         at += draw(st.sampled_from((0, 0, 0, 0, 3, 8)))
-        one = draw(_field(enums))
+        drawn = draw(_field(enums))
         fields.append(
-            {"at": at, "bits": one.pop("bits"), "name": draw(name(taken)), **one}
+            {"at": at, "bits": drawn.pop("bits"), "name": draw(name(used)), **drawn}
         )
         at += fields[-1]["bits"]
     return fields
@@ -108,16 +108,16 @@ def _field(draw, enums: list[dict]) -> dict:
         }
     if kind == "bytes":
         return {"bits": 8 * draw(st.integers(1, 20)), "type": kind}
-    made: dict = {
+    drawn: dict = {
         "bits": draw(st.sampled_from((32, 64) if kind == "float" else (8, 12, 16, 32))),
         "type": kind,
     }
     if draw(st.booleans()):
-        made["unit"] = draw(st.sampled_from(_UNITS))
+        drawn["unit"] = draw(st.sampled_from(_UNITS))
     if kind != "float" and draw(st.booleans()):
-        made["formula"] = draw(st.sampled_from(_FORMULAS))
-        if "=" not in made["formula"] and draw(st.integers(0, 3)) == 0:
-            made["formula_for"] = "raw"
+        drawn["formula"] = draw(st.sampled_from(_FORMULAS))
+        if "=" not in drawn["formula"] and draw(st.integers(0, 3)) == 0:
+            drawn["formula_for"] = "raw"
     elif kind == "uint" and draw(st.integers(0, 3)) == 0:
-        made["const"] = draw(st.integers(0, 255))
-    return made
+        drawn["const"] = draw(st.integers(0, 255))
+    return drawn

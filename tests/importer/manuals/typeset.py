@@ -1,5 +1,5 @@
-"""Layouts that were drawn when the importer was done with the others: two by Typst, one
-by a browser.
+"""Layouts that were added after the importer supported the first ones: two by Typst,
+one by a browser.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tests.importer.manuals.wild import (
 
 
 def typst(path: Path, text: str) -> None:
-    """Sets a text in Typst's markup."""
+    """Typeset a text in Typst's markup."""
     import typst
 
     with tempfile.TemporaryDirectory() as folder:
@@ -34,28 +34,28 @@ def _cells(rows: list[list[str]]) -> str:
 
 
 def _rows(message: dict) -> list[list[str]]:
-    made = []
-    for one in message["fields"]:
-        kind = {"uint": "uint", "int": "int"}[one["type"]] + str(one["bits"])
-        factor = one.get("formula", "raw*1").removeprefix("raw*")
-        made.append(
+    html = []
+    for field in message["fields"]:
+        kind = {"uint": "uint", "int": "int"}[field["type"]] + str(field["bits"])
+        factor = field.get("formula", "raw*1").removeprefix("raw*")
+        html.append(
             [
-                str(one["at"] // 8),
-                str(one["bits"] // 8),
-                one["name"],
+                str(field["at"] // 8),
+                str(field["bits"] // 8),
+                field["name"],
                 kind,
-                unit(one),
+                unit(field),
                 factor,
             ]
         )
-    return made
+    return html
 
 
 HEADS = ["Offset (bytes)", "Size (bytes)", "Signal", "Type", "Unit", "Scale"]
 
 
 def article(path: Path) -> None:
-    """Like an article: numbered sections, three rules a table, captions below, ids in
+    """Draw an article: numbered sections, three rules per table, captions below, ids in
     the prose.
     """
     text = '#set page("a4", numbering: "1")\n#set text(size: 10pt)\n#set heading(numbering: "1.1")\n#set par(justify: true)\n'
@@ -70,7 +70,7 @@ def article(path: Path) -> None:
 
 
 def two_columns(path: Path) -> None:
-    """Two columns of text on a page, ruled tables, captions with the id above them."""
+    """Draw two columns of text per page, ruled tables, captions with the id above them."""
     text = '#set page("us-letter", columns: 2, margin: 1.4cm)\n#set text(size: 8pt)\n#show figure.caption: strong\n'
     text += (
         "#set figure.caption(position: top)\n#set table(stroke: 0.5pt, inset: 3pt)\n"
@@ -86,8 +86,8 @@ def two_columns(path: Path) -> None:
 
 
 def sheet(path: Path) -> None:
-    """A data sheet of registers: access in the heading, reset values, bits counted
-    down, reserved ones printed.
+    """Draw a data sheet of registers: access in the heading, reset values, descending
+    bits, reserved registers included.
     """
     body = "<h1>Registers</h1>"
     for message in REGISTERS:
@@ -95,12 +95,12 @@ def sheet(path: Path) -> None:
         address = message.get("id", message.get("set_id"))
         rows, bit = "", 7
         while bit >= 0:
-            one = next(
+            field = next(
                 (f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit), None
             )
-            low = one["at"] if one else bit
+            low = field["at"] if field else bit
             where = f"{bit}" if low == bit else f"{bit}:{low}"
-            rows += f"<tr><td>{where}<td>{one['name'] if one else 'Reserved'}<td>0<td>See the text above</tr>"
+            rows += f"<tr><td>{where}<td>{field['name'] if field else 'Reserved'}<td>0<td>See the text above</tr>"
             bit = low - 1
         body += f"<h2>Register {message['name']} (address 0x{address:02X}, {access})</h2><p>{PROSE}</p>"
         body += (

@@ -1,5 +1,5 @@
-"""Documents of the kind that vendors of sensors and modems publish, each with the ICD
-that it prints and the profile it needs.
+"""Documents like those of vendors of sensors and modems, each with its ICD and the
+profile that it needs.
 """
 
 from __future__ import annotations
@@ -54,29 +54,31 @@ PROSE = "The host asks for it by its number; the module answers within ten milli
 
 @dataclass(frozen=True)
 class Wild:
-    """A layout: how it is drawn, what it prints, and the rules that read it."""
+    """A layout: the function that draws it, the ICD that it shows, and the rules that
+    read it.
+    """
 
     draw: Callable[[Path], None]
     messages: list[dict]
     profile: str
 
 
-def size(one: dict) -> str:
-    """The type and its width as sheets print them."""
+def size(field: dict) -> str:
+    """Return the type with its width as data sheets print it."""
     return {
         "uint": {8: "U8", 16: "U16", 32: "U32"},
         "int": {8: "S8", 16: "S16", 32: "S32"},
-    }[one["type"]][one["bits"]]
+    }[field["type"]][field["bits"]]
 
 
-def unit(one: dict) -> str:
-    """The unit as it is printed."""
-    return {"C": "degC"}.get(one.get("unit", "-"), one.get("unit", "-"))
+def unit(field: dict) -> str:
+    """Return the printed unit."""
+    return {"C": "degC"}.get(field.get("unit", "-"), field.get("unit", "-"))
 
 
-def _scaled(one: dict) -> str:
-    factor = one.get("formula", "").removeprefix("raw*")
-    return f"{factor} {unit(one).strip('-')}".strip() or "-"
+def _scaled(field: dict) -> str:
+    factor = field.get("formula", "").removeprefix("raw*")
+    return f"{factor} {unit(field).strip('-')}".strip() or "-"
 
 
 def platypus(
@@ -84,18 +86,18 @@ def platypus(
 ) -> None:
     style = getSampleStyleSheet()
     small = style["BodyText"].clone("small", fontSize=8, leading=10)
-    made: list = []
-    for one in story:
-        if isinstance(one, str):
-            heading = one.startswith("# ")
-            made.append(
+    flowables: list = []
+    for part in story:
+        if isinstance(part, str):
+            heading = part.startswith("# ")
+            flowables.append(
                 Paragraph(
-                    escape(one.removeprefix("# ")),
+                    escape(part.removeprefix("# ")),
                     style["Heading2"] if heading else style["BodyText"],
                 )
             )
             continue
-        rows, spans, widths = one
+        rows, spans, widths = part
         table = Table(
             [[Paragraph(escape(cell), small) for cell in row] for row in rows],
             colWidths=widths,
@@ -106,10 +108,10 @@ def platypus(
             ("LINEBELOW", (0, -1), (-1, -1), 0.8, colors.black),
         ]
         table.setStyle(TableStyle([*(grid if rules == "grid" else ends), *spans]))
-        made += [table, Spacer(1, 10)]
+        flowables += [table, Spacer(1, 10)]
     SimpleDocTemplate(
         str(path), pagesize=page, title="Motor controller", invariant=1
-    ).build(made)
+    ).build(flowables)
 
 
 def web(path: Path, style: str, body: str) -> None:
@@ -121,21 +123,21 @@ def web(path: Path, style: str, body: str) -> None:
 
 
 def sections(path: Path) -> None:
-    """Ids in section headings, offsets and sizes in bytes, a factor in a column of its
-    own.
+    """Draw ids in section headings, offsets and sizes in bytes, and a column for the
+    factor.
     """
     story: list = ["# 4 Telemetry", PROSE]
     for index, message in enumerate(MESSAGES, 1):
         rows = [["Offset", "Size", "Field", "Type", "Unit", "Scale"]]
-        for one in message["fields"]:
-            factor = one.get("formula", "raw*1").removeprefix("raw*")
+        for field in message["fields"]:
+            factor = field.get("formula", "raw*1").removeprefix("raw*")
             rows.append(
                 [
-                    str(one["at"] // 8),
-                    str(one["bits"] // 8),
-                    one["name"],
-                    size(one),
-                    unit(one),
+                    str(field["at"] // 8),
+                    str(field["bits"] // 8),
+                    field["name"],
+                    size(field),
+                    unit(field),
                     factor,
                 ]
             )
@@ -148,12 +150,12 @@ def sections(path: Path) -> None:
 
 
 def prose(path: Path) -> None:
-    """Ids in the prose, no offsets, types as C has them, no vertical rules."""
+    """Draw ids in the prose, no offsets, C types, no vertical rules."""
     body = "<h1>Housekeeping</h1>"
     for message in MESSAGES:
         rows = "".join(
-            f"<tr><td>{one['name']}<td>{one['type']}{one['bits']}_t<td>{_scaled(one)}</tr>"
-            for one in message["fields"]
+            f"<tr><td>{field['name']}<td>{field['type']}{field['bits']}_t<td>{_scaled(field)}</tr>"
+            for field in message["fields"]
         )
         body += f"<h2>{message['name']}</h2><p>Message ID: {message['id']}. {PROSE}</p>"
         body += f"<table><tr><th>Field<th>Type<th>Unit</tr>{rows}</table>"
@@ -165,7 +167,7 @@ def prose(path: Path) -> None:
 
 
 def registers(path: Path) -> None:
-    """A register map whose cells span the bits of a field."""
+    """Draw a register map whose cells span the bits of a field."""
     pdf = fpdf.FPDF(format="A4")
     pdf.add_page()
     pdf.set_font("Helvetica", size=9)
@@ -179,26 +181,31 @@ def registers(path: Path) -> None:
             row.cell("R/W" if message["kind"] == "configuration" else "R")
             bit = 7
             while bit >= 0:
-                one = next(
+                field = next(
                     (f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit),
                     None,
                 )
-                row.cell(one["name"] if one else "-", colspan=one["bits"] if one else 1)
-                bit -= one["bits"] if one else 1
+                row.cell(
+                    field["name"] if field else "-",
+                    colspan=field["bits"] if field else 1,
+                )
+                bit -= field["bits"] if field else 1
     pdf.output(str(path))
 
 
 def bit_tables(path: Path) -> None:
-    """A table for each register, bits counted down, address and access in the heading."""
+    """Draw a table for each register, with descending bits, address and access in the
+    heading.
+    """
     story: list = ["# Registers", PROSE]
     for message in REGISTERS:
         rows = [["Bits", "Name", "Description"]]
-        for one in sorted(message["fields"], key=lambda f: -f["at"]):
-            high = one["at"] + one["bits"] - 1
+        for field in sorted(message["fields"], key=lambda f: -f["at"]):
+            high = field["at"] + field["bits"] - 1
             rows.append(
                 [
-                    str(high) if one["bits"] == 1 else f"{high}:{one['at']}",
-                    one["name"],
+                    str(high) if field["bits"] == 1 else f"{high}:{field['at']}",
+                    field["name"],
                     "see the text",
                 ]
             )
@@ -211,14 +218,16 @@ def bit_tables(path: Path) -> None:
 
 
 def ranges(path: Path) -> None:
-    """Bytes as ranges, unit and factor in one cell, ids in captions without numbers."""
+    """Draw bytes as ranges, unit and factor in one cell, ids in captions without
+    numbers.
+    """
     body = "<h1>Telemetry</h1>"
     for message in MESSAGES:
         rows = ""
-        for one in message["fields"]:
-            first, last = one["at"] // 8, (one["at"] + one["bits"]) // 8 - 1
+        for field in message["fields"]:
+            first, last = field["at"] // 8, (field["at"] + field["bits"]) // 8 - 1
             where = f"{first}" if first == last else f"{first}-{last}"
-            rows += f"<tr><td>{where}<td>{one['name']}<td>{TYPES[one['type']]}<td>{_scaled(one)}</tr>"
+            rows += f"<tr><td>{where}<td>{field['name']}<td>{TYPES[field['type']]}<td>{_scaled(field)}</tr>"
         body += f"<p>{PROSE}</p><p><b>{message['name']}: 0x{message['id']:04X}</b></p>"
         body += f"<table><tr><th>Byte<th>Parameter<th>Format<th>Unit</tr>{rows}</table>"
     web(
@@ -229,22 +238,22 @@ def ranges(path: Path) -> None:
 
 
 def two_heads(path: Path) -> None:
-    """A heading over two columns, the byte and the bit in it."""
+    """Draw a heading over two columns, the byte and the bit in it."""
     story: list = ["# Telemetry", PROSE]
     for message in MESSAGES:
         rows = [
             ["Position", "", "Length (bits)", "Name", "Type", "Unit"],
             ["Byte", "Bit", "", "", "", ""],
         ]
-        for one in message["fields"]:
+        for field in message["fields"]:
             rows.append(
                 [
-                    str(one["at"] // 8),
+                    str(field["at"] // 8),
                     "0",
-                    str(one["bits"]),
-                    one["name"],
-                    size(one),
-                    _scaled(one),
+                    str(field["bits"]),
+                    field["name"],
+                    size(field),
+                    _scaled(field),
                 ]
             )
         spans = [
@@ -263,7 +272,7 @@ WORDS = "types: {unsigned: {type: uint}, signed: {type: int}}\n"
 
 
 def rule(head: str, message: str, columns: str, *more: str) -> str:
-    """A profile with one rule for tables of messages."""
+    """Return a profile with one rule for tables of messages."""
     lines = [
         f"tables: {{head: {head}}}",
         f"message: {{{message}, kind: telemetry}}",
@@ -278,7 +287,7 @@ FACTOR = r"['^{scale}(?: {unit:\S+})?$', '^{unit:[^0-9]+}$']"
 
 
 def registers_rule(head: str, message: str, columns: str, *more: str) -> str:
-    """A profile with one rule for registers whose access gives their kind."""
+    """Return a profile with one rule for registers whose access gives their kind."""
     kinds = "map: {kind: {R: telemetry, read-only: telemetry, R/W: configuration}}"
     flags = "set: [{where: {name: '^(EN|BOOT|READY|OVR)$'}, type: bool}]"
     lines = [f"tables: {{head: {head}}}", "what: registers", f"message: {{{message}}}", f"columns: {{{columns}}}", kinds,
@@ -305,11 +314,13 @@ WILD = {
 }  # fmt: skip
 
 
-# Held back until the importer was done with the others.
+# Added after the importer read the documents above without a difference.
 
 
 def bare(path: Path) -> None:
-    """No rules at all, ids in headings without numbers, bytes."""
+    """Draw tables without any rules, ids in headings without numbers, positions in
+    bytes.
+    """
     pdf = fpdf.FPDF(format="Letter")
     pdf.add_page()
     pdf.set_font("Times", "B", 16)
@@ -328,14 +339,14 @@ def bare(path: Path) -> None:
         pdf.ln(2)
         with pdf.table(borders_layout="NONE", col_widths=(15, 15, 30, 20, 20)) as table:
             table.row(["Start Byte", "Bytes", "Signal", "Data Type", "Scaling"])
-            for one in message["fields"]:
+            for field in message["fields"]:
                 table.row(
                     [
-                        str(one["at"] // 8),
-                        str(one["bits"] // 8),
-                        one["name"],
-                        size(one),
-                        _scaled(one),
+                        str(field["at"] // 8),
+                        str(field["bits"] // 8),
+                        field["name"],
+                        size(field),
+                        _scaled(field),
                     ]
                 )
         pdf.ln(4)
@@ -343,12 +354,12 @@ def bare(path: Path) -> None:
 
 
 def frames(path: Path) -> None:
-    """Frames of eight bytes as columns, a table for each."""
+    """Draw frames of eight bytes as columns, a table for each."""
     body = "<h1>Telemetry</h1>"
     for message in FRAMES:
         cells = "".join(
-            f"<td colspan={one['bits'] // 8}>{one['name']}</td>"
-            for one in message["fields"]
+            f"<td colspan={field['bits'] // 8}>{field['name']}</td>"
+            for field in message["fields"]
         )
         body += f"<h2>{message['name']} (0x{message['id']:02X})</h2><p>{PROSE}</p><table><tr>"
         body += (
@@ -363,20 +374,20 @@ def frames(path: Path) -> None:
 
 
 def lined(path: Path) -> None:
-    """Rules above and below only, ids in the labelled prose, widths in words."""
+    """Draw rules above and below only, ids in the labelled prose, widths in words."""
     story: list = ["# 3 Telemetry"]
     for index, message in enumerate(MESSAGES, 1):
         rows = [["Byte Offset", "Size", "Parameter", "Encoding", "Conversion"]]
-        for one in message["fields"]:
-            count = one["bits"] // 8
+        for field in message["fields"]:
+            count = field["bits"] // 8
             words = f"{count} byte{'s' if count > 1 else ''}"
             rows.append(
                 [
-                    str(one["at"] // 8),
+                    str(field["at"] // 8),
                     words,
-                    one["name"],
-                    TYPES[one["type"]],
-                    _scaled(one),
+                    field["name"],
+                    TYPES[field["type"]],
+                    _scaled(field),
                 ]
             )
         story += [
@@ -388,21 +399,21 @@ def lined(path: Path) -> None:
 
 
 def beside(path: Path) -> None:
-    """Two tables side by side, of different heights, their headings in one line above
-    them.
+    """Draw two tables side by side with different heights, their headings in one line
+    above them.
     """
     style = getSampleStyleSheet()
 
     def cell(message: dict) -> list:
         rows = [["Offset", "Size", "Field", "Type", "Unit"]]
-        for one in message["fields"]:
+        for field in message["fields"]:
             rows.append(
                 [
-                    str(one["at"] // 8),
-                    str(one["bits"] // 8),
-                    one["name"],
-                    size(one),
-                    _scaled(one),
+                    str(field["at"] // 8),
+                    str(field["bits"] // 8),
+                    field["name"],
+                    size(field),
+                    _scaled(field),
                 ]
             )
         table = Table(
@@ -437,7 +448,7 @@ def beside(path: Path) -> None:
 
 
 def byte_lines(path: Path) -> None:
-    """Frames as lines, a line for each field, without any table."""
+    """Draw frames as lines, one per field, without any table."""
     pdf = fpdf.FPDF(format="A4")
     pdf.add_page()
     pdf.set_font("Helvetica", "B", 15)
@@ -452,10 +463,10 @@ def byte_lines(path: Path) -> None:
             new_y="NEXT",
         )
         pdf.set_font("Helvetica", size=9)
-        for one in message["fields"]:
-            first, last = one["at"] // 8, (one["at"] + one["bits"]) // 8 - 1
+        for field in message["fields"]:
+            first, last = field["at"] // 8, (field["at"] + field["bits"]) // 8 - 1
             where = f"Byte{first}" if first == last else f"Byte{first}~Byte{last}"
-            pdf.cell(0, 6, f"{where}: {one['name']}", new_x="LMARGIN", new_y="NEXT")
+            pdf.cell(0, 6, f"{where}: {field['name']}", new_x="LMARGIN", new_y="NEXT")
         pdf.ln(4)
     pdf.output(str(path))
 

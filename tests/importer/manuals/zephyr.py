@@ -1,6 +1,4 @@
-"""The manual of a device that does not exist, as its tutorial shows it: words and looks
-of its own.
-"""
+"""The manual of a fictional device in the tutorial, with its own terms and layout."""
 
 from __future__ import annotations
 
@@ -42,7 +40,7 @@ CODES = (
 
 
 def draw(path: Path) -> None:
-    """Writes the PDF: A5, no vertical rules, captions below."""
+    """Write the PDF: A5, no vertical rules, captions below."""
     style = getSampleStyleSheet()
     text, small = (
         style["BodyText"],

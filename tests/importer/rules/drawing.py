@@ -1,6 +1,4 @@
-"""A PDF drawn from headings, paragraphs and tables, in the ways in which vendors set
-theirs.
-"""
+"""Draw a PDF from headings, paragraphs and tables in the styles of several vendors."""
 
 from __future__ import annotations
 
@@ -74,7 +72,7 @@ PROSE = "The module answers each request within ten milliseconds and sends nothi
 
 
 def draw(path: Path, parts: Sequence) -> Path:
-    """Write the PDF, which begins with some prose; a part ``None`` begins a new page."""
+    """Write the PDF, which starts with some prose. A part ``None`` starts a new page."""
     flow: list = [text(PROSE * 6), text(PROSE * 4)]
     for part in parts:
         flow += [PageBreak()] if part is None else [part, Spacer(1, 6)]

@@ -26,9 +26,8 @@ class Shape:
     draw: Callable[[Path], Path]
     profile: str
     messages: dict[str, tuple[int, int, list[tuple]]]
-    facts: dict[tuple[str, str], dict] = field(
-        default_factory=dict
-    )  # message and field -> keys of the ICD
+    # Message and field -> keys of the ICD.
+    facts: dict[tuple[str, str], dict] = field(default_factory=dict)
     enums: dict[str, dict[int, str]] = field(default_factory=dict)
 
 

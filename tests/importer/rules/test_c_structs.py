@@ -1,6 +1,4 @@
-"""Structs in C, of headers and of documents, are tables that rules read; their layout
-is what gcc makes of them.
-"""
+"""Rules read C structs in headers and documents as tables. Their layout is that of gcc."""
 
 from __future__ import annotations
 
@@ -177,7 +175,7 @@ def test_numbers_of_c_have_its_notations():
         ("struct a { uint8_t n[1 << 4000000000]; };", "a shift by 4000000000"),
     ],
 )
-def test_what_is_no_frame_is_an_error(tmp_path, text, message):
+def test_an_unsupported_struct_is_an_error(tmp_path, text, message):
     (tmp_path / "a.h").write_text(text, encoding="utf-8")
     document, _ = sources.read(tmp_path / "a.h", profile.load())
     errors = [t for t in document.import_findings if t.severity == "error"]
@@ -185,7 +183,7 @@ def test_what_is_no_frame_is_an_error(tmp_path, text, message):
 
 
 def structs_of(text: str) -> dict[str, list[list[str]]]:
-    """The rows of each table without its heading, by its caption."""
+    """Return the rows of each table without its heading, by caption."""
     return {
         block.caption: [[cell.text for cell in row.cells] for row in block.rows[1:]]
         for block in c_structs.read_structs(text)[0]
@@ -213,13 +211,13 @@ def structs_of(text: str) -> dict[str, list[list[str]]]:
         ("#if 0\n#pragma pack(1)\n#endif", 4),
     ],
 )
-def test_pragmas_say_how_the_members_behind_them_are_aligned(pragmas, offset):
+def test_pragmas_set_the_alignment_of_the_members_after_them(pragmas, offset):
     text = f"{pragmas}\nstruct a {{ uint8_t n; uint32_t m; }};"
     ((_, (byte, *_)),) = structs_of(text).values()
     assert byte == str(offset)
 
 
-def test_an_attribute_packs_the_struct_at_which_it_stands_and_no_other():
+def test_an_attribute_packs_only_its_own_struct():
     text = """
         struct PACKED a { uint8_t n; struct { uint8_t n; uint32_t m; } in; };
         struct b { uint8_t n; struct { uint8_t n; uint32_t m; } PACKED in; uint32_t m; };
@@ -308,7 +306,7 @@ def test_structs_in_structs_do_not_exhaust_the_memory():
     assert len(findings) == 6 and "a struct may have 4096" in findings[0].help
 
 
-def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
+def test_padding_is_a_warning_and_an_invalid_header_a_finding(tmp_path):
     (tmp_path / "a.h").write_text(
         "struct a { uint8_t n; uint32_t m; uint16_t k; };", encoding="utf-8"
     )
@@ -329,8 +327,8 @@ enum __attribute__((packed)) small { E = 255 };
 """
 
 
-def made_up(random: random.Random) -> str:
-    """A struct of random members, packed or not."""
+def random_struct(random: random.Random) -> str:
+    """Draw a struct of random members, packed or not."""
     types = [
         "uint8_t",
         "int8_t",
@@ -367,7 +365,7 @@ def made_up(random: random.Random) -> str:
 
 @pytest.mark.needs("gcc")
 def test_the_layout_is_that_of_gcc(tmp_path):
-    structs = [made_up(random.Random(seed)) for seed in range(120)]
+    structs = [random_struct(random.Random(seed)) for seed in range(120)]
     code = ["#include <stdint.h>", "#include <stdio.h>", "#include <string.h>", ENUMS]
     for index, struct in enumerate(structs):
         declaration = struct.removeprefix(ENUMS)

@@ -1,10 +1,10 @@
-"""Fields have the enumeration that their table names, and no other."""
+"""Fields get exactly the enumeration that their table names."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.importer.rules.test_rules import found, read
+from tests.importer.rules.test_rules import findings_of, read
 
 COMMAND = """Table 1: Command data
 
@@ -61,7 +61,7 @@ def test_the_caption_of_a_table_of_several_enumerations_names_none_of_them(
 ):
     text = COMMAND.format(action=name, mode="Charge mode") + VALUES
     result, tree = read(tmp_path, text, RULES.replace("PATTERN", "enumeration"))
-    assert found(result, "IMP050") == [
+    assert findings_of(result, "IMP050") == [
         f"table 1 (`Command data`), field `Action`: there is no enumeration `{name}`"
     ]
     assert [field["type"] for field in tree["messages"][0]["fields"]] == [
@@ -80,7 +80,7 @@ def test_the_number_of_a_table_of_several_enumerations_does_not_choose_one(tmp_p
     result, _ = read(tmp_path, text.replace("uint8", "enum"), phrases + rules)
     assert (
         "which has 2 enumerations: `Switch action` and `Charge mode`"
-        in found(result, "IMP050")[0]
+        in findings_of(result, "IMP050")[0]
     )
 
 
@@ -90,7 +90,7 @@ def test_a_title_that_begins_two_enumerations_names_neither(tmp_path):
     )
     text = COMMAND.format(action="Switch", mode="Switch mode") + values
     result, _ = read(tmp_path, text, RULES.replace("PATTERN", "enumeration"))
-    assert len(found(result, "IMP050")) == 1 and result.failed
+    assert len(findings_of(result, "IMP050")) == 1 and result.failed
 
 
 def test_the_fields_of_bits_have_enumerations_and_these_the_source_of_their_table(

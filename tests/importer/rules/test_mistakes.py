@@ -1,5 +1,5 @@
-"""Mistakes that people make in profiles: each is reported with its place, and none
-gives a wrong result in silence.
+"""Every mistake in a profile is reported with its place; none gives a wrong result
+without a finding.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ import pytest
 
 from icdgen.diagnostics import Findings
 from icdgen.importer import profile
-from tests.importer.rules.test_rules import NODE, found, read
+from tests.importer.rules.test_rules import NODE, findings_of, read
 
 TABLE = """4.1 Basic state (STATE) ID:0x02F4
 
@@ -169,7 +169,7 @@ def test_a_mistake_that_shows_in_the_result_is_a_finding(
 ):
     assert RULES.count(right) == 1
     result, _ = read(tmp_path, TABLE, RULES.replace(right, wrong))
-    assert any(message in text for text in found(result, code)), [
+    assert any(message in text for text in findings_of(result, code)), [
         (t.code, t.message) for t in result.import_findings
     ]
     if code not in ("IMP035", "IMP104", "IMP106"):
@@ -184,13 +184,13 @@ def test_a_mistake_that_shows_in_the_result_is_a_finding(
         ("{id_bits: 900}", "`id_bits` must be at most 32, not 900"),
     ],
 )
-def test_a_mistake_in_the_facts_of_the_node_is_found_too(tmp_path, node, message):
+def test_a_mistake_in_the_facts_of_the_node_is_a_finding(tmp_path, node, message):
     path = tmp_path / "rules.yaml"
     for text in (f"node: {node}\n", f"nodes: [{{name: a, {node[1:-1]}}}]\n"):
         path.write_text(f"profile: 1\n{text}{RULES}")
         with pytest.raises(Findings) as raised:
             profile.load(path)
-        assert [one.message for one in raised.value.findings] == [message]
+        assert [finding.message for finding in raised.value.findings] == [message]
 
 
 def test_every_finding_about_a_rule_names_its_line(tmp_path):
@@ -225,7 +225,7 @@ def test_caption_and_heading_with_different_ids_are_reported(
         "{heading:", "{caption: ', id {id}, {length} bytes$', heading:"
     )
     result, _ = read(tmp_path, TABLE.replace("Num", caption, 1), rules)
-    reported = found(result, "IMP110")
+    reported = findings_of(result, "IMP110")
     assert [
         text.rsplit("`id`: ")[-1] for text in reported
     ] == messages and result.failed == bool(messages)
@@ -257,5 +257,5 @@ Id\tMessage\tKind\tLength\tField\tType
     result, _ = read(tmp_path, table, rules)
     assert [
         text.rsplit(": ")[-1].removesuffix(" in its rows")
-        for text in found(result, "IMP110")
+        for text in findings_of(result, "IMP110")
     ] == values

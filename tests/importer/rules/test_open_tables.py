@@ -1,4 +1,4 @@
-"""Tables with horizontal rules only are found by the headings of rules and end at their
+"""Tables with horizontal rules only start at the headings of rules and end at their
 last horizontal rule.
 """
 

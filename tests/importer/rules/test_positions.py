@@ -1,5 +1,5 @@
-"""Positions, orders, roles and empty cells of a table are read as a rule states them;
-what a rule leaves open is a finding.
+"""Positions, byte orders, roles and empty cells are read as the rule states. Anything
+ambiguous is a finding.
 """
 
 from __future__ import annotations
@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.diagnostics import Findings
-from tests.importer.rules.test_rules import HEADING, RULE, fields, found, read
+from tests.importer.rules.test_rules import HEADING, RULE, fields, findings_of, read
 
 ENDS = RULE.replace(
     "Byte: byte", r"Byte: '^{byte}\.{bit}(?:-(?:{last_byte}\.)?{end_bit})?$'"
@@ -58,7 +58,7 @@ def test_a_part_of_big_endian_bytes_is_read_by_significance_if_that_gives_its_si
     # the low half of byte 0 and the high half of byte 1: bits 4 to 11 counted from the
     # most significant one
     assert ("Level", 4, 8, None, "msb0") in placed(tree)
-    assert found(result, "IMP035") == [] and not result.failed
+    assert findings_of(result, "IMP035") == [] and not result.failed
 
 
 @pytest.mark.parametrize("printed", ["0.4-1.3", "0.3-1.3"])
@@ -66,7 +66,7 @@ def test_a_range_that_can_be_read_in_two_ways_is_an_error(tmp_path, printed):
     rows = f"Byte\tName\tType\n{printed}\tSpeed\tuint\n"
     result, _ = read(tmp_path, HEADING + rows, ENDS, node("big", "lsb0"))
     assert (
-        "to bit 3 of byte 1 is not clear" in found(result, "IMP105")[0]
+        "to bit 3 of byte 1 is not clear" in findings_of(result, "IMP105")[0]
         and result.failed
     )
 
@@ -87,7 +87,7 @@ def test_four_columns_of_bytes_and_bits_need_the_role_of_the_bit_of_the_last_byt
     )
     rows = "From\tBit\tTo\tEnd\tName\tType\n0\t4\t1\t3\tSpeed\tuint\n"
     result, _ = read(tmp_path, HEADING + rows, rules)
-    assert "is not clear" in found(result, "IMP105")[0]
+    assert "is not clear" in findings_of(result, "IMP105")[0]
     tree = read(tmp_path, HEADING + rows, rules.replace("last_bit", "end_bit"))[1]
     assert fields(tree) == [(4, 8, "Speed")]
 
@@ -106,7 +106,7 @@ def test_a_list_of_separate_places_is_padding_or_an_error(tmp_path, printed):
     rows = f"Byte\tName\tType\n{printed}\tSpeed\tuint\n"
     result, _ = read(tmp_path, HEADING + rows)
     assert (
-        f"its bytes `{printed}` are not consecutive" in found(result, "IMP105")[0]
+        f"its bytes `{printed}` are not consecutive" in findings_of(result, "IMP105")[0]
         and result.failed
     )
     patterns = RULE.replace(
@@ -114,7 +114,7 @@ def test_a_list_of_separate_places_is_padding_or_an_error(tmp_path, printed):
     )
     result, _ = read(tmp_path, HEADING + rows.replace("0 & 4-5", "0 & 4"), patterns)
     assert (
-        "lists two places that are not consecutive" in found(result, "IMP105")[0]
+        "lists two places that are not consecutive" in findings_of(result, "IMP105")[0]
         and result.failed
     )
 
@@ -127,7 +127,7 @@ def test_padding_in_several_places_covers_them(tmp_path):
     rules = rules.replace("Byte | Name", "Byte | Bits | Name")
     result, tree = read(tmp_path, HEADING + rows, rules)
     assert fields(tree) == [(0, 1, "On"), (2, 1, "Hot"), (6, 2, "Mode")]
-    assert found(result, "IMP035") == [] and not result.failed
+    assert findings_of(result, "IMP035") == [] and not result.failed
 
 
 def test_a_field_in_the_other_bit_order_leaves_no_bits_uncovered(tmp_path):
@@ -137,17 +137,19 @@ def test_a_field_in_the_other_bit_order_leaves_no_bits_uncovered(tmp_path):
     )
     result, tree = read(tmp_path, HEADING + rows, rules, node("big", "lsb0"))
     assert ("Speed", 4, 8, None, "msb0") in placed(tree)
-    assert found(result, "IMP035") == []
+    assert findings_of(result, "IMP035") == []
     result, _ = read(
         tmp_path,
         HEADING + rows.replace("0\t4-7\tMode\tuint\n", ""),
         rules,
         node("big", "lsb0"),
     )
-    assert found(result, "IMP035") == ["table 1: no field covers bit 4 to 7"]
+    assert findings_of(result, "IMP035") == ["table 1: no field covers bit 4 to 7"]
     rows = rows.replace("\tMode", "\tReserved").replace("\tSpeed", "\tReserved")
     assert (
-        found(read(tmp_path, HEADING + rows, rules, node("big", "lsb0"))[0], "IMP035")
+        findings_of(
+            read(tmp_path, HEADING + rows, rules, node("big", "lsb0"))[0], "IMP035"
+        )
         == []
     )
 
@@ -156,7 +158,7 @@ def test_two_columns_of_one_role_contradict_each_other_or_are_joined(tmp_path):
     rules = RULE.replace("Type: type}", "Type: type, Signal: name}")
     rows = "Byte\tName\tType\tSignal\n0\tMode\tu8\tMode\n1\tLoad\tu8\tCurrent\n2\tHeat\tu8\tWarmth\n"
     result, _ = read(tmp_path, HEADING + rows, rules)
-    (message,) = found(result, "IMP102")
+    (message,) = findings_of(result, "IMP102")
     assert (
         "the columns `Name` and `Signal` both give the role `name`: `Load` and `Current`"
         in message
@@ -166,7 +168,7 @@ def test_two_columns_of_one_role_contradict_each_other_or_are_joined(tmp_path):
         tmp_path, HEADING + rows, RULE.replace("Name: name", "Name + Signal: name")
     )
     assert fields(tree)[1] == (8, 8, "LoadCurrent") and not result.failed
-    # One of both is filled in each row.
+    # Each row has a value in one of the two columns.
     rows = "Byte\tName\tType\tSignal\n0\tMode\tu8\t\n1\t\tu8\tCurrent\n"
     assert fields(read(tmp_path, HEADING + rows, rules)[1]) == [
         (0, 8, "Mode"),
@@ -184,7 +186,8 @@ def test_a_line_of_a_cell_and_a_column_that_give_one_role_contradict_each_other(
     rows = "Byte\tName\tType\nByte0: Speed\tLoad\tu8\n"
     result, _ = read(tmp_path, HEADING + rows, rules)
     assert (
-        "the line `Byte0: Speed` gives the role `name`" in found(result, "IMP102")[0]
+        "the line `Byte0: Speed` gives the role `name`"
+        in findings_of(result, "IMP102")[0]
         and result.failed
     )
 
@@ -206,7 +209,7 @@ def test_a_line_of_a_cell_and_a_column_that_give_one_role_contradict_each_other(
 def test_an_order_that_fields_depend_on_must_be_stated(tmp_path, stated, rows, lacking):
     words = f"profile: 1\nnode: {{id_bits: 16{', ' + stated if stated else ''}}}\n"
     result, _ = read(tmp_path, HEADING + "Byte\tName\tType\n" + rows, RULE, words)
-    messages = found(result, "IMP109")
+    messages = findings_of(result, "IMP109")
     assert [
         key
         for key in ("byte_order", "bit_order")
@@ -235,11 +238,11 @@ def test_a_dash_is_an_empty_cell_for_roles_and_none_for_join(tmp_path, dash):
     ] == []
 
 
-def test_rows_that_a_pattern_does_not_take_are_one_finding(tmp_path):
+def test_rows_that_do_not_match_a_pattern_are_one_finding(tmp_path):
     rows = "Byte\tName\tType\n" + "".join(f"No. {n}\tLoad {n}\tu8\n" for n in range(9))
     rules = RULE.replace("Byte: byte", "Byte: '^{byte}$'")
     result, _ = read(tmp_path, HEADING + rows, rules)
-    (message,) = found(result, "IMP103")
+    (message,) = findings_of(result, "IMP103")
     assert (
         "takes `No. 0`; the same in 8 more rows: `No. 1`, `No. 2`, `No. 3`, `No. 4`, ..."
         in message
@@ -249,7 +252,7 @@ def test_rows_that_a_pattern_does_not_take_are_one_finding(tmp_path):
 def test_fields_without_a_type_are_one_finding_for_all_tables(tmp_path):
     rows = "Byte\tName\tType\n0\tLoad\t\n1\tHeat\t\n\n"
     result, _ = read(tmp_path, HEADING + rows + "Tank state (0x22)\n\n" + rows)
-    (message,) = found(result, "IMP026")
+    (message,) = findings_of(result, "IMP026")
     assert (
         "field `Load`: its type is not stated; the same in 3 more rows of 2 tables: `Heat`"
         in message
@@ -265,7 +268,7 @@ def test_a_word_of_an_index_for_a_kind_must_be_translated(tmp_path):
     assert (
         any(
             "row of `Motor state`: its kind `TM` is none of" in m
-            for m in found(result, "IMP031")
+            for m in findings_of(result, "IMP031")
         )
         and result.failed
     )

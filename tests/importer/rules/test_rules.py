@@ -1,5 +1,5 @@
-"""What each key of a rule does, on tables of a text: the tables are the same for every
-source.
+"""The effect of each key of a rule on tables of a text. Tables of every source are
+treated alike.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def fields(tree: dict, message: int = 0) -> list[tuple]:
     ]
 
 
-def found(result, code: str) -> list[str]:
+def findings_of(result, code: str) -> list[str]:
     return [t.message for t in result.import_findings if t.code == code]
 
 
@@ -48,8 +48,10 @@ def test_rows_are_skipped_kept_filled_and_the_table_stopped(tmp_path):
     )
     result, tree = read(tmp_path, HEADING + rows, rules)
     assert fields(tree) == [(0, 8, "Mode"), (8, 8, "Load")]
-    assert "`skip` drops 1 row: `Sum | 2`" in found(result, "IMP108")[0]
-    assert "`keep` drops 1 row: `B | 0 | Other | u8`" in found(result, "IMP108")[1]
+    assert "`skip` drops 1 row: `Sum | 2`" in findings_of(result, "IMP108")[0]
+    assert (
+        "`keep` drops 1 row: `B | 0 | Other | u8`" in findings_of(result, "IMP108")[1]
+    )
 
 
 def test_offset_is_added_after_scaling_and_bias_subtracted_before(tmp_path):
@@ -92,7 +94,7 @@ def test_an_index_completes_messages_and_contradicts_them(tmp_path):
         "telemetry",
         2,
     )
-    assert found(result, "IMP061") == [
+    assert findings_of(result, "IMP061") == [
         "table 2: it lists `Tank state`, and no table describes it"
     ]
     result, _ = read(
@@ -100,7 +102,7 @@ def test_an_index_completes_messages_and_contradicts_them(tmp_path):
     )
     assert (
         "gives `Motor state` the length 2, its own table says 1"
-        in found(result, "IMP060")[0]
+        in findings_of(result, "IMP060")[0]
     )
 
 
@@ -120,7 +122,7 @@ def test_bits_of_a_table_divide_a_field_in_either_byte_order(tmp_path):
     result, _ = read(tmp_path, HEADING + rows.replace("4-15\tReserved\n", ""), rules)
     assert (
         "the bits of `State` leave out or exceed its bits: 4, 5"
-        in found(result, "IMP105")[0]
+        in findings_of(result, "IMP105")[0]
     )
 
 
@@ -153,7 +155,7 @@ def test_members_stand_in_a_cell_or_in_its_lines(tmp_path):
     ]
 
 
-def test_members_keep_commas_in_names_and_leave_nothing_silently(tmp_path):
+def test_members_with_commas_in_names_are_complete(tmp_path):
     rules = RULE.replace("Type: type}", "Type: type, Values: members}")
     rows = "Byte\tName\tType\tValues\n0\tMode\tu8\t0: off, 1: slow, but steady\n"
     tree = read(tmp_path, HEADING + rows, rules)[1]
@@ -162,7 +164,9 @@ def test_members_keep_commas_in_names_and_leave_nothing_silently(tmp_path):
         (1, "slow, but steady"),
     ]
     result, _ = read(tmp_path, HEADING + rows.replace("0: off", "off"), rules)
-    assert "`members` leaves `off`" in found(result, "IMP104")[0] and result.failed
+    assert (
+        "`members` leaves `off`" in findings_of(result, "IMP104")[0] and result.failed
+    )
 
 
 @pytest.mark.parametrize(
@@ -181,7 +185,7 @@ def test_a_constant_is_the_one_valid_value_also_if_it_is_0(tmp_path, text, value
         HEADING + rows.replace(f"{text}\n", "key\n"),
         RULE.replace("Type: type}", "Type: type, Must be: const}"),
     )
-    assert "`const` is `key`, which is not a number" in found(result, "IMP023")[0]
+    assert "`const` is `key`, which is not a number" in findings_of(result, "IMP023")[0]
 
 
 def test_a_rule_takes_over_the_keys_of_another(tmp_path):
@@ -297,10 +301,11 @@ def test_a_register_of_two_bytes_follows_the_byte_order_of_the_node(tmp_path):
     ]
     _, tree = read(tmp_path, HEADING + rows, rules, NODE.replace("little", "big"))
     count = next(f for f in tree["messages"][0]["fields"] if f["name"] == "Count")
+    # The value has four bits of byte 0, then all of byte 1.
     assert (count["at"], count["bit_order"]) == (
         4,
         "msb0",
-    )  # four bits of byte 0, then all of byte 1
+    )
     rate = next(f for f in tree["messages"][0]["fields"] if f["name"] == "Rate")
     assert (rate["at"], rate.get("bit_order")) == (4, None)
 
@@ -312,14 +317,17 @@ def test_a_range_of_bytes_that_may_be_an_array_is_a_question(tmp_path):
         HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n",
         rules,
     )
-    assert "field `Cells`: a number of 6 bytes is unusual" in found(result, "IMP105")[0]
+    assert (
+        "field `Cells`: a number of 6 bytes is unusual"
+        in findings_of(result, "IMP105")[0]
+    )
     rules += "    set: [{where: {name: ^Cells$}, bits: 16, count: 3}]\n"
     result, tree = read(
         tmp_path,
         HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n",
         rules,
     )
-    assert found(result, "IMP105") == []
+    assert findings_of(result, "IMP105") == []
     assert [
         (f["at"], f["bits"], f.get("count")) for f in tree["messages"][0]["fields"]
     ] == [(0, 16, 3), (48, 16, None)]
@@ -408,7 +416,10 @@ def test_a_rule_without_columns_reads_a_message_without_parameters(tmp_path):
         False,
     )
     result, _ = read(tmp_path, HEADING + "Length\t6\n", rules)
-    assert "it has 6 bytes and no field" in found(result, "IMP034")[0] and result.failed
+    assert (
+        "it has 6 bytes and no field" in findings_of(result, "IMP034")[0]
+        and result.failed
+    )
 
 
 def test_each_row_of_a_table_of_commands_is_a_message_without_parameters(tmp_path):
@@ -451,7 +462,7 @@ def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
     (tree,) = trees.values()
     assert (tree["node"]["name"], tree["messages"][0]["group"]) == ("pump", "State")
     assert tree["loggable"] == [{"bit": 9, "id": 33}]
-    assert [one["name"] for one in tree["missing"]] == ["Tank"]
+    assert [tank["name"] for tank in tree["missing"]] == ["Tank"]
 
 
 @pytest.mark.parametrize("printed", ["–", ""])

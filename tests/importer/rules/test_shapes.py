@@ -1,5 +1,5 @@
-"""Documents in the shapes of real ones are read right by short profiles, from the
-document and from its table files.
+"""Short profiles read documents with the features of real ones, from the document and
+from its table files.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ def read(path, words) -> tuple[run.Result, dict]:
 
 @pytest.fixture(params=SHAPES)
 def shape(request, tmp_path):
-    found = SHAPES[request.param]
-    found.draw(tmp_path / "manual.pdf")
-    (tmp_path / "rules.yaml").write_text(found.profile, encoding="utf-8")
-    return found
+    selected = SHAPES[request.param]
+    selected.draw(tmp_path / "manual.pdf")
+    (tmp_path / "rules.yaml").write_text(selected.profile, encoding="utf-8")
+    return selected
 
 
 def test_a_short_profile_reads_the_document(shape, tmp_path):
@@ -69,12 +69,12 @@ def test_a_short_profile_reads_the_document(shape, tmp_path):
 def test_table_files_give_what_the_document_gives(shape, tmp_path):
     result, tree = read(tmp_path / "manual.pdf", tmp_path / "rules.yaml")
     table_files.write(result.tables, tmp_path / "tables", result.document)
-    again, same = read(tmp_path / "tables", tmp_path / "rules.yaml")
+    second, same = read(tmp_path / "tables", tmp_path / "rules.yaml")
     assert same == tree
-    assert again.import_findings == result.import_findings
-    assert again.tables == result.tables
+    assert second.import_findings == result.import_findings
+    assert second.tables == result.tables
     texts = {path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()}
-    table_files.write(again.tables, tmp_path / "tables", again.document)
+    table_files.write(second.tables, tmp_path / "tables", second.document)
     assert texts == {
         path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()
     }

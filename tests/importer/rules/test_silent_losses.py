@@ -1,11 +1,18 @@
-"""Nothing that a table and its rule state is lost or changed without a finding."""
+"""Every statement of a table and its rule is in the result, or there is a finding."""
 
 from __future__ import annotations
 
 import pytest
 
 from icdgen.diagnostics import Findings
-from tests.importer.rules.test_rules import HEADING, NODE, RULE, fields, found, read
+from tests.importer.rules.test_rules import (
+    HEADING,
+    NODE,
+    RULE,
+    fields,
+    findings_of,
+    read,
+)
 
 BIG = NODE.replace("little", "big")
 
@@ -58,7 +65,7 @@ def test_descriptions_from_two_columns_are_joined(tmp_path):
     rules = RULE.replace("Type: type}", "Type: type, Meaning: text, Note: text}")
     result, _ = read(tmp_path, HEADING + rows, rules)
     (message,) = [
-        found.thing for found in result.survey.found if found.what == "message"
+        thing.thing for thing in result.survey.found if thing.what == "message"
     ]
     assert [field.described.rest for field in message.fields] == [
         "Of the loop; Read at start",
@@ -72,10 +79,9 @@ def test_reserved_rows_at_the_end_are_reserved_bytes_of_the_message(tmp_path):
     result, tree = read(
         tmp_path, HEADING + rows, RULE.replace("kind:", "length: 8, kind:")
     )
-    assert (
-        "reserved" not in tree["messages"][0]
-    )  # nothing in the table describes bytes 6 and 7
-    assert "no field covers bit 48 to 63" in found(result, "IMP035")[0]
+    # No row of the table describes bytes 6 and 7.
+    assert "reserved" not in tree["messages"][0]
+    assert "no field covers bit 48 to 63" in findings_of(result, "IMP035")[0]
     tree = read(
         tmp_path, HEADING + "Byte\tName\tType\n0\tReserved\tu8\n1\tMode\tu8\n", RULE
     )[1]
@@ -166,7 +172,7 @@ def test_a_column_names_the_enumeration_of_a_field(tmp_path):
     assert (field["type"], field.get("enum")) == ("enum", "Modes")
     result, _ = read(tmp_path, HEADING + rows.replace("u8\tModes", "u8\tStates"), rules)
     assert (
-        "there is no enumeration `States`" in found(result, "IMP050")[0]
+        "there is no enumeration `States`" in findings_of(result, "IMP050")[0]
         and result.failed
     )
     result, _ = read(
@@ -174,7 +180,7 @@ def test_a_column_names_the_enumeration_of_a_field(tmp_path):
     )
     assert (
         "a field of the type float cannot have the enumeration `Modes`"
-        in found(result, "IMP050")[0]
+        in findings_of(result, "IMP050")[0]
     )
 
 
@@ -219,7 +225,8 @@ def test_bits_of_a_message_that_does_not_exist_are_an_error(tmp_path):
         RULE + BITS.replace("of: State", "of: State, name: Motor C"),
     )
     assert (
-        "there is no field `State` in a message `Motor C`" in found(result, "IMP107")[0]
+        "there is no field `State` in a message `Motor C`"
+        in findings_of(result, "IMP107")[0]
         and result.failed
     )
 
@@ -261,7 +268,7 @@ RANGES = r"""rules:
         ),  # bit 0 is the most significant bit of byte 6
     ],
 )
-def test_bits_in_a_range_of_bytes_are_those_of_its_value(
+def test_bits_in_a_range_of_bytes_count_in_its_value(
     tmp_path, byte_order, bit_order, mode, count
 ):
     rows = "Byte\tBits\tName\tType\n6-7\t15-12\tMode\tuint\n6-7\t11-0\tCount\tuint\n"
@@ -311,7 +318,8 @@ def test_bits_in_several_bytes_need_an_order_that_a_value_can_have(tmp_path):
     rows = "Byte\tBits\tName\tType\n6-7\t15-12\tMode\tuint\n"
     result, _ = read(tmp_path, HEADING + rows, RANGES, NODE.replace("lsb0", "msb0"))
     assert (
-        "the place of bit 15 in bytes 6 to 7 is not clear" in found(result, "IMP105")[0]
+        "the place of bit 15 in bytes 6 to 7 is not clear"
+        in findings_of(result, "IMP105")[0]
     )
 
 
@@ -335,7 +343,7 @@ def test_the_repeated_group_of_the_reference_is_read(tmp_path):
     ) and not result.failed
 
 
-def test_a_pattern_in_front_takes_the_dash_of_an_empty_cell(tmp_path):
+def test_a_preceding_pattern_matches_the_dash_of_an_empty_cell(tmp_path):
     rows = "Byte\tName\tType\tScale\n0\tMode\tu8\t–\n1\tLoad\tu8\t0.5\n"
     rules = RULE.replace(
         "Type: type}", "Type: type, Scale: ['^{default:[-–—]}$', scale]}"

@@ -1,5 +1,5 @@
-"""Spreadsheets, web pages, Markdown and Word documents give the tables that a PDF
-gives, and are read by the same rules.
+"""Spreadsheets, web pages, Markdown and Word documents give the same tables as a PDF,
+for the same rules.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import pytest
 
 from icdgen.diagnostics import Findings
 from icdgen.importer import profile, run, sources, table_files
-from tests.importer.rules.test_rules import NODE, found
+from tests.importer.rules.test_rules import NODE, findings_of
 
 openpyxl = pytest.importorskip("openpyxl", reason="pip install 'icdgen[import]'")
 docx = pytest.importorskip("docx", reason="pip install 'icdgen[import]'")
@@ -226,7 +226,7 @@ def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):
 
 
 def _read_html(path: Path, body: str):
-    """The document of a web page, and its tables."""
+    """Return the document of a web page and its tables."""
     path.write_text(f"<html><body>{body}</body></html>", encoding="utf-8")
     return sources.read(path, profile.load())
 
@@ -363,7 +363,7 @@ def test_commas_of_descriptions_do_not_separate_columns_of_semicolons(tmp_path):
     assert rows[1:] == [["1", "Speed, in rpm, of wheel 1, 2, 3, or 4"], ["2", "Mode"]]
 
 
-def test_a_number_that_is_no_number_is_kept_as_text(tmp_path):
+def test_an_invalid_number_stays_text(tmp_path):
     book = openpyxl.Workbook()
     book.active.append(["Byte", "Value"])
     book.active.append([1, 1.5])
@@ -378,4 +378,4 @@ def test_a_number_that_is_no_number_is_kept_as_text(tmp_path):
 def test_without_rules_a_spreadsheet_gives_its_tables_and_no_message(tmp_path):
     xlsx(tmp_path / "motor.xlsx")
     result, trees = run.run(tmp_path / "motor.xlsx", profile.load(), jobs=1)
-    assert trees == {} and len(found(result, "IMP100")) == 1
+    assert trees == {} and len(findings_of(result, "IMP100")) == 1

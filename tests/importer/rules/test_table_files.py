@@ -1,5 +1,5 @@
-"""Table files as people write and correct them, and the options of `icdgen import`
-about tables and rules.
+"""Table files that people edit, and the options of `icdgen import` about tables and
+rules.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def test_a_correction_of_a_table_file_changes_the_result(folder):
     ).read_text(encoding="utf-8")
 
 
-def test_tables_that_are_no_more_leave_the_folder(folder):
+def test_files_of_removed_tables_are_deleted(folder):
     icdgen("import", "state.txt", "--tables", "tables", cwd=folder)
     (folder / "tables" / "099.table.yaml").write_text(
         "table: 99\nrows: []\n", encoding="utf-8"

@@ -30,7 +30,7 @@ NEW = {
 }
 
 
-def test_a_rule_is_added_behind_the_others():
+def test_a_rule_is_added_after_all_rules():
     text = rule_text.with_rule(PROFILE, None, NEW)
     assert text.replace(rule_text.text_of_rule(NEW), "") == PROFILE
     assert rule_text.rules_of(text)[2] == NEW
@@ -59,7 +59,7 @@ def test_a_rule_is_replaced_and_comments_around_it_stay(index):
         "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}, {what: ignore, tables: {head: Q}}]",
     ],
 )
-def test_a_rule_is_added_behind_another(start):
+def test_a_rule_is_added_after_another(start):
     before = rule_text.rules_of(start)
     text = rule_text.with_rule(start, None, NEW, behind=0)
     assert rule_text.rules_of(text) == [before[0], NEW, before[1]]
@@ -142,9 +142,9 @@ def test_shipped_rules_survive_being_written(tmp_path):
     from tests.conftest import ROOT
 
     text = (ROOT / "icd" / "profiles" / "cubeadcs.yaml").read_text(encoding="utf-8")
-    again = text
+    rewritten = text
     for index, rule in enumerate(rule_text.rules_of(text)):
-        again = rule_text.with_rule(again, index, rule)
-    assert rule_text.rules_of(again) == rule_text.rules_of(text)
-    (tmp_path / "p.yaml").write_text(again, encoding="utf-8")
+        rewritten = rule_text.with_rule(rewritten, index, rule)
+    assert rule_text.rules_of(rewritten) == rule_text.rules_of(text)
+    (tmp_path / "p.yaml").write_text(rewritten, encoding="utf-8")
     assert len(profile.load(tmp_path / "p.yaml").rules) == len(rule_text.rules_of(text))

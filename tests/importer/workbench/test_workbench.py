@@ -1,4 +1,4 @@
-"""A person writes a profile in the workbench, with the keyboard alone, and gets an ICD
+"""A user writes a profile in the workbench with the keyboard alone and gets an ICD
 without findings.
 """
 
@@ -28,7 +28,7 @@ NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
 def manual(path):
-    """Two messages of one kind and a table of pins."""
+    """Return a manual with two messages of one kind and a table of pins."""
     return draw(path, [
         heading("4 Telemetry"), heading("4.1 Motor state (0x21)", 2), text("Sent once a second."),
         table([["Byte", "Name", "Unit", "Remarks"], ["0", "Mode", "", "see below"], ["1-2", "Speed", "rpm", ""]]),
@@ -86,13 +86,15 @@ def test_a_rule_gives_fields_and_findings_of_all_tables_of_its_kind_at_once(addr
         (["Byte", "Name", "Unit", "Remarks"], [1, 2]),
         (["Pin", "Function"], [3]),
     ]
-    assert [one["rules"] for one in state["tables"]] == [[], [], []]
+    assert [table["rules"] for table in state["tables"]] == [[], [], []]
     state = ask(address, "/api/rule", {"index": None, "rule": RULE})["state"]
-    assert [(one["rules"], one["fields"], one["messages"]) for one in state["tables"]] == [
+    assert [(table["rules"], table["fields"], table["messages"]) for table in state["tables"]] == [
         ([0], 2, ["Motor state"]), ([0], 2, ["Supply"]), ([], 0, []),
     ]  # fmt: skip
     assert [
-        one["code"] for one in state["findings"] if one["severity"] == "warning"
+        finding["code"]
+        for finding in state["findings"]
+        if finding["severity"] == "warning"
     ] == ["IMP100"]
     (message,) = ask(address, "/api/table/1")["messages"]
     assert [(f["at"], f["bits"], f["name"], f["unit"]) for f in message["fields"]] == [
@@ -120,20 +122,22 @@ def test_a_rule_with_errors_keeps_its_last_valid_form_and_other_rules_still_work
     assert "not YAML" in refused[0]["message"]
     pins = {"tables": {"head": "Pin | Function"}, "what": "ignore"}
     state = ask(address, "/api/rule", {"index": None, "rule": pins})["state"]
-    assert [(one["rules"], one["fields"]) for one in state["tables"]] == [
+    assert [(table["rules"], table["fields"]) for table in state["tables"]] == [
         ([0], 2),
         ([0], 2),
         ([1], 0),
     ]
     state = ask(address, "/api/rule", {"index": 1, "rule": None})["state"]
-    assert state["errors"] == [error] and [one["rules"] for one in state["tables"]] == [
+    assert state["errors"] == [error] and [
+        table["rules"] for table in state["tables"]
+    ] == [
         [0],
         [0],
         [],
     ]
     for action in ("undo", "undo", "undo"):
         state = ask(address, f"/api/{action}", {})["state"]
-    assert state["errors"] == [] and [one["fields"] for one in state["tables"]] == [
+    assert state["errors"] == [] and [table["fields"] for table in state["tables"]] == [
         2,
         2,
         0,
@@ -151,7 +155,7 @@ def test_a_new_rule_with_errors_belongs_to_its_tables_and_gives_nothing(
     state = ask(address, "/api/rule", {"index": None, "rule": RULE})["state"]
     state = ask(address, "/api/rule", {"index": None, "rule": rule})["state"]
     assert [error["rule"] for error in state["errors"]] == [1]
-    assert [one["rules"] for one in state["tables"]] == [[0], [0], [1]]
+    assert [table["rules"] for table in state["tables"]] == [[0], [0], [1]]
     assert ask(address, "/api/save", {})["done"]["files"] == [
         f"{tmp_path}/rules.yaml: written"
     ]
@@ -223,7 +227,11 @@ def test_a_second_rule_of_a_table_stands_behind_the_first(address, session):
     }
     answer = ask(address, "/api/rule", {"index": None, "rule": second, "behind": 0})
     assert answer["done"] == 1
-    assert [one["rules"] for one in answer["state"]["tables"]] == [[0, 1], [0, 1], [2]]
+    assert [table["rules"] for table in answer["state"]["tables"]] == [
+        [0, 1],
+        [0, 1],
+        [2],
+    ]
     assert yaml.safe_load(session.text)["rules"][:2] == [{**RULE, "also": True}, second]
     assert (
         yaml.safe_load(ask(address, "/api/undo", {}) and session.text)["rules"][0]
@@ -255,7 +263,7 @@ def test_pages_of_other_sites_change_nothing(address, session):
 
 @contextmanager
 def browser():
-    """A page of Chromium; scripts with errors fail the test."""
+    """Open a page of Chromium. Errors in scripts fail the test."""
     program = next((path for name in NAMES if (path := shutil.which(name))), None)
     if program is None:
         pytest.skip("no Chromium: scripts/test installs it")
@@ -265,31 +273,31 @@ def browser():
         running = playwright.chromium.launch(
             executable_path=program, args=["--no-sandbox"]
         )
-        made = running.new_page(viewport={"width": 1600, "height": 900})
+        new_page = running.new_page(viewport={"width": 1600, "height": 900})
         problems: list[str] = []
-        made.on("pageerror", lambda error: problems.append(str(error)))
-        made.on(
+        new_page.on("pageerror", lambda error: problems.append(str(error)))
+        new_page.on(
             "console",
             lambda message: (
                 problems.append(message.text) if message.type == "error" else None
             ),
         )
-        yield made
+        yield new_page
         assert problems == []
         running.close()
 
 
 @pytest.fixture
 def page(address):
-    with browser() as made:
-        made.goto(address)
-        made.get_by_role("heading", name="table 1").wait_for()
-        yield made
+    with browser() as opened_page:
+        opened_page.goto(address)
+        opened_page.get_by_role("heading", name="table 1").wait_for()
+        yield opened_page
 
 
 def answered(page, typed: str):
-    """Wait for the answer to the change that sends what was typed: that to an earlier
-    change may come first.
+    """Wait for the answer to the change that sends the typed text. The answer to an
+    earlier change may come first.
     """
     return page.expect_response(
         lambda response: (
@@ -300,7 +308,9 @@ def answered(page, typed: str):
 
 
 def tab_to(page, label: str) -> None:
-    """Press Tab until the control of this name has the focus: it must be reachable so."""
+    """Press Tab until the control of this name has the focus, which proves that the
+    keyboard reaches it.
+    """
     script = """() => { const one = document.activeElement;
         return one.getAttribute("aria-label") || one.labels?.[0]?.textContent.trim() || one.textContent.trim(); }"""
     for _ in range(120):
@@ -351,9 +361,8 @@ def test_a_profile_is_written_with_the_keyboard_alone(page, session, tmp_path):
     page.get_by_role("status").filter(has_text="no findings").wait_for()
 
     written = yaml.safe_load((tmp_path / "rules.yaml").read_text(encoding="utf-8"))
-    assert written["node"] == {
-        "byte_order": "big"
-    }  # the bit order has no effect on whole bytes
+    # The bit order does not matter for complete bytes.
+    assert written["node"] == {"byte_order": "big"}
     assert [rule.get("what", "message") for rule in written["rules"]] == [
         "message",
         "ignore",
@@ -395,9 +404,8 @@ def test_changes_are_undone_and_made_again_with_the_keyboard(page, session):
     page.get_by_role("button", name="Remove the rule").wait_for()
     assert session.text == changed
     page.get_by_role("button", name="Undo").click()
-    page.get_by_role(
-        "button", name="Make a rule for this kind"
-    ).click()  # a new change ends what could be redone
+    # A new change clears the list of changes to redo.
+    page.get_by_role("button", name="Make a rule for this kind").click()
     page.get_by_label("These tables are").wait_for()
     assert page.get_by_role("button", name="Redo").is_disabled()
 
@@ -441,11 +449,11 @@ def test_the_document_is_read_again_by_the_headings_of_rules(tmp_path):
     }
     session.set_rule(None, rule)
     session.read_document()
-    assert [one.titles for one in session.tables] == [["Item", "Wert", "Bemerkung"]]
+    assert [table.titles for table in session.tables] == [["Item", "Wert", "Bemerkung"]]
     assert session.state()["tables"][0]["rules"] == [0]
 
 
-def test_the_rule_as_yaml_says_what_the_page_has_no_control_for(page):
+def test_the_yaml_of_a_rule_contains_keys_without_a_control(page):
     from playwright.sync_api import expect
 
     page.get_by_role("button", name="Make a rule for this kind").click()
@@ -471,15 +479,14 @@ def test_the_command_serves_the_page_until_it_is_interrupted(tmp_path):
         "mine.yaml",
         "--workbench",
     ]
+    # A background job ignores interrupts.
     with subprocess.Popen(
         command,
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(
-            signal.SIGINT, signal.SIG_DFL
-        ),  # a job in the background ignores it
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:
         line = running.stdout.readline()
         address = re.search("http://[0-9.:]+", line)
@@ -519,9 +526,8 @@ def test_the_page_asks_before_it_overwrites_the_work_of_an_editor(page, tmp_path
     assert (tmp_path / "rules.yaml").read_text(encoding="utf-8") == edited
     page.get_by_role("button", name="Undo").click()
     page.get_by_role("button", name="Ignore this kind").wait_for()
-    page.keyboard.press(
-        "Control+s"
-    )  # the page knows the file, so that this is no conflict
+    # The page has read the file, so this is no conflict.
+    page.keyboard.press("Control+s")
     page.get_by_role("status").filter(has_text="written").wait_for()
     assert "of the editor" not in (tmp_path / "rules.yaml").read_text(encoding="utf-8")
 
@@ -653,22 +659,22 @@ def test_the_result_has_enumerations_counts_and_strides(tmp_path):
         "columns": {"Byte": "byte", "Name": "name", "Size": "bytes", "Count": "count", "Group": "group", "Values": "members"},
     })  # fmt: skip
     assert session.state()["errors"] == []
-    with server.serve(session) as running, browser() as made:
+    with server.serve(session) as running, browser() as opened_page:
         threading.Thread(target=running.serve_forever, daemon=True).start()
-        made.goto(f"http://{server.HOST}:{running.server_port}")
-        made.locator("table.fields").wait_for()
+        opened_page.goto(f"http://{server.HOST}:{running.server_port}")
+        opened_page.locator("table.fields").wait_for()
         rows = [
             row.split("\t")[2:5]
-            for row in made.locator("table.fields").inner_text().split("\n")[1:]
+            for row in opened_page.locator("table.fields").inner_text().split("\n")[1:]
         ]
         assert rows == [
             ["Mode", "enum Mode", ""], ["Level", "uint", "6 times, every 2 bytes"],
             ["Current", "uint", "Channel: 20 times, every 4 bytes"], ["State", "uint", "Channel: 20 times, every 4 bytes"],
         ]  # fmt: skip
-        assert made.locator(".bits").count() == 1
-        made.get_by_text("Bytes 32 to 92").click()
-        made.get_by_label("layout of the bits of bytes 32 to 92").wait_for()
-        assert made.locator(".bits .byte").all_inner_texts() == [
+        assert opened_page.locator(".bits").count() == 1
+        opened_page.get_by_text("Bytes 32 to 92").click()
+        opened_page.get_by_label("layout of the bits of bytes 32 to 92").wait_for()
+        assert opened_page.locator(".bits .byte").all_inner_texts() == [
             str(byte) for byte in range(93)
         ]
         running.shutdown()
