@@ -1,4 +1,4 @@
-"""ICDs of earlier versions become those of the present one."""
+"""``icdgen fmt`` converts ICDs of earlier versions to the current one."""
 
 from __future__ import annotations
 
@@ -345,7 +345,7 @@ def test_errata_name_the_present_places():
         "icdgen: 1\nprotocol: {client: {}}\n",
     ],
 )
-def test_a_second_time_nothing_changes(text):
+def test_a_second_conversion_changes_nothing(text):
     once = format_text(text, "pump.yaml")
     assert format_text(once, "pump.yaml") == once
 
@@ -353,6 +353,6 @@ def test_a_second_time_nothing_changes(text):
 @pytest.mark.parametrize(
     "path", sorted((ROOT / "icd").glob("*.yaml")), ids=lambda path: path.name
 )
-def test_present_icds_stay_as_they_are(path):
+def test_current_icds_stay_unchanged(path):
     text = path.read_text(encoding="utf-8")
     assert format_text(text, path.name) == text

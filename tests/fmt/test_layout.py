@@ -1,5 +1,5 @@
-"""What ``icdgen fmt`` makes of files, as a reader sees it: the ``*.in.yaml`` here and
-their ``*.out.yaml``.
+"""The layout that ``icdgen fmt`` gives to files: the ``*.in.yaml`` here become their
+``*.out.yaml``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def formatted(text: str) -> str:
 
 @pytest.mark.parametrize("case", CASES, ids=lambda path: path.name)
 def test_canonical_layout(case):
-    """A difference that is meant: ``python -m tests.fmt.update``."""
+    """After an intended change run ``python -m tests.fmt.update``."""
     assert formatted(case.read_bytes().decode("utf-8")) == expected(
         case
     ).read_bytes().decode("utf-8")
@@ -103,6 +103,6 @@ def test_only_the_keys_that_all_rows_begin_with_are_aligned():
     ]
 
 
-def test_a_column_is_no_wider_than_what_is_followed_by_another():
+def test_the_width_of_a_column_ignores_the_last_cell_of_a_row():
     rows = [{"name": "name: A", "summary": "summary: S"}, {"name": "name: Much longer"}]
     assert aligned(rows) == ["{name: A, summary: S}", "{name: Much longer}"]

@@ -1,5 +1,5 @@
-"""What holds for every file: the layout is stable, no value changes, and each comment
-stays with what it is about.
+"""Properties of ``icdgen fmt`` for every file: the layout is stable, no value changes,
+and each comment stays at its line.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ quick = settings(
     suppress_health_check=list(HealthCheck),
 )
 
-# Text that YAML has a meaning of its own for, whole and in pieces.
+# Text with a special meaning in YAML, complete and in pieces.
 PIECES = ["a", "#", "# b", ":", "x:", "- ", "-", " ", "  ", "\n", "\n\n", "{", "}", ",", "[", "]", "'", '"', "\\", "|",
           ">", "%", "*", "&", "!", "?", "@", "`", "~", "=", "<<", "\t", "\r", "\x85", "\u2028", "é", "\u00a0", "---",
           "...", "0x1F", "010", "on", "Off", "2020-11-03", "12:30", "word", "1e5", ".inf"]  # fmt: skip
@@ -74,9 +74,7 @@ documents = st.dictionaries(
 
 
 def check(text: str) -> str:
-    """The formatted text, after everything that must hold for it; refused texts are not
-    our concern.
-    """
+    """Check all properties and return the formatted text. Refused texts are skipped."""
     try:
         before = source.parse(text.encode("utf-8"), "before")
     except Findings:
@@ -118,10 +116,9 @@ def test_any_text_that_the_loader_accepts(text):
     check(text)
 
 
-class Writer:
-    """Writes an ICD in a random style.
-
-    Each comment names a word, unique in the file, of the line it must stay with.
+class RandomWriter:
+    """Writes an ICD in a random style. Each comment contains a unique word of the line
+    at which it must stay.
     """
 
     def __init__(self, draw) -> None:
@@ -195,17 +192,17 @@ class Writer:
 
 @st.composite
 def commented(draw) -> str:
-    return Writer(draw).text()
+    return RandomWriter(draw).text()
 
 
 def about(line: str) -> str:
-    """The line without its comment."""
+    """Return the line without its comment."""
     return line.split("#")[0]
 
 
 @quick
 @given(commented())
-def test_each_comment_stays_with_what_it_is_about(text):
+def test_each_comment_stays_at_its_line(text):
     lines = [line for line in check(text).splitlines() if line.strip()]
     assert lines
     for index, line in enumerate(lines):
@@ -216,10 +213,10 @@ def test_each_comment_stays_with_what_it_is_about(text):
             owner = about(line)
         elif where == "below":
             owner = next(
-                about(one) for one in reversed(lines[:index]) if about(one).strip()
+                about(line) for line in reversed(lines[:index]) if about(line).strip()
             )
         else:
-            owner = next(about(one) for one in lines[index:] if about(one).strip())
+            owner = next(about(line) for line in lines[index:] if about(line).strip())
         assert word in owner.replace("}", " ").replace(",", " ").split(), line
 
 

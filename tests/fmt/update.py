@@ -1,4 +1,6 @@
-"""Writes the expected outputs anew: ``python -m tests.fmt.update``, then read the diff."""
+"""Rewrite the expected outputs: ``python -m tests.fmt.update``. Read the difference
+before committing it.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from tests.fmt.test_layout import CASES, expected
 
 
 def update() -> None:
-    """Formats every ``*.in.yaml`` beside this file into its ``*.out.yaml``."""
+    """Format every ``*.in.yaml`` of this folder into its ``*.out.yaml``."""
     for case in CASES:
         text = format_text(case.read_bytes().decode("utf-8"), case.name)
         expected(case).write_bytes(text.encode("utf-8"))

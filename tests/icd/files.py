@@ -1,4 +1,4 @@
-"""Small ICDs for tests: texts in, findings out."""
+"""Load and check small ICDs that tests give as text."""
 
 from __future__ import annotations
 
@@ -17,40 +17,38 @@ _FILE = re.compile(r"^# ([a-z_/]+\.yaml)\n", re.MULTILINE)
 
 
 def status(*fields: str, length: int = 2) -> str:
-    """A message `Status` with these fields, each the inside of a flow mapping."""
+    """Return a message `Status` with these fields, each the inside of a flow mapping."""
     rows = "".join(f"      - {{{field}}}\n" for field in fields)
     head = f"messages:\n  - name: Status\n    id: 130\n    kind: telemetry\n    length: {length}\n"
     return head + (f"    fields:\n{rows}" if fields else "")
 
 
 def write(folder: Path, text: str) -> Path:
-    """Writes ``demo.yaml``, and the files that begin with a line such as ``#
+    """Write ``demo.yaml``, and further files that start with a line such as ``#
     errata/demo.yaml``.
     """
-    main, *others = _FILE.split(text)
+    main, *parts = _FILE.split(text)
     path = folder / "demo.yaml"
     path.write_text(
         main if main.startswith("icdgen:") else HEAD + main, encoding="utf-8"
     )
-    for name, content in zip(others[0::2], others[1::2], strict=True):
+    for name, content in zip(parts[0::2], parts[1::2], strict=True):
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(content, encoding="utf-8")
     return path
 
 
 def loaded(folder: Path, text: str) -> Loaded:
-    """What loading the text gives, with the other files that stand beside
-    ``demo.yaml``.
-    """
+    """Load the text, with the further files next to ``demo.yaml``."""
     beside = [folder / name for name in _FILE.findall(text) if "/" not in name]
     return load([write(folder, text), *beside])
 
 
 def findings(folder: Path, text: str) -> list[Finding]:
-    """What is wrong with the text."""
+    """Return the findings of the text."""
     return loaded(folder, text).findings
 
 
 def codes(folder: Path, text: str) -> list[str]:
-    """The codes of what is wrong with the text, in order."""
+    """Return the codes of the findings of the text, in order."""
     return [f.code for f in findings(folder, text)]

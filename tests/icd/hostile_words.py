@@ -1,4 +1,4 @@
-"""An ICD whose every word is markup or a command to some documentation tool."""
+"""An ICD in which every text is markup or a command of some documentation tool."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ WORDS = (
 
 
 def tree() -> dict:
-    """Each word as name, summary, meaning, title; as beginning, middle and end."""
+    """Return an ICD with each word as name, summary, meaning and title; at the start,
+    in the middle and at the end.
+    """
     fields = [
         {
             "at": 8 * number, "bits": 8, "name": word, "identifier": f"field {number}", "type": "uint", "unit": "x<",
@@ -48,7 +50,7 @@ def tree() -> dict:
         }
         for number, word in enumerate(WORDS)
     ]  # fmt: skip
-    whole = {
+    combined = {
         "name": "all", "id": 200, "kind": "telemetry", "length": len(fields) + 1, "fields": [*fields, mode],
         "summary": " ".join(WORDS) * 3,
     }  # fmt: skip
@@ -59,12 +61,12 @@ def tree() -> dict:
         },
         "units": [{"symbol": "x<", "identifier": "x", "quantity": "<q> \\z"}],
         "enums": [{"name": "<i> mode", "identifier": "mode", "members": members, "summary": " ".join(WORDS)}],
-        "messages": [*messages, whole],
+        "messages": [*messages, combined],
     }  # fmt: skip
 
 
 def write(folder: Path) -> Path:
-    """As a file of that folder."""
+    """Write the ICD into the folder."""
     path = folder / "hostile.yaml"
     path.write_text(json.dumps(tree()))
     return path

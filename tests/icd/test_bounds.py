@@ -1,5 +1,5 @@
-"""Numbers of the protocol section: none passes the schema that generated code cannot
-hold.
+"""The schema only accepts numbers in the protocol section that generated code can
+represent.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import schema
 
-# Rules hold these, as most depend on other numbers, or they stand in no generated code.
+# Rules limit these numbers, because most depend on others, or no generated code has them.
 HELD_ELSEWHERE = {
     *(
         f"link/checksums/additionalProperties/{key}"
@@ -28,19 +28,21 @@ HELD_ELSEWHERE = {
 }
 
 
-def whole_numbers(node: dict, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict]]:
-    """Every whole number of a part of the schema, by its path."""
+def integers_of_schema(
+    node: dict, path: tuple[str, ...] = ()
+) -> Iterator[tuple[str, dict]]:
+    """Yield every integer of a part of the schema with its path."""
     if node.get("type") == "integer":
         yield "/".join(path), node
     for key, value in node.items():
         if isinstance(value, dict):
-            yield from whole_numbers(
+            yield from integers_of_schema(
                 value, path if key == "properties" else (*path, key)
             )
 
 
 NUMBERS = dict(
-    whole_numbers(
+    integers_of_schema(
         json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]["protocol"]
     )
 )

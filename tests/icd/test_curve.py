@@ -1,4 +1,6 @@
-"""Curves: computed in doubles as the formula says, and back to the nearest raw value."""
+"""Calibrations are computed in doubles like their formula, and inverted to the nearest
+raw value.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ _RAWS = st.lists(_NUMBERS, min_size=2, max_size=8, unique_by=float).map(
 
 @st.composite
 def tables(draw: st.DrawFn) -> Curve:
-    """Any tables, and such that rise or fall all along."""
+    """Draw lookup tables, monotonic ones among them."""
     raws = draw(_RAWS)
     values = draw(st.lists(_NUMBERS.map(float), min_size=len(raws), max_size=len(raws)))
     values = draw(
@@ -70,33 +72,33 @@ def test_a_formula_is_multiplied_out_exactly_and_rounded_once(text, coefficients
         "raw^2 - raw^2 + 1",
     ],
 )
-def test_what_is_no_polynomial_is_refused(text):
+def test_other_formulas_than_polynomials_are_refused(text):
     with pytest.raises(formula.FormulaError):
         curve.parse(text)
 
 
 @given(COEFFICIENTS, st.integers(-(2**63), 2**64 - 1))
-def test_every_step_is_rounded_by_itself(one, raw):
-    exact = Fraction(one.coefficients[-1])
-    for coefficient in one.coefficients[-2::-1]:
+def test_every_step_is_rounded_by_itself(curve, raw):
+    exact = Fraction(curve.coefficients[-1])
+    for coefficient in curve.coefficients[-2::-1]:
         product = codec.to_double(exact * Fraction(float(raw)))
         exact = Fraction(codec.to_double(Fraction(product) + Fraction(coefficient)))
-    assert one.double(raw) == float(exact)
+    assert curve.double(raw) == float(exact)
 
 
 def _rounded(exact: Fraction) -> Fraction:
     return Fraction(codec.to_double(exact))
 
 
-def _between(one: Curve, raw: float) -> float:
-    """What the documents say of a table: on the line between two points every step is
-    rounded by itself.
+def _between(curve: Curve, raw: float) -> float:
+    """Return the value between two points as documented: every step is rounded
+    separately.
     """
-    points = one.points
+    points = curve.points
     is_beyond = not points[0][0] <= raw <= points[-1][0]
-    if is_beyond and one.outside == "refuse":
+    if is_beyond and curve.outside == "refuse":
         return math.nan
-    if is_beyond and one.outside == "clamp":
+    if is_beyond and curve.outside == "clamp":
         return points[0][1] if raw < points[0][0] else points[-1][1]
     at = max(
         [index for index, (start, _) in enumerate(points) if start <= raw], default=0
@@ -117,33 +119,33 @@ def _between(one: Curve, raw: float) -> float:
     | st.integers(-400, 700)
     | st.floats(-1e300, 1e300),
 )
-def test_a_table_is_what_its_definition_says_to_the_last_bit(one, raw):
-    found, wanted = one.double(raw), _between(one, float(raw))
-    assert struct.pack(">d", found) == struct.pack(">d", wanted)
+def test_a_lookup_table_follows_its_definition_to_the_last_bit(curve, raw):
+    actual, wanted = curve.double(raw), _between(curve, float(raw))
+    assert struct.pack(">d", actual) == struct.pack(">d", wanted)
 
 
 @given(tables())
-def test_at_its_points_a_table_has_their_values(one):
-    assert [one.double(raw) for raw, _ in one.points] == [
-        value for _, value in one.points
+def test_at_its_points_a_table_has_their_values(curve):
+    assert [curve.double(raw) for raw, _ in curve.points] == [
+        value for _, value in curve.points
     ]
 
 
 @given(tables())
-def test_beyond_its_points_a_table_is_as_it_says(one):
-    (first, low), (last, high) = one.points[0], one.points[-1]
+def test_beyond_its_points_a_lookup_table_follows_its_outside_key(curve):
+    (first, low), (last, high) = curve.points[0], curve.points[-1]
     for number in (
         math.nextafter(first, -math.inf),
         -math.inf,
         math.nextafter(last, math.inf),
         math.inf,
     ):
-        value = one.double(number)
-        if one.outside == "clamp":
+        value = curve.double(number)
+        if curve.outside == "clamp":
             assert value == (low if number < first else high)
-        elif one.outside == "refuse":
+        elif curve.outside == "refuse":
             assert struct.pack(">d", value).hex() == "7ff8000000000000"
-    assert math.isnan(one.double(math.nan))
+    assert math.isnan(curve.double(math.nan))
 
 
 @pytest.mark.parametrize(
@@ -158,7 +160,7 @@ def test_beyond_its_points_a_table_is_as_it_says(one):
         ([[0, "-1e308"], [0.5, "1e308"]], "too steep"),
     ],
 )
-def test_points_that_are_no_table_are_refused(points, why):
+def test_invalid_points_are_refused(points, why):
     with pytest.raises(formula.FormulaError, match=why):
         curve.table(curve.doubles(points), "clamp")
 
@@ -185,12 +187,12 @@ def test_points_are_numbers_however_they_are_written(tmp_path: Path):
 @given(
     COEFFICIENTS | tables(), st.integers(1, 9), st.booleans(), st.floats(-1e12, 1e12)
 )
-def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, value):
+def test_the_inverse_gives_the_nearest_raw_value(curve, bits, is_signed, value):
     field = Scalar(
-        name="any", at=0, bits=bits, type="int" if is_signed else "uint", curve=one
+        name="any", at=0, bits=bits, type="int" if is_signed else "uint", curve=curve
     )
     raws = range(field.settable_raws[0], field.settable_raws[1] + 1)
-    values = [one.double(raw) for raw in raws]
+    values = [curve.double(raw) for raw in raws]
     pairs = list(pairwise(values))
     assert field.is_invertible == (
         bool(pairs) and (all(a < b for a, b in pairs) or all(a > b for a, b in pairs))
@@ -202,14 +204,14 @@ def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, 
     for raw, physical in zip(raws, values, strict=True):
         assert codec.raw_from_physical(field, physical) == raw
     if min(values) <= value <= max(values):
-        wanted = min(raws, key=lambda raw: (abs(value - one.double(raw)), raw % 2))
+        wanted = min(raws, key=lambda raw: (abs(value - curve.double(raw)), raw % 2))
         assert codec.raw_from_physical(field, value) == wanted
     else:
         with pytest.raises(codec.CodecError):
             codec.raw_from_physical(field, value)
 
 
-def test_a_table_leads_back_to_raw_values_between_its_points():
+def test_a_lookup_table_is_inverted_between_its_points():
     points = ((10.0, 1.0), (20.5, 4.0), (70000.0, 5.0))
     ends = {
         outside: Scalar(
@@ -248,7 +250,7 @@ def test_wider_fields_and_powers_of_floats_are_only_read():
     ).is_invertible
 
 
-def test_a_float_takes_what_is_finite_in_its_width():
+def test_a_float_accepts_values_that_are_finite_in_its_width():
     field = Scalar(
         name="any", at=0, bits=32, type="float", curve=curve.parse("raw*0.5")
     )
@@ -259,7 +261,7 @@ def test_a_float_takes_what_is_finite_in_its_width():
             codec.raw_from_physical(field, value)
 
 
-def test_a_result_that_is_no_number_has_always_the_same_bits():
+def test_a_nan_result_always_has_the_same_bits():
     field = Scalar(
         name="any", at=0, bits=32, type="float", curve=curve.parse("raw^2 - raw")
     )

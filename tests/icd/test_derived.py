@@ -1,6 +1,4 @@
-"""Values that are derived from fields: what formulas mean, and that each step is a
-double.
-"""
+"""Derived values: the meaning of formulas, and that each step is computed in doubles."""
 
 from __future__ import annotations
 
@@ -28,8 +26,8 @@ _derived = import_module("icdgen_runtime._derived")
 
 
 def result(text: str, **values: float) -> float:
-    found = parse(text, values)
-    return found.double([values[name] for name in found.fields])
+    expression = parse(text, values)
+    return expression.double([values[name] for name in expression.fields])
 
 
 @pytest.mark.parametrize(
@@ -46,7 +44,7 @@ def result(text: str, **values: float) -> float:
         ("x - C", ("x", "C")),
     ],
 )
-def test_a_name_is_the_longest_that_stands_there(text, fields):
+def test_the_longest_matching_name_is_used(text, fields):
     assert set(parse(text, NAMES).fields) == set(fields)
 
 
@@ -87,7 +85,7 @@ def test_numbers_without_a_field_are_exact_and_rounded_once():
     assert number == 1.0
 
 
-def test_dividing_by_zero_gives_what_ieee_754_says():
+def test_division_by_zero_follows_ieee_754():
     assert result("x/(y - y)", x=1.0, y=2.0) == math.inf
     assert result("x/(y*0)", x=-1.0, y=2.0) == -math.inf
     assert result("1/(y*0)", y=-2.0) == -math.inf
@@ -100,14 +98,16 @@ def test_a_minus_gives_no_negative_zero():
 
 
 @given(NUMBERS, NUMBERS)
-def test_the_runtime_divides_as_the_reference(one, other):
-    assert _same(derived.quotient(one, other), _derived.quotient(one, other))
-    if math.isfinite(one) and math.isfinite(other) and other:
+def test_the_runtime_divides_as_the_reference(dividend, other):
+    assert _same(derived.quotient(dividend, other), _derived.quotient(dividend, other))
+    if math.isfinite(dividend) and math.isfinite(other) and other:
         try:
-            exact = Fraction(one) / Fraction(other)
-            assert derived.quotient(one, other) == exact.numerator / exact.denominator
+            exact = Fraction(dividend) / Fraction(other)
+            assert (
+                derived.quotient(dividend, other) == exact.numerator / exact.denominator
+            )
         except OverflowError:
-            assert math.isinf(derived.quotient(one, other))
+            assert math.isinf(derived.quotient(dividend, other))
 
 
 @given(NUMBERS, st.integers(-65535, 65535) | st.integers(-20, 20))
@@ -130,25 +130,25 @@ def test_powers_are_found_by_squaring(x):
     assert _same(derived.power(x, 3.0), 1.0 * x * square)
 
 
-def test_what_changes_places_in_a_sum_or_a_product_is_the_same():
+def test_sums_and_products_are_commutative():
     assert parse("x*2 + C", NAMES).sense({}) == parse("C + 2*x", NAMES).sense({})
     assert parse("x - C", NAMES).sense({}) != parse("C - x", NAMES).sense({})
     assert parse("x - C", NAMES).sense({"C": "N0"}) == parse("x - N0", NAMES).sense({})
 
 
 @given(st.text("x+-*/^() 0123456789.eE\u00e9_[]", max_size=40))
-def test_any_text_is_a_formula_or_says_why_it_is_none(text):
+def test_any_text_is_a_formula_or_refused_with_a_reason(text):
     try:
-        found = parse(text, ["x", "0e", "+"])
+        expression = parse(text, ["x", "0e", "+"])
     except FormulaError as error:
         assert str(error)
     else:
-        assert isinstance(found.double([1.5] * len(found.fields)), float)
+        assert isinstance(expression.double([1.5] * len(expression.fields)), float)
 
 
 def test_a_long_formula_is_read():
     assert result("+".join(["x"] * 500), x=1.0) == 500.0
 
 
-def _same(one: float, other: float) -> bool:
-    return one == other or (math.isnan(one) and math.isnan(other))
+def _same(first: float, other: float) -> bool:
+    return first == other or (math.isnan(first) and math.isnan(other))

@@ -1,6 +1,4 @@
-"""A field that the manual divides in words is its parts, everywhere, and no bit of it
-is lost or moved.
-"""
+"""A split field equals its parts everywhere, and no bit is lost or moved."""
 
 from __future__ import annotations
 
@@ -22,9 +20,9 @@ ORDERS = st.sampled_from([(a, b) for a in ("little", "big") for b in ("lsb0", "m
 
 
 def item(**values) -> Map:
-    made = Map(Place("demo.yaml", 1, 1))
-    made.update(values)
-    return made
+    mapping = Map(Place("demo.yaml", 1, 1))
+    mapping.update(values)
+    return mapping
 
 
 def raw_at(at: int, bits: int, orders: tuple[str, str], frame: bytes) -> int:
@@ -36,12 +34,12 @@ def raw_at(at: int, bits: int, orders: tuple[str, str], frame: bytes) -> int:
 
 
 @given(ORDERS, st.integers(0, 15), st.integers(1, 33), st.data())
-def test_a_part_holds_the_bits_of_the_value_that_it_names(orders, at, bits, data):
-    whole = item(name="Whole", at=at, bits=bits, type="uint")
+def test_a_part_has_the_named_bits_of_the_value(orders, at, bits, data):
+    field = item(name="Whole", at=at, bits=bits, type="uint")
     start = data.draw(st.integers(0, bits - 1))
     count = data.draw(st.integers(1, bits - start))
-    assume(division.is_contiguous(whole, item(at=start, bits=count), *orders))
-    place = division.first_bit_of_part(whole, item(at=start, bits=count), *orders)
+    assume(division.is_contiguous(field, item(at=start, bits=count), *orders))
+    place = division.first_bit_of_part(field, item(at=start, bits=count), *orders)
     frame = data.draw(st.binary(min_size=6, max_size=6))
     value, part = raw_at(at, bits, orders, frame), raw_at(place, count, orders, frame)
     assert part == (value >> start) & ((1 << count) - 1)
@@ -53,16 +51,14 @@ def test_a_part_holds_the_bits_of_the_value_that_it_names(orders, at, bits, data
     st.integers(1, 33),
     st.data(),
 )
-def test_where_values_lie_in_one_run_of_bits_every_division_is_possible(
-    orders, at, bits, data
-):
+def test_consecutive_bits_can_be_split_in_every_way(orders, at, bits, data):
     cuts = sorted(data.draw(st.sets(st.integers(0, bits))) | {0, bits})
     parts = [item(name=f"P{a}", at=a, bits=b - a) for a, b in pairwise(cuts)]
-    whole = item(name="Whole", at=at, bits=bits, type="uint", bitfields=parts)
-    assert list(division.faults(whole, *orders)) == []
+    field = item(name="Whole", at=at, bits=bits, type="uint", bitfields=parts)
+    assert list(division.faults(field, *orders)) == []
 
 
-def test_parts_have_units_scales_and_the_words_of_the_whole(tmp_path: Path):
+def test_parts_have_units_scales_and_the_texts_of_the_split_field(tmp_path: Path):
     (tmp_path / "demo.yaml").write_text("""\
 icdgen: 1
 node: {name: demo, title: Demo, byte_order: big, bit_order: msb0}
@@ -84,13 +80,13 @@ messages:
 """)
     loaded = load([tmp_path])
     assert not loaded.findings
-    one = loaded.icd.node("demo").messages[0]
-    assert [(f.name, f.at, f.bits, f.type) for f in one.fields] == [
+    message = loaded.icd.node("demo").messages[0]
+    assert [(f.name, f.at, f.bits, f.type) for f in message.fields] == [
         ("First", 12, 4, "uint"),
         ("Second", 1, 11, "uint"),
         ("Fast", 0, 1, "bool"),
     ]
-    first, second, fast = one.fields
+    first, second, fast = message.fields
     assert (first.unit.symbol, codec.physical_double(first, 3), first.limits.max) == (
         "s",
         1.5,
@@ -99,5 +95,5 @@ messages:
     assert second.summary == "Bits 4 to 14 of Periods. Zero stops it."
     assert fast.summary == "Bit 15 of Periods. Not slow."
     assert codec.encode(
-        loaded.icd.node("demo"), one, {"First": 3, "Second": 1, "Fast": 1}
+        loaded.icd.node("demo"), message, {"First": 3, "Second": 1, "Fast": 1}
     ) == bytes.fromhex("8013")

@@ -1,4 +1,6 @@
-"""The examples that `icdgen rule` prints are what they are said to be."""
+"""The examples that `icdgen rule` prints break, or obey, exactly the rule they
+illustrate.
+"""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def test_a_derived_value_of_one_field_is_the_value_of_the_same_formula_of_the_fi
         ("raw & 1", "`&` is not part of a formula"),
     ],
 )
-def test_both_refuse_a_text_with_the_same_words(text, why):
+def test_formulas_of_fields_and_derived_values_have_the_same_errors(text, why):
     for parse in (formula.coefficients, lambda text: derived.parse(text, ["raw"])):
         with pytest.raises(FormulaError, match=re.escape(why)):
             parse(text)

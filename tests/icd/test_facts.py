@@ -1,4 +1,4 @@
-"""Single facts of the shipped ICDs that were held wrongly once, each against its place
+"""Single facts of the shipped ICDs that were once captured wrongly, each with its place
 in the manual.
 """
 
@@ -19,22 +19,22 @@ def icd():
 
 
 def field(icd, node: str, message: str, name: str):
-    (found,) = (
+    (match,) = (
         f
         for m in icd.node(node).messages
         if m.name == message
         for f in m.fields
         if f.name == name
     )
-    return found
+    return match
 
 
 def erratum(icd, id: str):
-    (found,) = (e for node in icd.nodes for e in node.errata if e.id == id)
-    return found
+    (match,) = (e for node in icd.nodes for e in node.errata if e.id == id)
+    return match
 
 
-def test_a_position_of_16_bits_is_not_told_in_metres(icd):
+def test_a_position_of_16_bits_is_not_in_metres(icd):
     """Tables 149 and 166: 32.767 km do not reach the orbit."""
     frame = decode(icd, "cubeacp", "219", bytes.fromhex("e80300000000"))
     assert (
@@ -47,9 +47,7 @@ def test_a_position_of_16_bits_is_not_told_in_metres(icd):
 
 
 @pytest.mark.parametrize("message", ["Estimation Parameters", "ADCS Configuration"])
-def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(
-    icd, message
-):
+def test_two_sampling_periods_in_a_byte_are_times_and_the_byte_is_not(icd, message):
     """Tables 192 and 200: the lower four bits are Cam1's, the upper four Cam2's."""
     fields = {
         f.name: f
@@ -99,12 +97,12 @@ def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(
         ),  # Table 188
     ],
 )
-def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
+def test_a_unit_in_words_is_captured(icd, node, message, name, unit):
     assert field(icd, node, message, name).unit.symbol == unit
 
 
 def test_flash_sizes_are_numbers(icd):
-    """Section 3.1: halves of 512 kB, of which each of seven areas holds one."""
+    """Section 3.1: halves of 512 kB, each with one of seven areas."""
     boot = icd.node("common").protocol["boot"]
     internal = boot["internal_flash"]
     upload = icd.node("common").protocol["procedures"]["upload"]
@@ -119,14 +117,14 @@ def test_flash_sizes_are_numbers(icd):
 def test_what_is_assumed_of_boot_attempts_and_reads_on_i2c_says_so(icd):
     assumptions = facts.of(icd, icd.node("common")).assumptions
     places = {(assumption.section, assumption.key) for assumption in assumptions}
-    assert ("boot", "attempts") in places  # section 3 counts in two ways
+    assert ("boot", "attempts") in places  # section 3 counts the attempts in two ways
     # Section 7.2.3 names no id for the reads.
     packets = "File Download Buffer with File Contents"
     assert (f"procedures.download.blocks.missing.{packets}", "requested_on") in places
 
 
 def test_only_error_flags_are_called_latched(icd):
-    """Section 3 sets the SRAM enabled state beside the error flags."""
+    """Section 3 lists the SRAM enabled state next to the error flags."""
     (state,) = (
         m for m in icd.node("bootloader").messages if m.name == "Bootloader State"
     )
@@ -134,7 +132,7 @@ def test_only_error_flags_are_called_latched(icd):
     assert "BOOT-014" not in {e.id for e in icd.node("bootloader").errata}
 
 
-def test_a_log_may_hold_the_time_of_the_receiver(icd):
+def test_a_log_may_contain_the_time_of_the_receiver(icd):
     """Table 216: bit 43."""
     assert [
         (row.bit, row.id)
@@ -145,7 +143,7 @@ def test_a_log_may_hold_the_time_of_the_receiver(icd):
 
 
 def test_pages_of_a_copy_are_not_given_as_those_of_the_manual(icd):
-    """Its own contents put section 6.3 on page 40, the copy that was captured does not."""
+    """The manual's contents put section 6.3 on page 40; the captured copy does not."""
     assert not [
         m.name for node in icd.nodes for m in node.messages if m.page is not None
     ]
@@ -174,16 +172,16 @@ def test_pages_of_a_copy_are_not_given_as_those_of_the_manual(icd):
         ("ACP-198", "is not said", "rules of the UART"),  # section 5.2
     ],
 )
-def test_a_note_does_not_gainsay_the_manual_or_another_note(icd, id, gone, holds):
+def test_a_note_does_not_contradict_the_manual_or_another_note(icd, id, gone, holds):
     assert gone not in erratum(icd, id).why and holds in erratum(icd, id).why
 
 
-def test_what_is_no_fault_is_no_note(icd):
+def test_correct_statements_have_no_note(icd):
     """Table 40 and section 5.5 say what a byte too many is; all set and get ids stand
     in Table 47; and so on.
     """
-    known = {e.id for node in icd.nodes for e in node.errata}
-    assert not known & {
+    erratum_ids = {e.id for node in icd.nodes for e in node.errata}
+    assert not erratum_ids & {
         "ACP-011",
         "COM-094",
         "COM-107",

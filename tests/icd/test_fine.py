@@ -1,4 +1,4 @@
-"""ICDs that look strange and are right: no rule may object."""
+"""ICDs that look unusual but are correct: no rule may report them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FINE = sorted(Path(__file__).with_name("fine").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("path", FINE, ids=lambda path: path.stem)
-def test_nothing_is_found(path):
+def test_an_unusual_correct_icd_has_no_finding(path):
     assert load([path]).findings == []
 
 
@@ -92,13 +92,13 @@ def test_a_device_adds_a_checksum_to_those_of_the_link_that_it_includes(tmp_path
     assert packet.check.algorithm.kind == "xor"
 
 
-def test_another_framing_has_nothing_of_the_link_that_it_replaces(tmp_path):
+def test_another_framing_replaces_the_link_completely(tmp_path):
     loaded = device(tmp_path, SLIP)
     assert loaded.findings == []
-    found = facts.of(loaded.icd, loaded.icd.node("device"))
-    (packet,) = found.stream.packets
+    link_facts = facts.of(loaded.icd, loaded.icd.node("device"))
+    (packet,) = link_facts.stream.packets
     assert packet.header_bytes == 1 and packet.trailer_bytes == 0
-    assert found.client.retries == 1
+    assert link_facts.client.retries == 1
 
 
 def test_responses_alone_do_not_change_the_link_of_an_included_file(tmp_path):

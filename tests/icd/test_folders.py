@@ -1,4 +1,4 @@
-"""Which files of a folder are ICDs."""
+"""The search for ICDs in a folder."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def write(folder, *names, text=None):
 
 def nodes(folder):
     loaded = load([folder])
-    assert [one.message for one in loaded.findings] == []
+    assert [finding.message for finding in loaded.findings] == []
     return [node.name for node in loaded.icd.nodes]
 
 
@@ -79,12 +79,12 @@ def test_hidden_folders_output_and_environments_are_not_searched(tmp_path):
 def test_a_file_of_the_folder_that_is_meant_as_an_icd_is_reported(tmp_path, text):
     write(tmp_path, "battery.yaml")
     (tmp_path / "broken.yaml").write_text(text)
-    assert [one.place.file for one in load([tmp_path]).findings][:1] == [
+    assert [finding.place.file for finding in load([tmp_path]).findings][:1] == [
         str(tmp_path / "broken.yaml")
     ]
 
 
-def test_a_folder_without_icds_says_what_an_icd_is(tmp_path):
+def test_the_error_for_a_folder_without_icds_explains_icds(tmp_path):
     (finding,) = load([tmp_path]).findings
     assert "no file *.yaml in it, or in a folder below" in finding.message
     write(tmp_path, "compose.yaml", text="services: {}\n")
@@ -102,11 +102,13 @@ def test_links_to_folders_are_not_followed(tmp_path):
 def test_a_search_of_too_many_folders_ends_with_a_finding(tmp_path, monkeypatch):
     monkeypatch.setattr(folders, "MOST_FOLDERS", 3)
     write(tmp_path, *(f"part{number}/battery.yaml" for number in range(4)))
-    finding, *_ = (one for one in load([tmp_path]).findings if one.code == "ICD001")
+    finding, *_ = (
+        finding for finding in load([tmp_path]).findings if finding.code == "ICD001"
+    )
     assert "more than 3 folders" in finding.message
 
 
-def test_a_new_file_below_makes_what_was_remembered_obsolete(tmp_path):
+def test_a_new_file_invalidates_the_cached_search(tmp_path):
     write(tmp_path, "icd/battery.yaml", "icd/notes.yaml", text="a: 1\n")
     inputs = load([tmp_path]).inputs
     assert {

@@ -1,4 +1,4 @@
-"""Formulas are exact: nothing is ever rounded, and what is not linear is refused."""
+"""Formulas are exact: nothing is rounded, and non-linear formulas are refused."""
 
 from __future__ import annotations
 
@@ -14,14 +14,16 @@ from icdgen.icd import exact, formula
 from icdgen.icd.formula import FormulaError, Scale, parse
 
 DECIMALS = st.builds(
-    lambda whole, digits: f"{whole}.{digits}" if digits else str(whole),
+    lambda digits_before, digits: (
+        f"{digits_before}.{digits}" if digits else str(digits_before)
+    ),
     st.integers(0, 10**6),
     st.text("0123456789", max_size=8),
 )
 
 
 def terms(depth: int) -> st.SearchStrategy[tuple[str, Fraction, Fraction]]:
-    """Linear expressions as text, with the slope and the constant that they stand for."""
+    """Draw linear expressions as text, with their slope and constant."""
     number = DECIMALS.map(lambda text: (text, Fraction(0), Fraction(text)))
     variable = st.just(("raw", Fraction(1), Fraction(0)))
     if depth == 0:
@@ -111,12 +113,12 @@ def test_the_integer_form_is_the_same_number_in_lowest_terms(scale, raw):
         ("10-raw", -1, 10),
     ],
 )
-def test_spellings(text, factor, offset):
+def test_formulas_may_be_spelt_in_several_ways(text, factor, offset):
     assert parse(text) == Scale(Fraction(factor), Fraction(offset))
 
 
 @given(st.text("raw vlue=+-*/^().0159e ", max_size=30))
-def test_any_other_text_is_refused_in_words(text):
+def test_any_other_text_is_refused_with_a_reason(text):
     try:
         scale = parse(text)
     except FormulaError as error:
@@ -138,7 +140,7 @@ def test_any_other_text_is_refused_in_words(text):
         (Fraction(1, 2**100), Fraction(1, 3**80), True),
     ],
 )
-def test_what_is_too_large_to_compute_everywhere(factor, offset, large):
+def test_numbers_too_large_for_a_language_are_refused(factor, offset, large):
     assert exact.is_too_large(Scale(Fraction(factor), Fraction(offset))) is large
 
 

@@ -1,5 +1,5 @@
-"""A model that was kept is the model that was loaded, and what is kept can hold nothing
-but models.
+"""A cached model equals the loaded model, and cache files can contain nothing but
+models.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from icdgen.loading import load
 
 
 @pytest.fixture(scope="module")
-def kept() -> bytes:
+def stored() -> bytes:
     loaded = load([shipped.icds()])
     return model_json.json_of_model(loaded.icd, loaded.inputs)
 
 
-def test_the_shipped_icds_come_back_the_same(kept):
+def test_the_shipped_icds_come_back_the_same(stored):
     loaded = load([shipped.icds()])
-    icd, inputs = model_json.model_of_json(kept)
+    icd, inputs = model_json.model_of_json(stored)
     assert (icd, inputs) == (loaded.icd, loaded.inputs)
     assert repr(icd) == repr(loaded.icd)  # 1 is not 1.0, and a tuple no list
-    assert model_json.json_of_model(icd, inputs) == kept
+    assert model_json.json_of_model(icd, inputs) == stored
 
 
-def test_what_two_fields_share_is_shared_again(kept):
-    icd, _ = model_json.model_of_json(kept)
+def test_objects_shared_by_two_fields_stay_shared(stored):
+    icd, _ = model_json.model_of_json(stored)
     enums = {id(enum) for node in icd.nodes for enum in node.enums}
     used = {
         id(f.enum)
@@ -51,15 +51,15 @@ def test_what_two_fields_share_is_shared_again(kept):
         '[{"is": "Icd", "nodes": []}, [[1]]]', "[" * 100_000, "\ud800", b"\xff\xfe",
     ],
 )  # fmt: skip
-def test_what_is_no_model_is_none(text):
+def test_other_json_is_no_model(text):
     data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
     assert model_json.model_of_json(data) is None
 
 
-def test_every_torn_model_is_none_or_a_model(kept):
-    for end in range(0, len(kept), 4099):
-        assert model_json.model_of_json(kept[:end]) is None
-    rows = json.loads(kept)
+def test_a_truncated_model_is_ignored(stored):
+    for end in range(0, len(stored), 4099):
+        assert model_json.model_of_json(stored[:end]) is None
+    rows = json.loads(stored)
     rows[0] = {"is": "Icd", "nodes": []}
     assert model_json.model_of_json(json.dumps(rows).encode()) == (
         Icd(()),

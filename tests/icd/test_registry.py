@@ -1,4 +1,6 @@
-"""The rules as a set: their order, their explanations, what an erratum accepts."""
+"""The set of rules: their order, their explanations, and findings that an erratum
+accepts.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ def test_rules_are_listed_by_code():
     assert all(code == rule.code for code, rule in rules.ALL.items())
 
 
-def test_titles_are_one_line_and_say_different_things():
+def test_titles_have_one_line_and_are_unique():
     titles = [rule.title for rule in rules.ALL.values()]
     assert len(set(titles)) == len(titles)
     assert all(len(title) < 100 and not title.endswith(".") for title in titles)
@@ -50,7 +52,7 @@ def test_an_unknown_code_is_refused_with_the_nearest():
         rules.explain("ICD21")
 
 
-def test_an_accepted_finding_is_gone(tmp_path):
+def test_an_accepted_finding_is_not_reported(tmp_path):
     assert codes(tmp_path, status(VOLTAGE, length=6)) == ["ICD024"]
     assert codes(tmp_path, status(VOLTAGE, length=6) + ACCEPTED) == []
 
@@ -62,12 +64,12 @@ def test_accepting_at_one_place_leaves_the_others(tmp_path):
         .replace("Status", "Other")
         .replace("130", "131")
     )
-    (found,) = findings(tmp_path, status(VOLTAGE, length=6) + other + ACCEPTED)
-    assert found.code == "ICD024"
-    assert "`Other`" in found.message
+    (finding,) = findings(tmp_path, status(VOLTAGE, length=6) + other + ACCEPTED)
+    assert finding.code == "ICD024"
+    assert "`Other`" in finding.message
 
 
-def test_the_name_of_a_field_with_an_accepted_finding_is_still_looked_at(tmp_path):
+def test_the_name_of_a_field_with_an_accepted_finding_is_still_checked(tmp_path):
     overlap = ACCEPTED.replace(
         "{message: Status}", "{message: Status, field: int}"
     ).replace("ICD024", "ICD021")
@@ -76,7 +78,7 @@ def test_the_name_of_a_field_with_an_accepted_finding_is_still_looked_at(tmp_pat
     assert codes(tmp_path, icd + overlap)[:1] == ["ICD070"]
 
 
-def test_what_is_described_for_the_rules_about_names_is_described_for_code_too(
+def test_the_rules_about_names_use_the_description_for_code(
     tmp_path,
 ):
     icd = status(VOLTAGE, "at: 8, bits: 16, name: Current, type: uint", length=3)
@@ -92,9 +94,15 @@ def test_findings_stand_in_the_order_of_the_file(tmp_path):
         f"at: {16 * n}, bits: 24, name: F{n}, type: float, unit: furlong, formula: 1/raw"
         for n in range(9)
     ]
-    found = findings(tmp_path, status(*fields, length=3))
-    assert {f.code for f in found} == {"ICD020", "ICD021", "ICD022", "ICD042", "ICD060"}
-    assert [f.place for f in found] == sorted(f.place for f in found)
+    reported = findings(tmp_path, status(*fields, length=3))
+    assert {f.code for f in reported} == {
+        "ICD020",
+        "ICD021",
+        "ICD022",
+        "ICD042",
+        "ICD060",
+    }
+    assert [f.place for f in reported] == sorted(f.place for f in reported)
 
 
 def test_a_finding_is_reported_once_for_an_icd_that_two_others_include(tmp_path):
@@ -113,7 +121,7 @@ def test_a_warning_does_not_make_the_icd_unusable(tmp_path):
     assert result.ok
 
 
-def test_the_model_holds_what_is_right_in_a_wrong_icd(tmp_path):
+def test_the_model_contains_the_valid_parts_of_an_invalid_icd(tmp_path):
     result = loaded(tmp_path, status(VOLTAGE, "at: 0, bits: x, name: Bad, type: uint"))
     assert not result.ok
     assert [f.name for f in result.icd.node("demo").messages[0].fields] == ["Voltage"]

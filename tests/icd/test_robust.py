@@ -1,13 +1,11 @@
-"""Whatever is done to an ICD or its overlay, loading it gives findings and never an
-exception.
-"""
+"""Loading any modified ICD or overlay gives findings and never an exception."""
 
 from __future__ import annotations
 
 import copy
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
@@ -156,7 +154,7 @@ WORDS = st.sampled_from(
 
 @st.composite
 def spoilt(draw, text: str) -> str:
-    """The text with up to three stretches replaced by something else."""
+    """Draw the text with up to three stretches replaced."""
     for _ in range(draw(st.integers(1, 3))):
         words = [
             i
@@ -189,26 +187,24 @@ def findings_of(icd: str, overlay: str) -> list:
     return loaded.findings
 
 
-def test_the_icd_and_the_overlay_are_nearly_right():
+def test_the_unmodified_icd_and_overlay_have_few_findings():
     assert {f.code for f in findings_of(ICD, OVERLAY)} == {"ICD080", "ICD084"}
 
 
 def paths(tree: object, path: tuple = ()) -> Iterator[tuple]:
-    """The way to every value of a tree."""
-    items = (
-        tree.items()
-        if isinstance(tree, dict)
-        else enumerate(tree)
-        if isinstance(tree, list)
-        else ()
-    )
+    """Yield the path to every value of a tree."""
+    items: Iterable[tuple] = ()
+    if isinstance(tree, dict):
+        items = tree.items()
+    elif isinstance(tree, list):
+        items = enumerate(tree)
     for key, value in items:
         yield (*path, key)
         yield from paths(value, (*path, key))
 
 
 def replaced(tree: object, path: tuple, value: object) -> str:
-    """The tree with one value replaced, as JSON, which is YAML."""
+    """Return the tree with one value replaced, as JSON, which is valid YAML."""
     tree = owner = copy.deepcopy(tree)
     for step in path[:-1]:
         owner = owner[step]
@@ -217,7 +213,7 @@ def replaced(tree: object, path: tuple, value: object) -> str:
 
 
 @pytest.mark.parametrize("value", [{}, [], -1], ids=["mapping", "list", "number"])
-def test_any_one_value_replaced(value):
+def test_an_icd_with_any_value_replaced_gives_findings(value):
     icd, overlay = yaml.safe_load(ICD), yaml.safe_load(OVERLAY)
     for path in paths(icd):
         assert isinstance(findings_of(replaced(icd, path, value), OVERLAY), list)
@@ -227,11 +223,11 @@ def test_any_one_value_replaced(value):
 
 @settings(max_examples=150, deadline=None)
 @given(spoilt(ICD))
-def test_a_spoilt_icd(icd):
+def test_a_damaged_icd_gives_findings(icd):
     assert isinstance(findings_of(icd, OVERLAY), list)
 
 
 @settings(max_examples=150, deadline=None)
 @given(spoilt(OVERLAY))
-def test_a_spoilt_overlay(overlay):
+def test_a_damaged_overlay_gives_findings(overlay):
     assert isinstance(findings_of(ICD, overlay), list)

@@ -1,4 +1,4 @@
-"""Rules with a calculation in them, against a slower way to come to the same answer."""
+"""Rules that calculate are compared with a slower calculation."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ def codes_of(text: str) -> list[str]:
 
 @FEW
 @given(RUNS, st.integers(1, 6))
-def test_overlaps_and_ends_are_those_that_counting_bits_finds(runs, length):
+def test_overlaps_and_ends_agree_with_counting_bits(runs, length):
     fields = [
         f"at: {at}, bits: {bits}, name: F{n}, type: uint"
         for n, (at, bits) in enumerate(runs)
     ]
-    found = codes_of(status(*fields, length=length))
+    reported = codes_of(status(*fields, length=length))
     covered = [bit for at, bits in runs for bit in range(at, at + bits)]
     past = sum(at + bits > length * 8 for at, bits in runs)
-    assert found.count("ICD020") == past
-    assert ("ICD021" in found) == (len(set(covered)) < len(covered))
-    assert ("ICD024" in found) == (max(covered) // 8 + 1 < length)
-    assert set(found) <= {"ICD020", "ICD021", "ICD024"}
+    assert reported.count("ICD020") == past
+    assert ("ICD021" in reported) == (len(set(covered)) < len(covered))
+    assert ("ICD024" in reported) == (max(covered) // 8 + 1 < length)
+    assert set(reported) <= {"ICD020", "ICD021", "ICD024"}
 
 
 SCALES = [
@@ -61,7 +61,7 @@ SCALES = [
         max_size=2,
     ),
 )
-def test_limits_are_out_of_reach_where_no_raw_value_is_within(kind, scale, limits):
+def test_limits_are_unreachable_if_no_raw_value_is_within(kind, scale, limits):
     formula, factor, offset = scale
     tenths = {key: Fraction(value, 10) for key, value in limits.items()}
     written = "".join(
@@ -89,12 +89,12 @@ def test_limits_are_out_of_reach_where_no_raw_value_is_within(kind, scale, limit
         all(within[key](value, limit) for key, limit in tenths.items())
         for value in physical
     )
-    found = codes_of(status(field, length=1))
-    assert (found == []) == reached
-    assert set(found) <= {"ICD033", "ICD034"}
+    reported = codes_of(status(field, length=1))
+    assert (reported == []) == reached
+    assert set(reported) <= {"ICD033", "ICD034"}
 
 
-def test_crc_parameters_mean_what_the_catalogues_mean():
+def test_crc_parameters_have_the_meaning_of_the_catalogues():
     data = b"123456789"
     assert crc(data, 32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF) == zlib.crc32(
         data
@@ -108,7 +108,7 @@ def test_crc_parameters_mean_what_the_catalogues_mean():
 
 
 @given(st.binary(max_size=50), st.integers(0, 0xFFFF))
-def test_crc_of_any_data(data, init):
+def test_the_crc_of_any_data_agrees_with_bitwise_division(data, init):
     assert crc(data, 16, 0x1021, init, False, False, 0) == binascii.crc_hqx(data, init)
     assert crc(data, 32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF) == zlib.crc32(
         data
@@ -131,21 +131,23 @@ def test_crc_of_any_data(data, init):
         ("int", 64, -(2**63), True),
     ],
 )
-def test_constants_at_the_edge_of_what_fits(tmp_path, kind, bits, const, fits):
+def test_constants_at_the_end_of_the_range_are_accepted(
+    tmp_path, kind, bits, const, fits
+):
     field = f"at: 0, bits: {bits}, name: Magic, type: {kind}, const: {const}"
-    found = codes(tmp_path, status(field, length=(bits + 7) // 8))
-    assert found == ([] if fits else ["ICD031"])
+    reported = codes(tmp_path, status(field, length=(bits + 7) // 8))
+    assert reported == ([] if fits else ["ICD031"])
 
 
-def test_the_place_of_a_finding_is_the_value_that_is_wrong(tmp_path):
+def test_the_place_of_a_finding_is_the_wrong_value(tmp_path):
     text = status("at: 0, bits:  24 , name: Voltage, type: uint")
-    (found,) = findings(tmp_path, text)
+    (finding,) = findings(tmp_path, text)
     line = (
         (tmp_path / "demo.yaml")
         .read_text(encoding="utf-8")
-        .splitlines()[found.place.line - 1]
+        .splitlines()[finding.place.line - 1]
     )
-    assert line[found.place.column - 1 :][: found.place.length] == "24"
+    assert line[finding.place.column - 1 :][: finding.place.length] == "24"
 
 
 def test_a_field_named_by_an_overlay_is_found_in_the_overlay(tmp_path):
@@ -163,15 +165,15 @@ entries:
     evidence: Table 7.
     confidence: likely
 """
-    (found,) = findings(
+    (finding,) = findings(
         tmp_path, status("at: 0, bits: 16, name: Voltage, type: uint") + overlay
     )
-    assert (found.code, Path(found.place.file).name, found.place.line) == (
+    assert (finding.code, Path(finding.place.file).name, finding.place.line) == (
         "ICD020",
         "demo.yaml",
         8,
     )
-    assert Path(found.place.file).parent.name == "errata"
+    assert Path(finding.place.file).parent.name == "errata"
 
 
 CRC = "kind: crc, width: 8, polynomial: 7, init: {init}, reflect_in: false, reflect_out: false, xor_out: {xor_out}"

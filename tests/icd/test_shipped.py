@@ -1,5 +1,5 @@
-"""The shipped ICDs: complete, clean with their errata, and caught by the rules without
-them.
+"""The shipped ICDs are complete and clean with their errata, and the rules report them
+without.
 """
 
 from __future__ import annotations
@@ -32,24 +32,24 @@ def icd():
 
 @pytest.fixture
 def as_printed(tmp_path) -> Path:
-    """The vendor layer without the errata."""
+    """Return the vendor layer without the errata."""
     for path in ICDS.glob("*.yaml"):
         shutil.copy(path, tmp_path)
     return tmp_path
 
 
 def test_nothing_is_missing(icd):
-    found = {}
+    counts = {}
     for node in icd.nodes:
         kinds = Counter(message.kind for message in node.messages)
         fields = sum(len(message.fields) for message in node.messages)
-        found[node.name] = (
+        counts[node.name] = (
             kinds["telecommand"],
             kinds["telemetry"],
             kinds["configuration"],
             fields,
         )
-    assert found == COUNTS
+    assert counts == COUNTS
     messages = [message for node in icd.nodes for message in node.messages]
     fields = [field for message in messages for field in message.fields]
     enums = [enum for node in icd.nodes for enum in node.enums]
@@ -70,13 +70,13 @@ def test_nothing_is_missing(icd):
     ]
 
 
-def test_every_erratum_says_where_why_and_how_sure(icd):
+def test_every_erratum_has_place_reason_and_confidence(icd):
     entries = [entry for node in icd.nodes for entry in node.errata]
     assert all(entry.title and entry.why and entry.evidence for entry in entries)
     assert len({entry.id for entry in entries}) == len(entries)
 
 
-def test_what_neither_changes_nor_accepts_is_a_note(icd):
+def test_an_entry_without_change_and_acceptance_is_a_note(icd):
     entries = [
         entry for node in icd.nodes for entry in node.errata if not entry.is_note
     ]
@@ -114,7 +114,7 @@ def test_what_neither_changes_nor_accepts_is_a_note(icd):
         ("ICD090", "", 2),  # an I2C address printed in three forms that disagree
     ],
 )
-def test_without_the_errata_the_rules_find_the_faults_that_a_machine_can_find(
+def test_without_the_errata_the_rules_report_the_detectable_errors(
     as_printed, code, where, count
 ):
     findings = [
@@ -124,7 +124,7 @@ def test_without_the_errata_the_rules_find_the_faults_that_a_machine_can_find(
     assert any(where in finding.message for finding in findings)
 
 
-def test_a_manual_that_says_something_else_makes_the_erratum_stale(tmp_path):
+def test_a_changed_manual_makes_the_erratum_stale(tmp_path):
     shutil.copytree(ICDS, tmp_path / "icd")
     path = tmp_path / "icd" / "common.yaml"
     line = next(

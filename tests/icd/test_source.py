@@ -1,5 +1,5 @@
-"""Every value of a file is where the tree says that it is, and means what it looks
-like.
+"""Every value of a file has its place in the tree, and the meaning that it appears to
+have.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def tree() -> Map:
 
 
 def shown(place: Place) -> str:
-    """The text at a place."""
+    """Return the text at a place."""
     return TEXT.splitlines()[place.line - 1][place.column - 1 :][: place.length]
 
 
@@ -55,13 +55,13 @@ def test_a_mapping_knows_where_it_begins(tree):
     assert message.at("no such key") == message.place
 
 
-def test_numbers_texts_and_absent_values_are_what_they_look_like(tree):
+def test_numbers_texts_and_absent_values_have_their_apparent_type(tree):
     assert tree["messages"][0]["length"] == 16
     assert tree["messages"][0]["fields"][1] == {"at": -1.5, "bits": None}
     assert isinstance(tree["messages"], Seq)
 
 
-def test_a_byte_order_mark_at_the_beginning_moves_nothing():
+def test_a_byte_order_mark_does_not_change_places():
     tree = source.parse(b"\xef\xbb\xbficdgen: 1\n", "demo.yaml")
     assert tree.key_at("icdgen") == Place("demo.yaml", 1, 1, 6)
 
@@ -96,7 +96,7 @@ def test_a_byte_order_mark_at_the_beginning_moves_nothing():
         ("10BASE", "10BASE"),
     ],
 )
-def test_plain_values(text, value):
+def test_plain_values_have_their_type(text, value):
     read = source.parse(f"a:\n {text}\n".encode(), "demo.yaml")["a"]
     assert read == value
     assert type(read) is type(value)
@@ -109,11 +109,14 @@ on On OFF yes No y N True NULL 2020-11-03
 
 
 @pytest.mark.parametrize("text", TREACHEROUS.split())
-def test_values_that_readers_disagree_about_are_refused(text):
+def test_values_with_different_meanings_in_yaml_readers_are_refused(text):
     with pytest.raises(Findings) as error:
         source.parse(f"a: {text}\n".encode(), "demo.yaml")
-    (found,) = error.value.findings
-    assert (found.code, found.place) == ("ICD003", Place("demo.yaml", 1, 4, len(text)))
+    (finding,) = error.value.findings
+    assert (finding.code, finding.place) == (
+        "ICD003",
+        Place("demo.yaml", 1, 4, len(text)),
+    )
 
 
 @given(st.integers(-(10**30), 10**30))
@@ -123,9 +126,9 @@ def test_integers_are_read_as_written(number):
 
 @given(st.text(st.characters(exclude_categories=("Cs",)), max_size=40))
 def test_a_text_in_quotes_is_read_as_written(text):
-    quoted = json.dumps(
-        text
-    )  # JSON strings are YAML, but for characters outside the basic plane; NUL is refused
+    # JSON strings are YAML, except for characters outside the basic plane. NUL is
+    # refused.
+    quoted = json.dumps(text)
     if "\\ud" not in quoted and "\\u0000" not in quoted:
         assert source.parse(f"a: {quoted}\n".encode(), "demo.yaml")["a"] == text
 

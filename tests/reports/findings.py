@@ -1,4 +1,4 @@
-"""Findings that are hard to print."""
+"""Findings that are difficult to print."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reports for programs: JSON, GitHub's workflow commands, SARIF."""
+"""Reports for programs: JSON, workflow commands of GitHub, SARIF."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_json_has_the_correction_and_the_other_place():
     assert twice["related"] == place | {"label": "the first of this name"}
 
 
-def test_github_escapes_what_would_end_a_command():
+def test_github_escapes_characters_that_end_a_command():
     assert get("github")(ALL, TEXTS).splitlines() == [
         "::error title=icdgen ICD020,file=icd/demo.yaml,line=2,endLine=2,col=7,endColumn=19"
         "::ICD020: `Voltage` is 100%25 wrong: it ends, alas%0Ahelp: correct it",
@@ -51,7 +51,7 @@ def test_github_escapes_what_would_end_a_command():
     ]
 
 
-def test_github_says_nothing_where_there_is_nothing():
+def test_github_prints_nothing_without_findings():
     assert get("github")([], TEXTS) == ""
 
 

@@ -1,5 +1,5 @@
-"""The report for people: what is wrong, the line, a caret under the right characters,
-and what to do.
+"""The report for people: the error, the line, a caret under the right characters, and
+the remedy.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from tests.reports.findings import CORRECTED, ERROR, NOTE, TEXTS, TWICE, WARNING
 
 
 def shown(line: int, column: int, length: int, text: str | None = None) -> list[str]:
-    """Excerpt and caret of a place."""
+    """Return excerpt and caret of a place."""
     texts = TEXTS if text is None else {"icd/demo.yaml": text}
-    found = Finding("ICD020", "wrong", Place("icd/demo.yaml", line, column, length))
+    finding = Finding("ICD020", "wrong", Place("icd/demo.yaml", line, column, length))
     gutter = len(str(line)) + 3
-    return [row[gutter:] for row in get("text")([found], texts).splitlines()[2:4]]
+    return [row[gutter:] for row in get("text")([finding], texts).splitlines()[2:4]]
 
 
 def test_a_finding_as_it_is_printed():
@@ -56,10 +56,10 @@ def test_two_places_are_shown_in_the_order_of_the_file():
 
 
 def test_the_place_in_another_file_is_named():
-    there = Place("other.yaml", 11, 1, 4)
-    found = TWICE._replace(related=TWICE.related._replace(place=there))
+    other_place = Place("other.yaml", 11, 1, 4)
+    finding = TWICE._replace(related=TWICE.related._replace(place=other_place))
     assert get("text")(
-        [found], TEXTS | {"other.yaml": "\n" * 10 + "name\n"}
+        [finding], TEXTS | {"other.yaml": "\n" * 10 + "name\n"}
     ).splitlines()[1:8] == [
         "   |",
         " 4 | 温度: {at: 0, bits: 温}",
@@ -122,10 +122,10 @@ def test_of_a_line_of_ten_thousand_columns_a_window_is_shown():
 @pytest.mark.parametrize(
     "column", [1, 2, 29, 30, 31, 99, 100, 101, 9_001, 10_004, 10_005, 10_006]
 )
-def test_the_caret_is_under_its_character_wherever_the_window_is(column):
+def test_the_caret_is_under_its_character_in_a_shortened_line(column):
     line, caret = shown(5, column, 1)
-    whole = TEXTS["icd/demo.yaml"].splitlines()[4]
-    wanted = whole[column - 1 : column + 4]
+    line_text = TEXTS["icd/demo.yaml"].splitlines()[4]
+    wanted = line_text[column - 1 : column + 4]
     assert line[len(caret) - 1 :].startswith(
         wanted[: max(1, len(line) - len(caret) - 3)].strip()
     )
@@ -174,9 +174,9 @@ def test_a_message_of_ten_thousand_characters_is_cut():
     st.integers(1, 400),
 )
 def test_any_line_gives_an_excerpt_that_fits(text, line, column, length):
-    found = excerpt(Lines(text), Place("demo.yaml", line, column, length))
-    if found is not None:
-        row, caret = found
+    excerpt_lines = excerpt(Lines(text), Place("demo.yaml", line, column, length))
+    if excerpt_lines is not None:
+        row, caret = excerpt_lines
         assert "\n" not in row
         assert len(row) <= WIDTH + 3
         assert caret.strip("^ ") == ""

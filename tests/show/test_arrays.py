@@ -1,4 +1,4 @@
-"""Arrays: one line for people, one object for programs."""
+"""``icdgen show`` prints an array as one line, and as one object in JSON."""
 
 from __future__ import annotations
 
@@ -49,20 +49,21 @@ def test_what_is_shown_for_programs_is_read_back_with_every_element(tmp_path):
     ).validate(tree)
     fields = tree["nodes"][0]["messages"][0]["fields"]
     assert [
-        (one["name"], one["offset"], one["bits"], one["count"]) for one in fields
+        (field["name"], field["offset"], field["bits"], field["count"])
+        for field in fields
     ] == [
         ("Temperatures", 0, 16, 3),
         ("Levels", 48, 12, 2),
     ]
-    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    key = lambda one: (  # noqa: E731
-        one.name,
-        one.at,
-        one.bits,
-        one.scale,
-        one.byte_order,
+    read_back = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    key = lambda field: (  # noqa: E731
+        field.name,
+        field.at,
+        field.bits,
+        field.scale,
+        field.byte_order,
     )
-    assert list(map(key, again.nodes[0].messages[0].fields)) == list(
+    assert list(map(key, read_back.nodes[0].messages[0].fields)) == list(
         map(key, icd.nodes[0].messages[0].fields)
     )
 

@@ -105,7 +105,7 @@ def test_the_keys_that_programs_look_for(shown):
         }
     ]
     assert "node_type" not in base and base["messages"] == [] and top["enums"] == []
-    reset, temperature, nothing = top["messages"]
+    reset, temperature, configuration = top["messages"]
     assert reset == {
         "name": "Reset", "kind": "telecommand", "id": 0, "length": 1, "acknowledge": False, "notes": ["TOP-003"],
         "fields": [{"name": "Magic", "offset": 0, "bits": 8, "type": "uint", "const": 0}],
@@ -123,7 +123,7 @@ def test_the_keys_that_programs_look_for(shown):
         {"name": "Count", "offset": 24, "bits": 8, "type": "uint", "unit": "stars", "scale": "5", "formula": "raw*5",
          "special": [{"value": 255, "meaning": "many"}]},
     ]  # fmt: skip
-    assert nothing == {
+    assert configuration == {
         "name": "Nothing",
         "kind": "telemetry",
         "id": 141,
@@ -145,8 +145,8 @@ def test_loggable_frames_of_a_node_and_of_all(shown):
 
 
 def test_errata_with_the_places_they_concern(shown):
-    (one,), (two, three) = (shown["nodes"][1][key] for key in ("errata", "notes"))
-    assert one == {
+    (erratum,), (two, three) = (shown["nodes"][1][key] for key in ("errata", "notes"))
+    assert erratum == {
         "id": "TOP-001", "title": "Wrong unit", "why": "It is.", "evidence": "Table 98.", "confidence": "likely",
         "tables": [98], "printed": {"unit": "C"}, "held": {"unit": "K"}, "changes": True,
         "places": [{"message": "Temperature", "field": "Air"}],
@@ -178,13 +178,13 @@ def test_the_published_schema_holds(shown, shipped, schema):
         lambda tree: tree["nodes"][1]["errata"][0]["places"].append({"field": "Air"}),
     ],
 )
-def test_the_published_schema_notices_what_is_wrong(shown, schema, spoil):
+def test_the_published_schema_refuses_invalid_output(shown, schema, spoil):
     tree = json.loads(json.dumps(shown))
     spoil(tree)
     assert not schema.is_valid(tree)
 
 
-def test_the_shipped_icds_have_what_the_manual_has(shipped):
+def test_the_shipped_icds_have_the_content_of_the_manual(shipped):
     messages = [message for node in shipped["nodes"] for message in node["messages"]]
     fields = [field for message in messages for field in message["fields"]]
     enums = [enum for node in shipped["nodes"] for enum in node["enums"]]

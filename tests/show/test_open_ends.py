@@ -1,4 +1,4 @@
-"""Messages of variable length: what is shown of them, and read back."""
+"""``icdgen show`` prints messages of variable length, and its JSON reads back."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def read():
     return loaded.icd
 
 
-def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it():
+def test_a_variable_length_array_is_one_line_with_its_limit_and_counter():
     icd = read()
     node = icd.node("open")
     tables = {
@@ -34,7 +34,7 @@ def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it():
     )
     assert "as many as Levels Count says" in tables["Counted"]
     assert "up to 80 x 8" in tables["Text"]
-    assert "Samples Count" not in "".join(tables.values())  # it is in no frame
+    assert "Samples Count" not in "".join(tables.values())  # no frame contains it
     assert "4 to 28 bytes" in to_text(icd, ["open", "Counted"])
 
 
@@ -44,13 +44,13 @@ def test_what_is_shown_for_programs_is_read_back_with_the_open_ends():
     jsonschema_rs.validator_for(
         json.loads(SCHEMA.read_text(encoding="utf-8"))
     ).validate(tree)
-    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    assert list(map(_facts, again.nodes[0].messages)) == list(
+    read_back = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    assert list(map(_facts, read_back.nodes[0].messages)) == list(
         map(_facts, icd.nodes[0].messages)
     )
 
 
-def test_fields_behind_a_part_are_shown_behind_it_and_read_back():
+def test_fields_after_a_variable_length_array_are_shown_and_read_back():
     icd = load([odd.FOLDER / "behind.yaml"]).icd
     node = icd.node("behind")
     rows = {
@@ -65,8 +65,8 @@ def test_fields_behind_a_part_are_shown_behind_it_and_read_back():
     jsonschema_rs.validator_for(
         json.loads(SCHEMA.read_text(encoding="utf-8"))
     ).validate(tree)
-    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    for old, new in zip(node.messages, again.nodes[0].messages, strict=True):
+    read_back = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    for old, new in zip(node.messages, read_back.nodes[0].messages, strict=True):
         assert _facts(old) == _facts(new)
         assert [(place.name, place.at) for place in places_in(old.layout)] == [
             (place.name, place.at) for place in places_in(new.layout)
@@ -92,8 +92,10 @@ def test_arrays_in_elements_are_shown_with_their_counters_and_read_back():
         if "counter" in field
     }
     assert counted == {"Points": ("Points Count", 0), "Levels": ("Last Level", 1)}
-    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    for old, new in zip(icd.nodes[0].messages, again.nodes[0].messages, strict=True):
+    read_back = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    for old, new in zip(
+        icd.nodes[0].messages, read_back.nodes[0].messages, strict=True
+    ):
         assert _facts(old) == _facts(new)
         assert _counted(old) == _counted(new)
 

@@ -1,4 +1,4 @@
-"""``icdgen show`` for people."""
+"""``icdgen show`` in its form for people."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def test_on_a_terminal_every_line_fits(icd, selection, width):
 
 @pytest.mark.parametrize("width", [20, 60, 80, 90, 100])
 @pytest.mark.parametrize("selection", [[], ["top"], ["top", "140"]])
-def test_on_a_terminal_nothing_is_cut(icd, selection, width):
+def test_on_a_terminal_no_text_is_cut(icd, selection, width):
     wide, narrow = (
         Counter("".join(text.replace("-", "").split()))
         for text in (to_text(icd, selection), to_text(icd, selection, width))

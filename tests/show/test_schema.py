@@ -1,6 +1,4 @@
-"""``icdgen show --format json`` of every feature of the format agrees with the schema
-that describes it.
-"""
+"""``icdgen show --format json`` of every feature of the format agrees with its schema."""
 
 from __future__ import annotations
 
@@ -30,7 +28,9 @@ FILES = [
 
 def shown(path: Path) -> object:
     loaded = load([path])
-    assert [one.message for one in loaded.findings if one.severity == "error"] == []
+    assert [
+        finding.message for finding in loaded.findings if finding.severity == "error"
+    ] == []
     return json.loads(json.dumps(to_json(loaded.icd)))
 
 
@@ -48,8 +48,8 @@ def test_every_example_of_the_format_is_shown_as_the_schema_says(tmp_path, name)
     assert violations(shown(path)) == []
 
 
-@pytest.mark.parametrize("feature", features(), ids=lambda one: one.name)
-def test_every_feature_said_otherwise_is_shown_as_the_schema_says(tmp_path, feature):
+@pytest.mark.parametrize("feature", features(), ids=lambda feature: feature.name)
+def test_every_other_form_of_a_feature_fits_the_schema(tmp_path, feature):
     path = tmp_path / "example.yaml"
     path.write_text(feature.changed(), encoding="utf-8")
     assert violations(shown(path)) == []

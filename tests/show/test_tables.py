@@ -1,4 +1,4 @@
-"""Text tables: for a pipe whole, for a terminal as wide as it is."""
+"""Text tables are complete in a pipe, and as wide as the terminal otherwise."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROWS = [
 ]
 
 
-def test_in_a_pipe_nothing_is_cut_and_no_line_ends_in_spaces():
+def test_in_a_pipe_no_text_is_cut_and_no_line_ends_in_spaces():
     assert render_table(COLUMNS, ROWS) == (
         "name   value  remark\n"
         "-----  -----  -----------------------------------------------\n"

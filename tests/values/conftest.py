@@ -1,4 +1,4 @@
-"""An ICD with one of everything."""
+"""Fixture: an ICD with every kind of field."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bytes of a message that is named -> what they say."""
+"""Decode bytes of a named message."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from icdgen.values.frame import DecodedFrame, decoded_frame
 
 
 def decode(icd: Icd, node: str, key: str, data: bytes) -> DecodedFrame:
-    """What the bytes of a message say."""
+    """Return the decoded frame of a message."""
     return decoded_frame(icd, find_node(icd, node), find_message(icd, node, key), data)

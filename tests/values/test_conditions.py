@@ -1,4 +1,4 @@
-"""Fields that are not always there, as people give and read them."""
+"""Optional fields on the command line."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ def frame(icd, *values):
     return encode.encode(icd, "mux", "Choice", list(values)).data.hex()
 
 
-def test_only_what_is_there_is_given_and_shown(icd):
+def test_only_present_fields_are_given_and_shown(icd):
     assert frame(icd, "type=1", "value=5") == "0500000000000040"
     assert frame(icd, "type=0") == "0" * 16
-    (found,) = recognize(icd, "0500000000000040", "mux", "Choice")
-    assert [(row.field.name, row.raw) for row in found.frame.rows] == [
+    (decoded,) = recognize(icd, "0500000000000040", "mux", "Choice")
+    assert [(row.field.name, row.raw) for row in decoded.frame.rows] == [
         ("Value", 5),
         ("Type", 1),
     ]
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "expected"),
     [
         (["type=1"], "no value for `Value`"),
         (["value=1"], "no value for `Type`"),
         (["type=2", "value=1"], "`Value` is absent: it is present only if Type is 1"),
     ],
 )
-def test_what_is_missing_or_not_there_is_said(icd, values, said):
-    with pytest.raises(BadValue, match=said):
+def test_missing_and_absent_fields_are_reported(icd, values, expected):
+    with pytest.raises(BadValue, match=expected):
         frame(icd, *values)
 
 
@@ -60,8 +60,8 @@ def test_a_condition_is_shown_to_people_and_programs(icd):
         json.loads(SCHEMA.read_text(encoding="utf-8"))
     ).validate(tree)
     (fast,) = (
-        one
-        for one in tree["nodes"][0]["messages"][0]["fields"]
-        if one["name"] == "Is Fast"
+        field
+        for field in tree["nodes"][0]["messages"][0]["fields"]
+        if field["name"] == "Is Fast"
     )
     assert fast["when"] == {"Flag": [1], "Mode": [1, 3]}

@@ -1,4 +1,4 @@
-"""What ``icdgen decode`` says of a frame."""
+"""The output of ``icdgen decode`` for a frame."""
 
 from __future__ import annotations
 
@@ -147,7 +147,9 @@ def test_all_values_of_a_range_have_its_name(icd):
         (-9998.0, ()),
     ],
 )
-def test_special_values_of_floats_are_told_and_every_nan_is_one(icd, value, remarks):
+def test_special_values_of_floats_are_shown_and_every_nan_is_special(
+    icd, value, remarks
+):
     assert everything(icd, precise=value).rows[4].remarks == remarks
 
 
@@ -191,7 +193,7 @@ def test_names_cannot_write_to_the_terminal(tmp_path):
         assert "A\\u{1b}[2J[bold]" in text
 
 
-def test_a_text_is_shown_as_it_reads_and_its_bytes_are_kept(icd):
+def test_a_text_is_shown_readably_and_its_raw_value_is_its_bytes(icd):
     data = b"1.2\x1b\xff\0rest?!"
     assert len(data) == 12
     shown = decode(icd, "top", "Version", data)

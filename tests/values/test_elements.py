@@ -1,6 +1,4 @@
-"""Elements that are given for the command line: by their index, and as many as there
-are.
-"""
+"""Elements of arrays on the command line: by index, and as many as the array has."""
 
 from __future__ import annotations
 
@@ -48,7 +46,7 @@ def icd(tmp_path_factory):
 
 @pytest.mark.parametrize("raw", [False, True])
 @pytest.mark.parametrize(
-    ("message", "given"),
+    ("message", "assignments"),
     [
         ("One", ["a=[]"]),
         ("One", ["a=[1]"]),
@@ -57,11 +55,13 @@ def icd(tmp_path_factory):
         ("Two", ["b=00", "last=0"]),
     ],
 )
-def test_fewer_elements_than_there_always_are_are_refused(icd, message, given, raw):
+def test_fewer_elements_than_there_always_are_are_refused(
+    icd, message, assignments, raw
+):
     with pytest.raises(
         BadValue, match=r"`A` has at least (1 element|2 elements), [01] given"
     ):
-        encode(icd, "demo", message, given, raw)
+        encode(icd, "demo", message, assignments, raw)
 
 
 @pytest.mark.parametrize(

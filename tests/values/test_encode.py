@@ -1,4 +1,4 @@
-"""What ``icdgen encode`` makes of ``name=value``."""
+"""``icdgen encode`` with values as ``name=value``."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def test_every_type(icd, name, value, raw):
         ),
     ],
 )
-def test_every_type_refuses_what_is_not_of_it(icd, name, value, words):
+def test_every_type_refuses_values_of_other_types(icd, name, value, words):
     assert words in str(refusal(everything, icd, name, value))
 
 
@@ -206,7 +206,7 @@ def test_all_missing_fields_are_named_at_once(icd):
     assert error.help == "give each field as name=value"
 
 
-def test_everything_wrong_is_said_at_once(icd):
+def test_all_errors_are_reported_at_once(icd):
     error = refusal(
         encode,
         icd,
@@ -225,7 +225,7 @@ def test_everything_wrong_is_said_at_once(icd):
     assert error.help == "`icdgen show top 'Set Speed'` lists the values of each field"
 
 
-def test_a_remedy_stands_with_what_it_is_good_for(icd):
+def test_a_remedy_is_next_to_its_error(icd):
     error = refusal(encode, icd, "top", "Set Speed", ["x=1", "timeout=61"])
     assert str(error).splitlines() == [
         "Timeout: takes 0 to 60 s, not 61 (--raw encodes it anyway)",
@@ -235,7 +235,7 @@ def test_a_remedy_stands_with_what_it_is_good_for(icd):
     assert alone.help == "--raw encodes it anyway"
 
 
-def test_a_message_without_fields_needs_nothing(icd):
+def test_a_message_without_fields_needs_no_values(icd):
     assert encode(icd, "top", "42", []).data == b""
 
 
@@ -257,7 +257,9 @@ def test_a_double_is_the_nearest_to_its_decimal(value):
 
 @given(st.integers(0, 2**32 - 1), st.fractions(0, 1))
 def test_a_single_is_the_nearest_to_the_exact_decimal_not_to_a_double(bits, between):
-    """Between any two neighbours the nearer one is taken, however close to the middle."""
+    """The nearer of two neighbours is chosen, however close the decimal is to the
+    middle.
+    """
     bits = bits & 0x7F7FFFFF if (bits >> 23) & 0xFF == 0xFF else bits & 0x7FFFFFFF
     bits = min(bits, 0x7F7FFFFE)
     low, high = (
@@ -320,7 +322,7 @@ def test_a_text_is_typed_as_it_is(icd):
     assert bare.data == b"\xff" * 10 + b"1\0"
 
 
-def test_a_view_says_what_the_fields_make_of_its_bits_and_is_not_set(icd):
+def test_an_overlay_field_shows_the_bits_of_other_fields_and_cannot_be_set(icd):
     sent = encode(icd, "top", "Seen Twice", ["low=0x5A", "high=0x81"], kind="telemetry")
     assert sent.data == b"\x5a\x81"
     assert [(row.field.name, row.text) for row in sent.rows] == [
@@ -372,7 +374,7 @@ def test_an_element_of_an_array_is_given_by_its_index(icd, name):
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "expected"),
     [
         (
             ["temperatures=[1, 2]", "levels=[0,0]"],
@@ -397,12 +399,10 @@ def test_an_element_of_an_array_is_given_by_its_index(icd, name):
         (["temps=[1,2,3]", "levels[0]=1"], "no value for `Levels[1]`"),
     ],
 )
-def test_what_an_array_does_not_take_is_said_of_the_array_or_of_its_element(
-    icd, values, said
-):
+def test_errors_of_an_array_name_the_array_or_its_element(icd, values, expected):
     with pytest.raises(BadValue) as caught:
         encode(icd, "top", "Set Heaters", values)
-    assert said in str(caught.value)
+    assert expected in str(caught.value)
 
 
 def test_a_value_beyond_the_limits_and_one_beyond_the_type_are_refused_with_the_same_range(

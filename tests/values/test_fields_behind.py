@@ -1,4 +1,4 @@
-"""Fields behind a part of variable length, as people give and read them."""
+"""Fields after a variable-length field on the command line."""
 
 from __future__ import annotations
 
@@ -27,14 +27,15 @@ def icd():
         ("Nothing in front", ["values=[-1]", "time=1"], "ffff 3f800000"),
     ],
 )
-def test_a_field_is_sent_behind_the_elements_that_are_given(
-    icd, message, values, expected
-):
-    given = encode.encode(icd, "behind", message, values)
-    assert given.data == bytes.fromhex(expected)
-    assert decoded_frame(icd, given.node, given.message, given.data).rows == given.rows
+def test_a_field_is_sent_after_the_given_elements(icd, message, values, expected):
+    encoded = encode.encode(icd, "behind", message, values)
+    assert encoded.data == bytes.fromhex(expected)
+    assert (
+        decoded_frame(icd, encoded.node, encoded.message, encoded.data).rows
+        == encoded.rows
+    )
 
 
-def test_a_field_behind_must_be_given(icd):
+def test_a_field_after_an_array_is_required(icd):
     with pytest.raises(BadValue, match="no value for `CRC`"):
         encode.encode(icd, "behind", "Packet", ["sender=1", "payload=aa"])

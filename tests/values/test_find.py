@@ -1,4 +1,4 @@
-"""What a person may type for a node, a message or a field."""
+"""Names that a user may type for a node, a message or a field."""
 
 from __future__ import annotations
 
@@ -87,9 +87,7 @@ def test_an_id_of_both_directions_needs_the_kind(icd):
         ),
     ],
 )
-def test_what_is_not_there_is_answered_with_what_could_be_meant(
-    icd, node, key, words, help
-):
+def test_an_unknown_name_gets_suggestions(icd, node, key, words, help):
     with pytest.raises(NotFound) as caught:
         find_message(icd, node, key)
     assert words in str(caught.value)
@@ -112,10 +110,10 @@ def test_what_is_not_there_is_answered_with_what_could_be_meant(
     ],
 )
 def test_a_field_by_any_words_that_no_other_has(icd, message, key, name):
-    found = find_message(icd, "top", message)
+    message_ = find_message(icd, "top", message)
     assert (
         find_field(
-            found, icd.longest_frame(found), key, find_node(icd, "top").vocabulary
+            message_, icd.longest_frame(message_), key, find_node(icd, "top").vocabulary
         ).name
         == name
     )

@@ -1,4 +1,4 @@
-"""The spellings in which people have bytes at hand."""
+"""Spellings of bytes that a user may paste."""
 
 from __future__ import annotations
 

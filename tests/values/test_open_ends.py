@@ -1,4 +1,4 @@
-"""Messages of variable length, as people give and read them."""
+"""Messages of variable length on the command line."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def curves():
 
 
 def given_curves(*values):
-    """What is given for two curves: the same for each, but for the values, which have
-    the names of their curves.
+    """Return the input for two curves, which only differs in the values named after
+    their curves.
     """
     return [
         *(f"curves[{number}].{value}" for number in (0, 1) for value in CURVE),
@@ -88,7 +88,7 @@ def test_points_of_each_curve_are_counted_for_all(curves):
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "expected"),
     [
         (
             [
@@ -113,13 +113,13 @@ def test_points_of_each_curve_are_counted_for_all(curves):
         (["points count=0"], r"no value for `Curves\[0\].Levels\[0\]`"),
     ],
 )
-def test_points_that_one_curve_lacks_are_said(curves, values, said):
-    with pytest.raises(BadValue, match=said):
+def test_missing_points_of_a_curve_are_reported(curves, values, expected):
+    with pytest.raises(BadValue, match=expected):
         encode.encode(curves, "curves", "Curves", given_curves(*values))
 
 
 @pytest.mark.parametrize(
-    ("message", "values", "said"),
+    ("message", "values", "expected"),
     [
         ("Narrow", ["number=3"], "no value for `Samples`"),
         ("Narrow", ["number=3", "samples=[0,0,0,0,0,0]"], "up to 5 values"),
@@ -140,37 +140,37 @@ def test_points_that_one_curve_lacks_are_said(curves, values, said):
         ("Text", ["severity=1", f"match={'x' * 81}"], "80 ASCII characters"),
     ],
 )
-def test_what_is_missing_or_too_much_is_said(icd, message, values, said):
-    with pytest.raises(BadValue, match=said):
+def test_missing_and_surplus_elements_are_reported(icd, message, values, expected):
+    with pytest.raises(BadValue, match=expected):
         frame(icd, message, *values)
 
 
-def test_only_what_is_in_a_frame_is_shown(icd):
-    (found,) = recognize(icd, "03 000001 ffffff", "open", "Narrow")
-    assert [(row.field.name, row.raw) for row in found.frame.rows] == [
+def test_only_elements_in_the_frame_are_shown(icd):
+    (decoded,) = recognize(icd, "03 000001 ffffff", "open", "Narrow")
+    assert [(row.field.name, row.raw) for row in decoded.frame.rows] == [
         ("Number", 3),
         ("Samples[0]", 0x010000),
         ("Samples[1]", -1),
     ]
-    (found,) = recognize(icd, "0001 6869", "open", "Text")
-    assert [row.text for row in found.frame.rows] == ["1", "hi"]
-    assert found.frame.to_json()["length"] == 4
+    (decoded,) = recognize(icd, "0001 6869", "open", "Text")
+    assert [row.text for row in decoded.frame.rows] == ["1", "hi"]
+    assert decoded.frame.to_json()["length"] == 4
 
 
 def test_a_frame_without_its_last_zeros_shows_all_fields(icd):
-    (found,) = recognize(icd, "2f 60", "open", "Two")
-    assert [(row.field.name, row.raw) for row in found.frame.rows] == [
+    (decoded,) = recognize(icd, "2f 60", "open", "Two")
+    assert [(row.field.name, row.raw) for row in decoded.frame.rows] == [
         ("Whole", 0b011110110)
     ]
-    (found,) = recognize(icd, "2f", "open", "Two")
-    assert [row.raw for row in found.frame.rows] == [0b011110000]
-    (found,) = recognize(icd, "8c 00 05", "open")  # 140
-    assert found.message.name == "Cut Off" and len(found.frame.rows) == 18
+    (decoded,) = recognize(icd, "2f", "open", "Two")
+    assert [row.raw for row in decoded.frame.rows] == [0b011110000]
+    (decoded,) = recognize(icd, "8c 00 05", "open")  # 140
+    assert decoded.message.name == "Cut Off" and len(decoded.frame.rows) == 18
     assert frame(icd, "Two", "whole=0") == "0000"
 
 
 @pytest.mark.parametrize(
-    ("message", "text", "said"),
+    ("message", "text", "expected"),
     [
         ("Two", "00 00 00", "Two has 1 to 2 bytes, 3 given"),
         ("Narrow", "03 00", "Narrow has 1 to 16 bytes, 2 given"),
@@ -182,19 +182,21 @@ def test_a_frame_without_its_last_zeros_shows_all_fields(icd):
         ("Gauges", "0000 0001", "2 are needed"),
     ],
 )
-def test_a_frame_of_another_length_than_it_says_is_refused(icd, message, text, said):
-    with pytest.raises(BadLength, match=said):
+def test_a_frame_of_another_length_than_it_says_is_refused(
+    icd, message, text, expected
+):
+    with pytest.raises(BadLength, match=expected):
         recognize(icd, text, "open", message)
 
 
 def test_a_frame_is_found_by_its_id_if_its_count_is_right(icd):
-    (found,) = recognize(icd, "86 0100 012c", "open")  # 134: Gauges
-    assert found.message.name == "Gauges" and found.id == 134
+    (decoded,) = recognize(icd, "86 0100 012c", "open")  # 134: Gauges
+    assert decoded.message.name == "Gauges" and decoded.id == 134
 
 
 def test_structs_that_are_not_in_a_frame_are_not_shown(icd):
-    (found,) = recognize(icd, "01 90 2c 01 78", "open", "Turned Structs")
-    assert [row.field.name for row in found.frame.rows] == [
+    (decoded,) = recognize(icd, "01 90 2c 01 78", "open", "Turned Structs")
+    assert [row.field.name for row in decoded.frame.rows] == [
         "Inners[0].Type",
         *(f"Inners[0].Flags[{index}]" for index in range(4)),
         "Inners[0].Gauge",

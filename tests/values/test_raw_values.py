@@ -1,4 +1,4 @@
-"""Raw values that the reference codec takes and refuses."""
+"""Raw values that the reference codec accepts and refuses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wrong ICDs: every ``<theme>/<case>.yaml``, beside it the exact report in
+"""The invalid ICDs: every ``<theme>/<case>.yaml`` with its exact report in
 ``<case>.txt``.
 
 Files in sub-folders (``errata/``, ``parts/``) belong to the cases of their theme.
@@ -17,12 +17,12 @@ CASES = sorted(FOLDER.glob("*/*.yaml"))
 
 
 def name(case: Path) -> str:
-    """``layout/overlaps``"""
+    """Return the name of a case, such as ``layout/overlaps``."""
     return f"{case.parent.name}/{case.stem}"
 
 
 def report(case: Path) -> str:
-    """What `icdgen check` prints about it, run in its folder."""
+    """Return the output of `icdgen check` for a case, run in its folder."""
     with chdir(case.parent):
         loaded = load([Path(case.name)])
     return reports.get("text")(loaded.findings, loaded.texts)

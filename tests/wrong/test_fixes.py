@@ -1,6 +1,4 @@
-"""Corrected lines in reports: whoever writes them into the file gets rid of the
-finding.
-"""
+"""Writing the corrected lines of a report into the file removes the finding."""
 
 from __future__ import annotations
 
@@ -14,7 +12,7 @@ from icdgen.diagnostics import Finding
 from icdgen.loading import load
 from tests.wrong.cases import CASES, FOLDER, name
 
-MISTAKES = {  # what somebody writes -> the corrected line
+MISTAKES = {  # line with a mistake -> the corrected line
     "bits: 1, name: A, type: unit": "bits: 1, name: A, type: uint",
     "bits: 1, nmae: A, type: uint": "bits: 1, name: A, type: uint",
     "bits: 1, name: A, type: enum, enum: Mod": "bits: 1, name: A, type: enum, enum: Mode",
@@ -47,7 +45,9 @@ messages:
 def test_a_common_mistake_is_reported_with_the_corrected_line(wrong, tmp_path):
     path = tmp_path / "demo.yaml"
     path.write_text(ICD.format(wrong))
-    corrections = [one.fix for one in load([path]).findings if one.fix is not None]
+    corrections = [
+        finding.fix for finding in load([path]).findings if finding.fix is not None
+    ]
     assert corrections
     line = path.read_text().splitlines()[9]
     place, text = corrections[0]
@@ -61,7 +61,9 @@ def _findings(case: Path) -> list[Finding]:
 
 
 WITH_FIXES = [
-    case for case in CASES if any(one.fix is not None for one in _findings(case))
+    case
+    for case in CASES
+    if any(finding.fix is not None for finding in _findings(case))
 ]
 
 
@@ -85,15 +87,19 @@ def test_a_corrected_line_ends_the_finding(case, tmp_path):
         after = _findings(copy)
         path.write_bytes(original.encode())
         assert (finding.code, finding.message, finding.place) not in {
-            (one.code, one.message, one.place) for one in after
+            (finding.code, finding.message, finding.place) for finding in after
         }
 
 
 def test_values_that_span_lines_have_no_corrected_line(tmp_path):
-    """Their place is their first character, so a correction would leave the rest."""
+    """Their place is the first character, so a correction would leave the remaining
+    lines.
+    """
     path = tmp_path / "demo.yaml"
     path.write_text(
         ICD.format("bits: 1, name: A, type: enum, enum: Mo\n          de X")
         + "    # Mode\n"
     )
-    assert [one.fix for one in load([path]).findings if one.code == "ICD040"] == [None]
+    assert [
+        finding.fix for finding in load([path]).findings if finding.code == "ICD040"
+    ] == [None]

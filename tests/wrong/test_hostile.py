@@ -1,5 +1,5 @@
-"""Files made to hurt end in a finding, quickly; those that are too large to keep are
-made here.
+"""Hostile files quickly give a finding. Files too large for the repository are
+generated here.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ HEAD = (
 
 @pytest.fixture
 def check(tmp_path, monkeypatch):
-    """Writes a file, loads it, and gives ``(code, message)`` of each finding; all of it
-    within two seconds of processor time, as a bound of what hostile files may cost.
+    """Yield a function that writes a file, loads it and returns ``(code, message)`` of
+    each finding. Fails after two seconds of processor time, the limit for hostile
+    files.
 
     Objects of other tests are frozen meanwhile: after hours of tests, walking them cost
     the garbage collector more time than the file.
@@ -51,20 +52,20 @@ def test_a_scalar_of_ten_megabytes(check):
 
 
 def test_a_scalar_as_large_as_a_file_may_be(check):
-    (found,) = check(HEAD + 'vocabulary: ["' + "x" * (MAX_BYTES - 200) + '"]\n')
-    assert found == ("ICD001", f"a text of {MAX_BYTES - 200:,} characters")
+    (finding,) = check(HEAD + 'vocabulary: ["' + "x" * (MAX_BYTES - 200) + '"]\n')
+    assert finding == ("ICD001", f"a text of {MAX_BYTES - 200:,} characters")
 
 
 @pytest.mark.parametrize("opening", ["[", "{a: ", "- "])
 def test_nesting_ten_thousand_deep(check, opening):
-    (found,) = check("a:\n  " + opening * 10_000)
-    assert found == ("ICD001", "nested more than 40 deep")
+    (finding,) = check("a:\n  " + opening * 10_000)
+    assert finding == ("ICD001", "nested more than 40 deep")
 
 
 def test_ten_thousand_levels_of_indentation(check):
     lines = "".join(" " * level + "a:\n" for level in range(1_000))
-    (found,) = check(lines)
-    assert found == ("ICD001", "nested more than 40 deep")
+    (finding,) = check(lines)
+    assert finding == ("ICD001", "nested more than 40 deep")
 
 
 def test_a_formula_of_nothing_but_parentheses(check):
@@ -75,15 +76,19 @@ def test_a_formula_of_nothing_but_parentheses(check):
         + field
         + "]}]\n"
     )
-    (found,) = check(message % ("(" * 900 + "raw" + ")" * 90))
-    assert found[0] == "ICD060"
-    (found,) = check(message % ("(" * 199 + "5"))
-    assert found[0] == "ICD060"
+    (finding,) = check(message % ("(" * 900 + "raw" + ")" * 90))
+    assert finding[0] == "ICD060"
+    (finding,) = check(message % ("(" * 199 + "5"))
+    assert finding[0] == "ICD060"
 
 
 def test_names_of_ten_thousand_characters_are_cut_in_reports(check):
-    one = "  - {name: " + "X" * 9_000 + ", id: 1, kind: telecommand, length: 3}\n"
-    codes = {code for code, _ in check(HEAD + "messages:\n" + one + one)}
+    message_line = (
+        "  - {name: " + "X" * 9_000 + ", id: 1, kind: telecommand, length: 3}\n"
+    )
+    codes = {
+        code for code, _ in check(HEAD + "messages:\n" + message_line + message_line)
+    }
     assert {"ICD024", "ICD050", "ICD055"} <= codes
 
 
@@ -108,22 +113,22 @@ def test_thousands_of_fields_over_one_another(check):
         f"      - {{at: 0, bits: 8, name: F{n}, type: uint}}\n" for n in range(3_000)
     )
     head = "messages:\n  - name: Status\n    id: 130\n    kind: telemetry\n    length: 1\n    fields:\n"
-    found = check(HEAD + head + fields, longest=1_200_000)
-    assert {code for code, _ in found} == {"ICD021"}
-    assert len(found) == 2_999
+    reported = check(HEAD + head + fields, longest=1_200_000)
+    assert {code for code, _ in reported} == {"ICD021"}
+    assert len(reported) == 2_999
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    (found,) = load([tmp_path / "nothing.yaml"]).findings
-    assert (found.code, found.message) == (
+    (finding,) = load([tmp_path / "nothing.yaml"]).findings
+    assert (finding.code, finding.message) == (
         "ICD001",
         "cannot read the file: No such file or directory",
     )
 
 
 def test_a_nul_written_as_an_escape(check):
-    (found,) = check(HEAD + 'include: ["a\\0b.yaml"]\n')[:1]
-    assert found == ("ICD001", "the text contains a NUL character")
+    (finding,) = check(HEAD + 'include: ["a\\0b.yaml"]\n')[:1]
+    assert finding == ("ICD001", "the text contains a NUL character")
 
 
 def test_an_overlay_that_is_no_file_is_not_passed_over(tmp_path):

@@ -1,5 +1,5 @@
-"""Every wrong ICD gives exactly the report that stands beside it; every rule has a
-wrong ICD.
+"""Every invalid ICD gives exactly the report next to it, and every rule has an invalid
+ICD.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ def test_the_report_is_exactly_the_expected_one(case):
 
 
 def test_there_is_a_wrong_icd_for_every_rule():
-    found = set()
+    reported = set()
     for case in CASES:
-        found.update(
+        reported.update(
             re.findall(
                 r"\[(ICD[0-9]{3})\]",
                 case.with_suffix(".txt").read_text(encoding="utf-8"),
             )
         )
-    assert found == set(rules.ALL)
+    assert reported == set(rules.ALL)
 
 
 def test_every_wrong_icd_has_findings():

@@ -1,6 +1,5 @@
-"""Writes the expected reports anew: ``python -m tests.wrong.update``.
-
-Read the difference before it is committed.
+"""Rewrite the expected reports: ``python -m tests.wrong.update``. Read the difference
+before committing it.
 """
 
 from __future__ import annotations
