@@ -1,4 +1,4 @@
-"""Runs the command line in this process, as a user would from a folder of theirs."""
+"""Fixture that runs the command line in this process, in the folder of a user."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ class Result:
 
 @pytest.fixture
 def icdgen(tmp_path, monkeypatch, capsys):
-    """``icdgen("check", "x.yaml")`` -> `Result`; the current folder is ``tmp_path``."""
+    """Return a function ``icdgen("check", "x.yaml")`` -> `Result`. The current folder
+    is ``tmp_path``.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: object) -> Result:

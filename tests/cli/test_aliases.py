@@ -1,4 +1,4 @@
-"""Aliases: other names by which people look for messages, fields and enumerations."""
+"""Aliases: other names by which users find messages, fields and enumerations."""
 
 from __future__ import annotations
 
@@ -113,13 +113,13 @@ def test_encode_finds_message_field_and_array_by_aliases(icdgen, power, key):
 
 
 def test_a_field_of_an_array_of_structs_has_its_alias_with_the_path(icdgen, power):
-    others = ("battery voltage=0", "mode=nominal")
+    values = ("battery voltage=0", "mode=nominal")
     result = icdgen(
         "encode",
         "--icd",
         power,
         "beacon",
-        *others,
+        *values,
         "Cells[1].Cell Voltage=513",
         "cells[0].u=1",
     )
@@ -141,8 +141,8 @@ def test_a_misspelt_alias_suggests_the_real_name(icdgen, power):
 def test_a_name_comes_before_an_alias_of_the_same_words_in_another_message(
     icdgen, power
 ):
-    """`Battery Voltage` of one message does not hide a field that is called so in
-    another.
+    """`Battery Voltage` as an alias in one message does not hide a field with that name
+    in another.
     """
     text = POWER.replace(
         "name: Delay, aliases: [Hold-off Time]", "name: Battery Voltage"
@@ -179,7 +179,7 @@ def test_the_machine_readable_form_has_aliases_and_can_be_compared_with_the_file
     assert report["changes"] == []
 
 
-def test_the_diff_reports_a_changed_alias_as_words_only(icdgen, power, tmp_path):
+def test_the_diff_reports_a_changed_alias_as_a_text_change(icdgen, power, tmp_path):
     other = tmp_path / "new" / "power.yaml"
     other.parent.mkdir()
     other.write_text(
@@ -190,11 +190,15 @@ def test_the_diff_reports_a_changed_alias_as_words_only(icdgen, power, tmp_path)
     changes = json.loads(icdgen("diff", "--format", "json", power, other).out)[
         "changes"
     ]
-    assert [(one["code"], one["layer"]) for one in changes] == [("DIF401", "text")] * 2
+    assert [(change["code"], change["layer"]) for change in changes] == [
+        ("DIF401", "text")
+    ] * 2
 
 
 def test_generated_code_does_not_depend_on_aliases(icdgen, power, tmp_path):
-    """But for the digest of the ICD, which names the file that code was generated from."""
+    """Only the digest of the ICD differs. It identifies the file from which the code
+    was generated.
+    """
 
     def generated(name: str, text: str) -> dict[str, list[str]]:
         folder = tmp_path / name

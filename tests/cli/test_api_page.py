@@ -1,4 +1,4 @@
-"""The table of the API is made of programs, which do what it says in every language."""
+"""The programs behind the API table of the documents compile and run in every language."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tests.rust.tools import USED, Toolchain
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory) -> Path:
-    """What is generated from the ICD of the page."""
+def generated(tmp_path_factory) -> Path:
+    """Generate code from the ICD of the page."""
     folder = tmp_path_factory.mktemp("api")
     languages = [word for name in api_page.LANGUAGES for word in ("--lang", name)]
     command = [
@@ -34,18 +34,18 @@ def made(tmp_path_factory) -> Path:
     return folder
 
 
-def test_the_page_is_what_the_programs_say():
+def test_the_page_contains_the_code_of_the_programs():
     assert api_page.PAGE.read_text("utf-8") == api_page.page()
 
 
 @pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99")])
-def test_its_c_does_what_it_says(made, compiler, standard, tmp_path):
+def test_the_c_program_runs(generated, compiler, standard, tmp_path):
     source = shutil.copy(api_page.FOLDER / "imu.c", tmp_path)
     options = (
         f"-std={standard}",
         *harness.WARNINGS,
         *harness.SANITIZERS,
-        f"-I{made / 'c'}",
+        f"-I{generated / 'c'}",
     )
     program = harness.compile(
         source, *options, compiler=compiler, output=tmp_path / "imu"
@@ -54,10 +54,10 @@ def test_its_c_does_what_it_says(made, compiler, standard, tmp_path):
     assert done.returncode == 0, f"line {done.returncode}: {done.stderr[:2000]}"
 
 
-def test_its_python_does_what_it_says_and_is_typed(made, tmp_path):
+def test_the_python_program_runs_and_is_typed(generated, tmp_path):
     program, package = (
         shutil.copy(api_page.FOLDER / "imu.py", tmp_path),
-        str(made / "python"),
+        str(generated / "python"),
     )
     environment = {
         **os.environ,
@@ -73,9 +73,9 @@ def test_its_python_does_what_it_says_and_is_typed(made, tmp_path):
         assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_its_rust_does_what_it_says(made, tmp_path):
+def test_the_rust_program_runs(generated, tmp_path):
     tools = Toolchain("default")
-    library = tools.library(made / "rust" / "src" / "lib.rs", *USED)
+    library = tools.library(generated / "rust" / "src" / "lib.rs", *USED)
     program = tools.program(api_page.FOLDER / "imu.rs", library, tmp_path / "imu")
     done = subprocess.run([program], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -101,7 +101,7 @@ def test_its_rust_does_what_it_says(made, tmp_path):
         ),
     ],
 )
-def test_a_row_that_a_language_lacks_is_not_passed_over(
+def test_a_row_that_a_language_lacks_is_an_error(
     file, old, new, words, tmp_path, monkeypatch
 ):
     shutil.copytree(api_page.FOLDER, tmp_path / "api")

@@ -1,5 +1,5 @@
-"""The plug-in of docs/guides/add-a-language.md does what the page says, installed as a
-user would install it.
+"""The plug-in of docs/guides/add-a-language.md does what the page shows after
+installing it like a user.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ _FILE = re.compile(
 def installed(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("lua")
     files = {
-        found["path"]: found["text"]
-        for found in _FILE.finditer(PAGE.read_text("utf-8"))
+        match_["path"]: match_["text"]
+        for match_ in _FILE.finditer(PAGE.read_text("utf-8"))
     }
     assert len(files) == 4 and sum(text.count("\n") for text in files.values()) < 100
     for path, text in files.items():
@@ -51,7 +51,7 @@ def installed(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def icdgen(installed, tmp_path):
-    """Runs icdgen where the plug-in is installed; the site may be another."""
+    """Run icdgen with the plug-in installed; another site folder may be given."""
     (tmp_path / "demo.yaml").write_text(DEMO)
 
     def run(
@@ -71,7 +71,7 @@ def icdgen(installed, tmp_path):
     return run
 
 
-def test_it_generates_from_its_own_templates_and_runtime(icdgen, tmp_path):
+def test_a_plug_in_generates_from_its_own_templates_and_runtime(icdgen, tmp_path):
     assert icdgen("--lang", "lua", "--out", "out", "demo.yaml").returncode == 0
     assert (tmp_path / "out" / "demo.lua").read_text() == (
         'local registry = require("registry")\n\nlocal demo = {\n'
@@ -98,7 +98,7 @@ def test_it_generates_from_its_own_templates_and_runtime(icdgen, tmp_path):
         ),
     ],
 )
-def test_its_names_are_held_to_the_rules_where_it_is_generated(
+def test_names_of_a_plug_in_are_checked_if_it_is_generated(
     icdgen, tmp_path, name, words
 ):
     (tmp_path / "demo.yaml").write_text(DEMO.replace("name: Set Roll", f"name: {name}"))
@@ -114,7 +114,7 @@ def test_its_names_are_held_to_the_rules_where_it_is_generated(
     assert words in icdgen("check", "demo.yaml").stdout
 
 
-def test_its_files_can_be_replaced(icdgen, tmp_path):
+def test_files_of_a_plug_in_can_be_replaced(icdgen, tmp_path):
     (tmp_path / "own" / "lua").mkdir(parents=True)
     (tmp_path / "own" / "lua" / "node.lua.j2").write_text("-- {{ node.model.title }}\n")
     (tmp_path / "own" / "lua" / "registry.lua").write_text("-- ours\n")
@@ -130,7 +130,7 @@ def test_its_files_can_be_replaced(icdgen, tmp_path):
 
 @pytest.fixture
 def changed(installed, tmp_path):
-    """The installed plug-in with one thing changed in its class, or in its entry point."""
+    """Return the installed plug-in with a change in its class or its entry point."""
 
     def change(old: str, new: str) -> Path:
         site = tmp_path / "site"
@@ -146,7 +146,7 @@ def changed(installed, tmp_path):
 
 
 @pytest.mark.parametrize("place", ["for file in render.runtime_files():", "scope = "])
-def test_its_crash_is_a_clear_error(icdgen, changed, tmp_path, place):
+def test_a_crash_of_a_plug_in_is_a_clear_error(icdgen, changed, tmp_path, place):
     site = changed(
         place, f"1 / 0; {place}" if place == "scope = " else f"1 / 0\n        {place}"
     )
@@ -159,7 +159,7 @@ def test_its_crash_is_a_clear_error(icdgen, changed, tmp_path, place):
     assert not (tmp_path / "out").exists()
 
 
-def test_its_entry_point_must_have_its_name(icdgen, changed):
+def test_the_entry_point_must_have_the_name_of_the_plug_in(icdgen, changed):
     result = icdgen(
         "--lang",
         "luna",
@@ -187,19 +187,18 @@ def test_two_packages_of_one_name_are_refused(icdgen, changed):
     )
 
 
-def test_help_lists_it_beside_ours_and_no_testee(icdgen, tmp_path):
+def test_help_lists_the_plug_in_and_no_testee(icdgen, tmp_path):
     for arguments in (["--help"], ["generate", "--help"]):
-        there = "".join(
-            icdgen(*arguments).stdout.split()
-        )  # lines are broken behind hyphens, too
+        # argparse also breaks lines after hyphens.
+        listed = "".join(icdgen(*arguments).stdout.split())
         assert (
             "c,python,rust,vectors,c-selftest,html,assurance,xtce,xlsx,csv,andofotherpackageslua(icdgen-lua)."
-            in there
+            in listed
         )
         assert "csv." in " ".join(icdgen(*arguments, site=tmp_path).stdout.split())
 
 
-def test_its_names_stand_in_the_trace_of_the_assurance_pack(icdgen, tmp_path):
+def test_names_of_a_plug_in_are_in_the_traceability_report(icdgen, tmp_path):
     result = icdgen("--lang", "assurance", "--out", "pack", "demo.yaml")
     assert result.returncode == 0, result.stderr
     head, *rows = csv.reader(

@@ -1,5 +1,5 @@
-"""Nothing is taken from a cache that others may have written, and nothing that lies in
-one is ever run.
+"""icdgen ignores caches that other users may have written, and never executes anything
+from a cache.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from icdgen import __main__, cache
 
 
 class _Runs:
-    """What an unpickler would run."""
+    """An object that would run code when unpickled."""
 
     def __init__(self, mark: Path) -> None:
         self.mark = mark
@@ -32,7 +32,7 @@ def entries() -> list[Path]:
 
 @pytest.fixture
 def generated(demo, tmp_path, monkeypatch, capsys):
-    """Runs the command; gives what it wrote."""
+    """Run the command and return the files that it wrote."""
     monkeypatch.chdir(tmp_path)
 
     def go() -> dict[str, bytes]:
@@ -59,9 +59,8 @@ def harmful(mark: Path) -> list[bytes]:
         + pickle.dumps(5, 2)
         + pickle.dumps((sys.version_info[0] << 24) | sys.version_info[1], 2)
     )
-    template = (
-        magic + pickle.dumps("0" * 40, 2) + marshal.dumps(code)
-    )  # as jinja2 keeps compiled templates
+    # The form in which jinja2 stores compiled templates.
+    template = magic + pickle.dumps("0" * 40, 2) + marshal.dumps(code)
     return [
         pickled,
         pickle.dumps((_Runs(mark), {}), protocol=5),
@@ -72,7 +71,7 @@ def harmful(mark: Path) -> list[bytes]:
     ]
 
 
-def test_nothing_that_is_planted_runs(generated, tmp_path):
+def test_no_planted_code_runs(generated, tmp_path):
     mark = tmp_path / "it-ran"
     good = generated()
     for data in harmful(mark):
@@ -83,7 +82,7 @@ def test_nothing_that_is_planted_runs(generated, tmp_path):
     assert not mark.exists()
 
 
-def test_no_compiled_template_is_kept_in_the_cache(generated, monkeypatch, tmp_path):
+def test_no_compiled_template_is_stored_in_the_cache(generated, monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     monkeypatch.setattr(sys, "pycache_prefix", str(tmp_path / "compiled"))
     generated()
@@ -98,21 +97,21 @@ def record():
 
 
 @pytest.mark.parametrize("mode", [0o620, 0o602, 0o666])
-def test_a_record_that_others_may_write_to_is_none(record, mode):
+def test_a_record_that_others_may_write_is_ignored(record, mode):
     record.chmod(mode)
     assert cache.recall("models", "k") is None
 
 
 @pytest.mark.parametrize("level", [0, 1])
 @pytest.mark.parametrize("mode", [0o720, 0o702, 0o777, 0o1777])
-def test_a_folder_that_others_may_write_to_is_no_cache(record, mode, level):
+def test_a_folder_that_others_may_write_is_ignored(record, mode, level):
     record.parents[level].chmod(mode)
     assert cache.recall("models", "k") is None
     cache.remember("models", "new", b"data", {})
     assert not record.with_name("new").exists()
 
 
-def test_a_link_to_a_record_is_none(record, tmp_path):
+def test_a_link_to_a_record_is_ignored(record, tmp_path):
     record.rename(tmp_path / "elsewhere")
     record.symlink_to(tmp_path / "elsewhere")
     assert cache.recall("models", "k") is None
@@ -122,14 +121,14 @@ def test_a_link_to_a_record_is_none(record, tmp_path):
 
 
 @pytest.mark.parametrize("level", [0, 1])
-def test_a_link_to_a_folder_is_no_cache(record, tmp_path, level):
+def test_a_link_to_a_folder_is_ignored(record, tmp_path, level):
     folder = record.parents[level]
     folder.rename(tmp_path / "elsewhere")
     folder.symlink_to(tmp_path / "elsewhere")
     assert cache.recall("models", "k") is None
 
 
-def test_what_is_no_file_is_no_record(record):
+def test_a_record_that_is_no_file_is_ignored(record):
     record.unlink()
     os.mkfifo(record)
     assert cache.recall("models", "k") is None
@@ -139,7 +138,7 @@ def test_what_is_no_file_is_no_record(record):
 
 
 @pytest.mark.parametrize("level", [-1, 0, 1])
-def test_what_belongs_to_somebody_else_is_none(record, monkeypatch, level):
+def test_a_record_of_another_user_is_ignored(record, monkeypatch, level):
     other = os.getuid() + 1
     place = record if level < 0 else record.parents[level]
     if os.getuid() == 0:
@@ -149,8 +148,10 @@ def test_what_belongs_to_somebody_else_is_none(record, monkeypatch, level):
     assert cache.recall("models", "k") is None
 
 
-def test_what_is_made_is_the_users_alone(tmp_path, monkeypatch):
+def test_the_cache_is_only_accessible_to_its_user(tmp_path, monkeypatch):
     monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path / "above" / "cache"))
     cache.remember("models", "k", b"data", {})
-    made = [tmp_path / "above" / "cache" / path for path in (".", "models", "models/k")]
-    assert [path.stat().st_mode & 0o777 for path in made] == [0o700, 0o700, 0o600]
+    folders = [
+        tmp_path / "above" / "cache" / path for path in (".", "models", "models/k")
+    ]
+    assert [path.stat().st_mode & 0o777 for path in folders] == [0o700, 0o700, 0o600]

@@ -1,4 +1,4 @@
-"""A model from the cache makes the same output as one that was just read."""
+"""A cached model gives the same output as a newly loaded one."""
 
 from __future__ import annotations
 

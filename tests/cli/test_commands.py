@@ -1,4 +1,4 @@
-"""``check``, ``rule``, ``fmt``, ``show``, ``decode`` and ``encode`` from the outside:
+"""``check``, ``rule``, ``fmt``, ``show``, ``decode`` and ``encode`` as commands:
 output, exit status, errors.
 """
 
@@ -104,7 +104,7 @@ class TestFmt:
         icdgen("fmt", demo)
         assert icdgen("fmt", "--check", demo).status == 0
 
-    def test_it_reports_what_it_did(self, icdgen, demo):
+    def test_fmt_reports_the_changed_files(self, icdgen, demo):
         demo.write_text(DEMO.replace("bits: 4,  name", "bits: 4, name"))
         assert (
             "1 file not in the canonical layout" in icdgen("fmt", "--check", demo).out
@@ -113,7 +113,9 @@ class TestFmt:
         assert "1 file unchanged" in icdgen("fmt", demo).out
 
     @pytest.mark.parametrize("data", [b"a: [", b"\xff\xfe", b""])
-    def test_what_is_not_yaml_is_a_finding_and_left_alone(self, icdgen, demo, data):
+    def test_a_file_that_is_no_yaml_is_a_finding_and_unchanged(
+        self, icdgen, demo, data
+    ):
         demo.write_bytes(data)
         result = icdgen("fmt", demo)
         assert result.status == 1 and "ICD001" in result.err
@@ -138,7 +140,9 @@ CONSTANT = """messages:
 
 
 class TestDecode:
-    def test_raw_and_physical_values_with_units_and_names(self, icdgen, demo):
+    def test_decode_prints_raw_and_physical_values_with_units_and_names(
+        self, icdgen, demo
+    ):
         out = icdgen("decode", "demo", "146", "2efb 01", "--icd", demo).out
         assert "-1234" in out and "-12.34" in out and "deg" in out and "Run" in out
 
@@ -200,7 +204,7 @@ class TestDecode:
             (["demo", "147", "2e", "fb"], "demo has no message `147`"),
         ],
     )
-    def test_a_mistake_is_said_in_words(self, icdgen, demo, arguments, words):
+    def test_a_mistake_is_reported(self, icdgen, demo, arguments, words):
         result = icdgen("decode", *arguments, "--icd", demo)
         assert (
             result.status == 2 and words in result.err and "Traceback" not in result.err
@@ -239,9 +243,7 @@ class TestDecode:
             in icdgen("decode", "demo", "146", "46", "251", "1", "--icd", demo).out
         )
 
-    def test_a_number_that_may_be_a_byte_and_is_no_id_is_said_to_be_taken_for_a_byte(
-        self, icdgen, demo
-    ):
+    def test_a_number_that_is_no_id_is_read_as_a_byte_with_a_remark(self, icdgen, demo):
         out = icdgen("decode", "demo", "21", "fb", "01", "--icd", demo).out
         assert (
             "21 fb 01" in out
@@ -257,15 +259,15 @@ class TestDecode:
         self, icdgen, demo, tmp_path
     ):
         (tmp_path / "frames.txt").write_text("92 2efb01\n92 000000\n")
-        found = json.loads(
+        frames = json.loads(
             icdgen(
                 "decode", "demo", "frames.txt", "--icd", demo, "--format", "json"
             ).out
         )
-        assert [one["fields"][0]["raw"] for one in found] == [-1234, 0]
-        assert [one["direction"] for one in found] == ["telemetry", "telemetry"]
+        assert [frame["fields"][0]["raw"] for frame in frames] == [-1234, 0]
+        assert [frame["direction"] for frame in frames] == ["telemetry", "telemetry"]
 
-    def test_csv_has_a_line_a_field(self, icdgen, demo):
+    def test_csv_has_one_line_per_field(self, icdgen, demo):
         lines = icdgen(
             "decode", "demo", "146", "2efb01", "--icd", demo, "--format", "csv"
         ).out.splitlines()
@@ -292,7 +294,7 @@ class TestDecode:
             (["-", "demo"], "no node"),
         ],
     )
-    def test_what_is_no_frame_is_said(
+    def test_input_that_is_no_frame_is_reported(
         self, icdgen, demo, arguments, words, monkeypatch
     ):
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
@@ -301,13 +303,13 @@ class TestDecode:
 
 
 class TestEncode:
-    def test_physical_values_by_short_names(self, icdgen, demo):
+    def test_encode_accepts_physical_values_by_short_names(self, icdgen, demo):
         assert (
             "2e fb"
             in icdgen("encode", "demo", "Set Roll", "roll=-12.34", "--icd", demo).out
         )
 
-    def test_raw_values(self, icdgen, demo):
+    def test_encode_accepts_raw_values(self, icdgen, demo):
         assert (
             "2e fb"
             in icdgen(
@@ -315,7 +317,7 @@ class TestEncode:
             ).out
         )
 
-    def test_what_does_not_fit_is_refused(self, icdgen, demo):
+    def test_values_out_of_range_are_refused(self, icdgen, demo):
         result = icdgen("encode", "demo", "20", "roll=400", "--icd", demo)
         assert result.status == 2 and "-327.68 to 327.67" in result.err
 

@@ -1,4 +1,4 @@
-"""From an empty folder to a device that answers."""
+"""``icdgen init``: from an empty folder to a device that answers."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_the_first_icd_is_clean_formatted_and_generates_every_language(
     assert (tmp_path / "generated" / "c" / "battery.h").is_file()
 
 
-def test_nothing_that_waits_to_be_filled_in_reaches_what_is_generated(icdgen, tmp_path):
+def test_placeholders_are_not_generated(icdgen, tmp_path):
     icdgen("init", "battery")
     icdgen(*"--lang c --lang python --lang rust --lang html".split())
     node = json.loads(icdgen("show", "--format", "json").out)["nodes"][0]
@@ -55,7 +55,7 @@ def test_nothing_that_waits_to_be_filled_in_reaches_what_is_generated(icdgen, tm
         ("sim", "--node", "CubeACP"),
     ],
 )
-def test_a_shipped_node_is_said_to_be_none_of_the_project_and_how_it_is_reached(
+def test_a_shipped_node_is_reported_as_outside_the_project_with_its_option(
     icdgen, arguments
 ):
     icdgen("init", "battery")
@@ -126,14 +126,14 @@ def test_the_link_of_a_first_device_is_named_or_copied(icdgen, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_its_frames_are_recognized(icdgen, tmp_path):
+def test_frames_of_a_first_device_are_recognised(icdgen, tmp_path):
     icdgen("init", "battery")
     from icdgen.loading import load
 
-    (one,) = recognize(
+    (decoded,) = recognize(
         load([tmp_path / "icd"]).icd, "10 02 81 01 03 10 10 27 88 13 10 03"
     )
-    assert [row.text for row in one.frame.rows] == [
+    assert [row.text for row in decoded.frame.rows] == [
         "Normal",
         "true",
         "true",
@@ -142,7 +142,7 @@ def test_its_frames_are_recognized(icdgen, tmp_path):
     ]
 
 
-def test_nothing_that_is_there_is_touched(icdgen, tmp_path):
+def test_existing_files_stay_unchanged(icdgen, tmp_path):
     (tmp_path / "icdgen.toml").write_text("# mine\n")
     icdgen("init", "battery")
     (tmp_path / "icd" / "battery.yaml").write_text("mine\n")
@@ -156,9 +156,7 @@ def test_nothing_that_is_there_is_touched(icdgen, tmp_path):
     ("name", "proposal"),
     [("My Battery", "my_battery"), ("3cell", "cell"), ("../x", "x"), ("", "battery")],
 )
-def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(
-    icdgen, tmp_path, name, proposal
-):
+def test_an_invalid_node_name_gets_a_valid_suggestion(icdgen, tmp_path, name, proposal):
     result = icdgen("init", name)
     assert result.status == 2 and f"icdgen init {proposal}`" in result.err
     assert list(tmp_path.iterdir()) == []
@@ -172,7 +170,7 @@ def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(
         ("quux", "`icdgen --help` lists the commands"),
     ],
 )
-def test_a_mistyped_command_is_answered_with_the_one_meant(icdgen, word, answer):
+def test_a_mistyped_command_gets_a_suggestion(icdgen, word, answer):
     result = icdgen(word)
     assert (
         result.status == 2
@@ -181,7 +179,7 @@ def test_a_mistyped_command_is_answered_with_the_one_meant(icdgen, word, answer)
     )
 
 
-def test_a_folder_named_like_a_slip_is_still_an_icd(icdgen, tmp_path):
+def test_a_folder_named_like_a_mistyped_command_is_still_an_icd(icdgen, tmp_path):
     (tmp_path / "chek").mkdir()
     assert "neither a command" not in icdgen("chek", "--lang", "c").err
 
@@ -245,7 +243,7 @@ def test_a_device_in_the_style_of_another_is_clean_and_formatted(
     assert icdgen(*"--lang c --lang python --lang rust".split()).status == 0
 
 
-def test_orders_ids_units_and_names_are_those_of_the_style(icdgen, tmp_path):
+def test_orders_ids_units_and_names_follow_the_style(icdgen, tmp_path):
     (tmp_path / "relay.yaml").write_text(BIG)
     assert icdgen("init", "pump", "--from", "relay", "--icd", "relay.yaml").status == 0
     assert "no findings" in icdgen("check").out
@@ -264,14 +262,13 @@ def test_orders_ids_units_and_names_are_those_of_the_style(icdgen, tmp_path):
     assert "boot" not in text
 
 
-def test_one_of_your_own_is_a_style_and_speaks_the_same_way(icdgen, tmp_path):
+def test_an_icd_of_the_user_can_be_the_style(icdgen, tmp_path):
     assert icdgen("init", "battery").status == 0
     assert icdgen("init", "pump", "--from", "battery").status == 0
     assert "no findings" in icdgen("check").out
     assert icdgen("decode", "pump", "10 02 81 01 03 10 10 27 88 13 10 03").status == 0
-    assert (
-        icdgen("init", "valve", "--from", "cubeacp").status == 0
-    )  # those shipped are there, too
+    # A shipped device can be the style too.
+    assert icdgen("init", "valve", "--from", "cubeacp").status == 0
 
 
 @pytest.mark.parametrize(
@@ -282,7 +279,7 @@ def test_one_of_your_own_is_a_style_and_speaks_the_same_way(icdgen, tmp_path):
         ("", "there is no node"),
     ],
 )
-def test_a_style_that_there_is_not_is_said_and_nothing_is_written(
+def test_an_unknown_style_is_reported_and_nothing_is_written(
     icdgen, tmp_path, origin, answer
 ):
     result = icdgen("init", "pump", "--from", origin)
@@ -290,7 +287,7 @@ def test_a_style_that_there_is_not_is_said_and_nothing_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_who_forgets_to_name_an_icd_is_told_whose_nodes_there_are(icdgen, tmp_path):
+def test_a_missing_icd_argument_lists_the_available_nodes(icdgen, tmp_path):
     (tmp_path / "icd").mkdir()
     (tmp_path / "icd" / "battery.yaml").write_text(BIG)
     result = icdgen("show", "battery")
@@ -343,7 +340,7 @@ def test_editors_find_the_schema_that_is_written_beside_the_first_device(
     assert not jsonschema.Draft202012Validator(json.loads(schema)).is_valid(wrong)
 
 
-def test_the_copy_of_the_schema_is_kept_by_init_and_renewed_by_schema(icdgen, tmp_path):
+def test_init_keeps_the_copy_of_the_schema_and_schema_updates_it(icdgen, tmp_path):
     icdgen("init", "battery")
     copy = tmp_path / "icd" / "icdgen.schema.json"
     copy.write_text("{}")
@@ -366,9 +363,8 @@ def test_the_packages_of_a_first_device_are_called_like_it(
     icdgen, tmp_path, name, package
 ):
     icdgen("init", name)
-    assert (
-        icdgen("check").err == "" or name == "match"
-    )  # no Rust module can have that name
+    # No Rust module can have that name.
+    assert icdgen("check").err == "" or name == "match"
     config = tomllib.loads((tmp_path / "icdgen.toml").read_text())
     assert (config["name"], config["python"]["package"], config["rust"]["crate"]) == (
         name,

@@ -1,4 +1,4 @@
-"""The complete ICDs that the documents show can be used as they stand."""
+"""The complete ICDs in the documents can be used without changes."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ LANGUAGES = ("c", "python", "rust", "vectors", "c-selftest", "html")
 @pytest.mark.parametrize(
     "text", EXAMPLES, ids=lambda text: re.search(r"name: (\w+)", text)[1]
 )
-def test_an_example_is_right_laid_out_and_good_for_every_language(
+def test_an_example_is_valid_formatted_and_generates_every_language(
     text, icdgen, tmp_path
 ):
     (tmp_path / "example.yaml").write_text(text, encoding="utf-8")
     checked = icdgen("check", "example.yaml")
     assert checked.status == 0, checked.out
     assert re.fullmatch(documents.layout(text), format_text(text, "example.yaml"))
-    made = icdgen(
+    result = icdgen(
         *(word for name in LANGUAGES for word in ("--lang", name)),
         "--out",
         "out",
         "example.yaml",
     )
-    assert made.status == 0, made.err
+    assert result.status == 0, result.err
     assert all((tmp_path / "out" / name).is_dir() for name in LANGUAGES)
 
 

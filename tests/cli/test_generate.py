@@ -1,4 +1,4 @@
-"""``icdgen --lang``: what a build step relies on."""
+"""``icdgen --lang``: the properties that a build step relies on."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_without_out_the_folder_is_generated(icdgen, demo, tmp_path):
     assert (tmp_path / "generated" / "c" / "demo.h").is_file()
 
 
-def test_the_second_run_touches_no_file_and_says_so(icdgen, demo, tmp_path):
+def test_the_second_run_writes_no_file_and_reports_it(icdgen, demo, tmp_path):
     icdgen("--lang", "c", "--out", "out", demo)
     before = tree(tmp_path / "out")
     result = icdgen("--lang", "c", "--out", "out", demo)
@@ -71,7 +71,7 @@ def test_an_icd_with_a_finding_generates_nothing(icdgen, demo, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_check_says_whether_the_output_is_current(icdgen, demo, tmp_path):
+def test_check_reports_whether_the_output_is_current(icdgen, demo, tmp_path):
     missing = icdgen("--lang", "c", "--out", "out", "--check", demo)
     assert missing.status == 1 and "missing" in missing.out
     assert not (tmp_path / "out").exists()
@@ -96,7 +96,7 @@ def test_a_dependency_file_names_outputs_and_all_inputs(icdgen, demo, tmp_path):
     )
 
 
-def test_icdgen_toml_says_what_to_generate(icdgen, demo, tmp_path):
+def test_icdgen_toml_sets_icds_languages_and_folder(icdgen, demo, tmp_path):
     (tmp_path / "icdgen.toml").write_text(
         'icds = ["icd/demo.yaml"]\nlang = ["c"]\nout = "gen"\n'
     )
@@ -104,7 +104,7 @@ def test_icdgen_toml_says_what_to_generate(icdgen, demo, tmp_path):
     assert (tmp_path / "gen" / "c" / "demo.h").is_file()
 
 
-def test_without_icds_the_shipped_ones_are_meant(icdgen, tmp_path):
+def test_the_shipped_icds_are_the_default(icdgen, tmp_path):
     assert icdgen("--lang", "c", "--out", "out").status == 0
     assert (tmp_path / "out" / "cubeacp.h").is_file()
 
@@ -120,7 +120,7 @@ def test_without_icds_the_shipped_ones_are_meant(icdgen, tmp_path):
         (["--lang", "c", "--templates", "nowhere"], "there is no folder nowhere"),
     ],
 )
-def test_misuse_is_status_2_with_a_remedy_and_leaves_nothing(
+def test_misuse_is_status_2_with_a_remedy_and_writes_nothing(
     icdgen, tmp_path, arguments, words
 ):
     result = icdgen(*arguments)
@@ -133,7 +133,7 @@ def test_a_missing_icd_is_a_finding(icdgen):
     result = icdgen("--lang", "c", "nowhere.yaml")
     assert result.status == 1
     assert "nowhere.yaml:1:1" in result.err and "cannot read the file" in result.err
-    assert "|" not in result.err  # there is no line to show
+    assert "|" not in result.err  # no line is shown
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_a_missing_icd_of_the_configuration_is_found_where_it_is_named(
     assert report.startswith("icdgen.toml:3:6: error[ICD001]: `icd/nowhere.yaml`: ")
 
 
-def test_a_missing_icd_that_is_asked_for_is_not_laid_upon_the_configuration(
+def test_a_missing_icd_argument_is_not_reported_in_the_configuration(
     icdgen, demo, tmp_path
 ):
     (tmp_path / "icdgen.toml").write_text('icds = ["icd/demo.yaml"]\n')
@@ -269,7 +269,7 @@ def test_a_backend_of_another_package_is_found_by_its_entry_point(demo, tmp_path
 
 
 class TestStart:
-    """The real process, with what it remembers."""
+    """Runs icdgen in a process of its own with its cache."""
 
     def run(self, demo, tmp_path, *more):
         environment = {**os.environ, "PYTHONPATH": str(ROOT / "codegen")}
@@ -292,16 +292,16 @@ class TestStart:
 
     def test_a_run_with_nothing_to_do_imports_nothing_heavy(self, demo, tmp_path):
         assert self.run(demo, tmp_path).returncode == 0
-        again = self.run(demo, tmp_path)
-        assert again.returncode == 0 and "are current" in again.stdout
+        second = self.run(demo, tmp_path)
+        assert second.returncode == 0 and "are current" in second.stdout
         assert not {"click", "yaml", "jinja2", "jsonschema_rs"} & {
-            line.rsplit("|", 1)[-1].strip() for line in again.stderr.splitlines()
+            line.rsplit("|", 1)[-1].strip() for line in second.stderr.splitlines()
         }
 
     @pytest.mark.parametrize(
         "what", ["icd", "output", "overlay", "missing output", "stale output"]
     )
-    def test_whatever_changes_it_runs_again(self, demo, tmp_path, what):
+    def test_any_change_of_the_inputs_runs_the_generation(self, demo, tmp_path, what):
         self.run(demo, tmp_path)
         out = tmp_path / "out"
         expected = {name: data for name, (data, _) in tree(out).items()}
@@ -316,9 +316,9 @@ class TestStart:
             (out / "demo.h").unlink()
         elif what == "stale output":
             (out / ".icdgen-c.json").unlink()
-        again = self.run(demo, tmp_path)
+        second = self.run(demo, tmp_path)
         if what == "overlay":
-            assert again.returncode == 1 and "errata" in again.stderr
+            assert second.returncode == 1 and "errata" in second.stderr
         elif what == "icd":
             assert "bank_angle" in (out / "demo" / "estimated_roll.h").read_text()
         elif what == "output":

@@ -1,4 +1,4 @@
-"""What is dangerous is said wherever the message is described."""
+"""Every description of a dangerous message contains its hazard."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def disk(tmp_path):
 
 
 @pytest.mark.parametrize("language", ["c", "python", "rust", "html"])
-def test_every_language_and_the_site_say_it(icdgen, tmp_path, disk, language):
+def test_every_language_and_the_site_show_the_hazard(icdgen, tmp_path, disk, language):
     assert icdgen("--lang", language, "--out", "out", "disk.yaml").status == 0
     texts = [
         path.read_text()
@@ -37,7 +37,7 @@ def test_every_language_and_the_site_say_it(icdgen, tmp_path, disk, language):
     assert any(WORDS in " ".join(text.split()) for text in texts)
 
 
-def test_show_says_it_and_hands_it_on_to_programs_and_the_diff(icdgen, tmp_path, disk):
+def test_show_and_the_diff_contain_the_hazard(icdgen, tmp_path, disk):
     assert (
         f"Dangerous: {WORDS}"
         in icdgen("show", "--icd", "disk.yaml", "disk", "Erase").out
@@ -52,8 +52,8 @@ def test_show_says_it_and_hands_it_on_to_programs_and_the_diff(icdgen, tmp_path,
     )
 
 
-def test_the_second_run_knows_it_too(icdgen, disk):
-    """The model that is remembered holds it."""
+def test_the_cached_model_contains_the_hazard(icdgen, disk):
+    """The second run reads the model from the cache."""
     for _ in range(2):
         assert (
             icdgen("show", "--icd", "disk.yaml", "disk", "Erase").out.count(WORDS) == 1

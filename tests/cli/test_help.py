@@ -1,5 +1,5 @@
-"""The help: `icdgen` alone prints it, commands are in groups, and each has an example
-that its options accept.
+"""`icdgen` alone prints the help, commands are in groups, and each has an example that
+its options accept.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from icdgen.cli import icdgen as group
 COMMANDS = group.list_commands(click.Context(group))
 
 
-def test_icdgen_alone_prints_the_help_and_fails_where_nothing_is_to_be_generated(
+def test_icdgen_alone_prints_the_help_and_fails_without_a_configuration(
     icdgen,
 ):
     result = icdgen()

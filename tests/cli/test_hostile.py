@@ -1,5 +1,5 @@
-"""What an impatient or a hostile user does to the command line ends in words and a
-status, never in a traceback.
+"""Unusual or hostile use of the command line gives an error message and a status, never
+a traceback.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from tests.conftest import DEMO, ROOT
 
 @pytest.fixture
 def shell(tmp_path):
-    """``shell("icdgen check x.yaml >/dev/full")``: status, output and errors, run by
-    bash in ``tmp_path``.
+    """Return a function ``shell("icdgen check x.yaml >/dev/full")`` that runs bash in
+    ``tmp_path`` and returns status, output and errors.
     """
     (tmp_path / "bin").mkdir()
     command = tmp_path / "bin" / "icdgen"
@@ -29,9 +29,8 @@ def shell(tmp_path):
         environment = (
             os.environ | {"PYTHONPATH": str(ROOT / "codegen"), "PATH": path} | more
         )
-        environment.pop(
-            "PYTHONUNBUFFERED", None
-        )  # a broken output shows later, and more often, with a buffer
+        # Buffered output fails later, and in more places.
+        environment.pop("PYTHONUNBUFFERED", None)
         result = subprocess.run(
             ["bash", "-c", line],
             cwd=tmp_path,
@@ -54,7 +53,7 @@ class TestInput:
     @pytest.mark.parametrize(
         "command", [["check"], ["--lang", "c"], ["fmt"], ["show", "--icd"]]
     )
-    def test_what_cannot_be_read_is_a_finding(self, icdgen, tmp_path, command):
+    def test_an_unreadable_file_is_a_finding(self, icdgen, tmp_path, command):
         (tmp_path / "loop").symlink_to("loop")
         for name in ("nowhere.yaml", "loop", "x" * 5000):
             result = icdgen(*command, name)
@@ -64,14 +63,14 @@ class TestInput:
             )
 
     @pytest.mark.parametrize("command", [["check"], ["fmt"]])
-    def test_a_device_without_end_ends(self, icdgen, command):
+    def test_reading_an_endless_device_ends(self, icdgen, command):
         result = icdgen(*command, "/dev/zero")
         assert (
             result.status == 1
             and "more than the 4,000,000 bytes" in result.out + result.err
         )
 
-    def test_a_frame_without_end_ends(self, icdgen, demo):
+    def test_reading_an_endless_frame_ends(self, icdgen, demo):
         result = icdgen("decode", "demo", "146", "@/dev/zero", "--icd", demo)
         assert result.status == 2 and "holds more than 1,000,000 bytes" in result.err
 
@@ -112,7 +111,7 @@ class TestInput:
         )
         assert list(tmp_path.iterdir()) == []
 
-    def test_an_icd_through_a_pipe_is_read_once_and_never_remembered(self, shell, demo):
+    def test_an_icd_through_a_pipe_is_read_once_and_not_cached(self, shell, demo):
         line = f"cat {demo} | icdgen --lang c --out out /dev/stdin"
         assert shell(line).returncode == 0
         other = (
@@ -129,7 +128,7 @@ class TestInput:
             and len(result.err) < 2000
         )
 
-    def test_a_value_that_is_wrong_comes_with_a_remedy(self, icdgen, demo):
+    def test_a_wrong_value_has_a_remedy(self, icdgen, demo):
         assert (
             "help: `icdgen show demo 'Set Roll'`"
             in icdgen("encode", "demo", "20", "roll=nan", "--icd", demo).err
@@ -144,25 +143,25 @@ class TestOutput:
     @pytest.mark.parametrize(
         "command", ["check", "show", "--lang c", "--help", "--version", "rule"]
     )
-    def test_a_full_disk_behind_the_output(self, shell, command):
+    def test_a_full_disk_is_reported(self, shell, command):
         result = shell(f"icdgen {command} >/dev/full")
         assert (
             result.returncode == 2
             and "the output cannot be written: No space left on device" in result.stderr
         )
 
-    def test_a_full_disk_when_there_is_nothing_to_do(self, shell, demo):
+    def test_a_full_disk_is_reported_if_nothing_is_generated(self, shell, demo):
         shell(f"icdgen --lang c {demo}")
         assert shell(f"icdgen --lang c {demo} >/dev/full").returncode == 2
         assert shell("icdgen --lang c nowhere.yaml 2>/dev/full").returncode != 0
 
-    def test_a_reader_that_leaves(self, shell, demo):
+    def test_a_closed_pipe_ends_the_command_silently(self, shell, demo):
         shell(f"icdgen --lang c {demo}")
         for command in ("show --format json", "rule", f"--lang c {demo}"):
             result = shell(f"set -o pipefail; (sleep 0.5; icdgen {command}) | true")
             assert result.returncode in (0, 141) and result.stderr == ""
 
-    def test_closed_streams(self, shell):
+    def test_closed_streams_give_no_traceback(self, shell):
         assert shell("icdgen check >&-").returncode == 0
         assert shell("icdgen show cubeacp 146 >&-").returncode == 0
         assert shell("icdgen check nowhere.yaml >&- 2>&-").returncode == 1
@@ -171,13 +170,13 @@ class TestOutput:
             in shell("icdgen decode cubeacp 146 - <&-").stderr
         )
 
-    def test_quiet_is_quiet_when_there_is_nothing_to_do_too(self, shell, demo):
+    def test_quiet_prints_nothing_if_nothing_is_generated(self, shell, demo):
         assert [shell(f"icdgen -q --lang c {demo}").stdout for _ in range(2)] == [
             "",
             "",
         ]
 
-    def test_names_cannot_act_upon_a_terminal(self, icdgen, demo, tmp_path):
+    def test_control_characters_in_names_are_escaped(self, icdgen, demo, tmp_path):
         encode = ["encode", "demo", "20", "\x9bx=1", "--icd", demo]
         for arguments in (
             ["rule", "\x1b[31m"],
@@ -191,7 +190,7 @@ class TestOutput:
         (tmp_path / "red\x1b[31m.yaml").write_text(DEMO)
         assert "\\x1b" in icdgen("fmt", "--check", "red\x1b[31m.yaml").out
 
-    def test_any_encoding_of_the_terminal(self, shell, demo):
+    def test_any_encoding_of_the_terminal_is_supported(self, shell, demo):
         demo.write_text(DEMO.replace("Roll Angle", "Größe"), encoding="utf-8")
         line = f"icdgen decode demo 146 000000 --icd {demo} --format json | {sys.executable} -m json.tool"
         result = shell(line, PYTHONIOENCODING="ascii")
@@ -202,18 +201,18 @@ class TestOutput:
             )
             assert result.returncode == 0 and "deg" in result.stdout
 
-    def test_a_file_name_that_is_no_text(self, shell):
+    def test_a_file_name_that_is_no_text_is_supported(self, shell):
         shell("printf '%s' x > $'a\\xff.yaml'")
         for form in ("text", "json", "github", "sarif"):
             assert shell(f"icdgen check --format {form} $'a\\xff.yaml'").returncode == 1
         assert shell("icdgen fmt $'a\\xff.yaml'").returncode == 1
 
-    def test_no_findings_are_no_annotations(self, icdgen, demo):
+    def test_without_findings_there_are_no_annotations(self, icdgen, demo):
         assert icdgen("check", "--format", "github", demo).out == ""
 
 
 class TestSurroundings:
-    def test_a_current_folder_that_is_gone(self, shell):
+    def test_a_deleted_current_folder_is_reported(self, shell):
         for command in ("check", "--lang c", "show"):
             result = shell(f"mkdir gone; cd gone; rmdir ../gone; icdgen {command}")
             assert (
@@ -221,13 +220,13 @@ class TestSurroundings:
                 and "the current folder is no longer there" in result.stderr
             )
 
-    def test_a_home_that_is_not_there_is_not_made(self, shell, demo, tmp_path):
+    def test_a_missing_home_is_not_created(self, shell, demo, tmp_path):
         line = f"unset ICDGEN_CACHE XDG_CACHE_HOME; HOME={tmp_path}/nobody icdgen --lang c --out out {demo}"
         assert shell(line).returncode == 0
         assert not (tmp_path / "nobody").exists()
 
     @pytest.mark.parametrize("place", ["/dev/null", "demo.h"])
-    def test_a_cache_that_cannot_be_used_is_no_cache(self, shell, demo, place):
+    def test_an_unusable_cache_is_ignored(self, shell, demo, place):
         result = shell(
             f"touch demo.h; ICDGEN_CACHE={place} icdgen --lang c --out out {demo}"
         )
@@ -250,7 +249,7 @@ class TestFilesOfOthers:
             assert target.lstat().st_ino == before.st_ino
         assert demo.read_text() == DEMO
 
-    def test_what_is_no_file_in_the_place_of_an_output_is_left(
+    def test_a_device_or_folder_in_the_place_of_an_output_is_not_replaced(
         self, icdgen, demo, tmp_path
     ):
         (tmp_path / "out").mkdir()
@@ -289,7 +288,7 @@ class TestConfig:
         b"\xff",
     ],
 )
-def test_whatever_a_template_does_wrong_is_said(icdgen, demo, tmp_path, text):
+def test_errors_of_a_template_are_reported(icdgen, demo, tmp_path, text):
     own = tmp_path / "mine"
     own.mkdir()
     (own / "node.h.j2").write_bytes(text if isinstance(text, bytes) else text.encode())

@@ -1,5 +1,5 @@
-"""A command checks names in the languages that it generates, and `icdgen check` those
-of all languages.
+"""A command checks names for the languages that it generates, and `icdgen check` for
+all languages.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from tests.conftest import DEMO
 
 @pytest.fixture
 def restrict(demo):
-    """An ICD with a field whose name is a reserved word in C alone."""
+    """Return an ICD with a field whose name is a reserved word only in C."""
     demo.write_text(
         DEMO.replace(
             "name: Mode,       type: enum, enum: Mode", "name: Restrict, type: uint"
@@ -40,7 +40,7 @@ def test_an_output_with_c_names_is_not_generated_with_a_reserved_word_of_c(
 
 
 @pytest.mark.parametrize("language", ["python", "rust", "vectors", "xtce"])
-def test_a_language_is_generated_whatever_others_reserve(
+def test_reserved_words_of_other_languages_are_ignored(
     icdgen, restrict, tmp_path, language
 ):
     assert icdgen("--lang", language, "--out", "out", restrict).status == 0
@@ -56,14 +56,14 @@ def test_a_model_that_was_checked_for_one_language_is_checked_again_for_another(
     )
 
 
-def test_commands_that_generate_no_code_ask_no_language(icdgen, restrict):
+def test_commands_that_generate_no_code_check_no_language(icdgen, restrict):
     assert icdgen("show", "--icd", restrict, "demo", "146").status == 0
     assert icdgen("decode", "--icd", restrict, "demo", "146", "000000").status == 0
 
 
 @pytest.fixture
 def named(monkeypatch):
-    """Languages whose names were listed, once for each message."""
+    """Record the languages whose names are listed, once for each message."""
     from icdgen.backends.c.symbols import CNames
     from icdgen.backends.python.symbols import PythonNames
     from icdgen.backends.rust.symbols import RustNames

@@ -1,5 +1,5 @@
-"""Talking to a device: what is dangerous is asked about, a node that is alone needs no
-name, a lost line comes back.
+"""Commands that talk to a device: confirmation of dangerous telecommands, default node,
+and reconnection.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tests.sim.device import simulator
 
 
 class Keyboard(io.StringIO):
-    """A terminal at which somebody types."""
+    """A terminal with scripted input."""
 
     def isatty(self) -> bool:
         return True
@@ -31,7 +31,7 @@ def place():
 FORMAT = ("send", "cubeacp", "Format SD card")
 
 
-def test_what_is_dangerous_is_shown_with_its_magic_number_and_sent_after_a_yes(
+def test_a_dangerous_telecommand_is_shown_with_its_magic_number_and_sent_after_yes(
     icdgen, place, monkeypatch
 ):
     monkeypatch.setattr(sys, "stdin", Keyboard("y\n"))
@@ -48,9 +48,9 @@ def test_what_is_dangerous_is_shown_with_its_magic_number_and_sent_after_a_yes(
 
 
 @pytest.mark.parametrize("answer", ["n\n", "\n"])
-def test_without_a_yes_nothing_is_sent(icdgen, monkeypatch, answer):
+def test_without_confirmation_nothing_is_sent(icdgen, monkeypatch, answer):
     monkeypatch.setattr(sys, "stdin", Keyboard(answer))
-    result = icdgen(*FORMAT, "--port", "tcp://127.0.0.1:1")  # which is not opened
+    result = icdgen(*FORMAT, "--port", "tcp://127.0.0.1:1")  # the port is not opened
     assert (
         result.status == 1
         and "Format SD card: not sent" in result.err
@@ -58,7 +58,7 @@ def test_without_a_yes_nothing_is_sent(icdgen, monkeypatch, answer):
     )
 
 
-def test_a_script_must_say_yes(icdgen, place, monkeypatch):
+def test_a_script_must_pass_the_option_yes(icdgen, place, monkeypatch):
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     refused = icdgen(*FORMAT, "--port", "tcp://127.0.0.1:1")
     assert (
@@ -82,7 +82,7 @@ def test_a_wrong_magic_number_is_no_promise_of_a_restart(icdgen, place):
     )
 
 
-def test_a_node_that_is_alone_needs_no_name(icdgen):
+def test_the_only_node_needs_no_name(icdgen):
     icdgen("init", "battery")
     with simulator("--icd", "icd", "--tcp", "0") as (place, _):
         sent = icdgen("send", "Set Mode", "mode=Test", "--port", place)
@@ -107,21 +107,21 @@ def test_a_node_that_is_alone_needs_no_name(icdgen):
         (("encode", "cubeacp"), "`icdgen show cubeacp` lists what there is"),
     ],
 )
-def test_what_is_not_said_or_misspelt_is_asked_for(icdgen, words, answer):
+def test_missing_or_misspelt_values_are_prompted_for(icdgen, words, answer):
     port = () if words[0] == "encode" else ("--port", "tcp://127.0.0.1:1")
     result = icdgen(*words, *port)
     assert result.status == 2 and answer in result.err
 
 
 @pytest.mark.parametrize("seconds", ["nan", "inf", "-1", "1e300"])
-def test_a_time_that_is_none_is_refused(icdgen, seconds):
+def test_an_invalid_time_is_refused(icdgen, seconds):
     result = icdgen(
         "monitor", "cubeacp", "--port", "tcp://127.0.0.1:1", f"--every={seconds}"
     )
     assert result.status == 2 and "--every" in result.err
 
 
-def test_the_monitor_takes_up_a_line_that_was_lost():
+def test_the_monitor_reconnects_after_a_lost_line():
     with simulator("--node", "cubeacp", "--tcp", "0") as (place, first):
         watching = subprocess.Popen(
             [
@@ -216,7 +216,7 @@ def test_several_values_are_set_at_once_as_encode_takes_them(icdgen):
             "json",
         ).out
     angles, position = (
-        [one["value"] for one in json.loads(line)["fields"]]
+        [field["value"] for field in json.loads(line)["fields"]]
         for line in shown.splitlines()
     )
     assert (angles, position) == ([1.5, -2.25, 0.0], [48.1, 11.6, 0.0])

@@ -1,5 +1,5 @@
-"""A backend of another package that breaks is named, with its entry point; nobody sees
-a traceback.
+"""A failing backend of another package is named with its entry point, without a
+traceback.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def test_a_backend_of_another_package_generates(tmp_path, demo):
 
 
 @pytest.mark.parametrize(
-    ("statement", "said"),
+    ("statement", "expected"),
     [
         ("raise KeyError('speed')", "failed: KeyError: 'speed'"),
         ("yield 'a.txt', 'text'", "failed: TypeError: `files` gives pairs"),
@@ -76,14 +76,14 @@ def test_a_backend_of_another_package_generates(tmp_path, demo):
         ("render('absent.j2')", ""),
     ],
 )
-def test_a_backend_that_breaks_is_named_and_nothing_is_written(
-    tmp_path, demo, statement, said
+def test_a_failing_backend_is_named_and_nothing_is_written(
+    tmp_path, demo, statement, expected
 ):
     result = run(tmp_path, demo, BACKEND.format(statement=statement))
     assert result.returncode == 2
     assert "Traceback" not in result.stderr
-    assert said in result.stderr
-    if said:
+    assert expected in result.stderr
+    if expected:
         assert (
             "the backend `other` of icdgen-other (entry point `other_backend:Backend`)"
             in result.stderr

@@ -1,4 +1,4 @@
-"""Long commands show on a terminal that they work, and stay silent in a pipe."""
+"""Long commands show their progress on a terminal, and print nothing into a pipe."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ COMMANDS = {
 
 
 def on_terminal(arguments: list[str], folder, delay: float) -> tuple[int, str]:
-    """Run with standard error on a terminal; return the exit status and what the
-    terminal gets.
+    """Run with standard error on a terminal; return the exit status and the output on
+    the terminal.
     """
     pty = pytest.importorskip("pty")
     reading, terminal = pty.openpty()
@@ -54,13 +54,15 @@ def on_terminal(arguments: list[str], folder, delay: float) -> tuple[int, str]:
 
 @pytest.fixture
 def bars(monkeypatch) -> list:
-    """The bars that are made."""
-    made = []
+    """Record the progress bars that are created."""
+    created = []
     kind = progress._Bar
     monkeypatch.setattr(
-        progress, "_Bar", lambda *given: made.append(kind(*given)) or made[-1]
+        progress,
+        "_Bar",
+        lambda *arguments: created.append(kind(*arguments)) or created[-1],
     )
-    return made
+    return created
 
 
 @pytest.fixture
@@ -84,7 +86,7 @@ def test_a_command_that_ends_soon_shows_nothing(folder):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_nothing_is_printed_where_standard_error_is_a_pipe(name, folder):
+def test_nothing_is_printed_if_standard_error_is_a_pipe(name, folder):
     command = [sys.executable, "-c", RUN.format(0), *COMMANDS[name][0]]
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert result.returncode == 0

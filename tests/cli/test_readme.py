@@ -1,4 +1,4 @@
-"""The README, typed by somebody who has just cloned the repository."""
+"""The commands of the README work in a fresh clone of the repository."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.rust import harness as rust
 from tests.rust.tools import USED, Toolchain
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SUITE = "scripts/test"  # this test is a part of it
+SUITE = "scripts/test"  # this test is a part of the suite
 FRAME = bytes.fromhex("020166 08e81c")  # 21.5 C
 _BYTES = ", ".join(f"0x{byte:02x}" for byte in FRAME)
 
@@ -54,7 +54,7 @@ fn main() -> Result<(), icd::Error> {{
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory) -> Path:
-    """A copy of the files of this repository, without those that only tests use."""
+    """Copy the files of this repository, except those that only tests use."""
     folder = tmp_path_factory.mktemp("clone")
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "-z"],
@@ -106,8 +106,8 @@ def test_every_command_runs_in_order_in_one_shell_and_prints_what_is_shown(
 
 
 def _environment(home: Path) -> dict[str, str]:
-    """Environment of a user with an empty home, without the virtual environment in
-    which the tests run.
+    """Return the environment of a user with an empty home, without the virtual
+    environment of the tests.
     """
     own = Path(sys.prefix) / "bin"
     path = os.pathsep.join(
@@ -122,7 +122,7 @@ def _environment(home: Path) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def battery(tmp_path_factory) -> Path:
-    """The ICD with which the README begins."""
+    """Return the first ICD of the README."""
     folder = tmp_path_factory.mktemp("battery")
     subprocess.run(
         [sys.executable, "-m", "icdgen", "init", "battery"],
@@ -134,7 +134,7 @@ def battery(tmp_path_factory) -> Path:
 
 
 def snippet(language: str) -> str:
-    """First block of a language."""
+    """Return the first block of a language."""
     return documents.blocks(README, language)[0]
 
 

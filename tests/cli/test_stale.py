@@ -1,5 +1,5 @@
-"""A run that is skipped must be one that would change nothing: whatever it rests on is
-looked at, as it was when it was read.
+"""A run is only skipped if it would change nothing: every input is compared with its
+state when it was read.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tests.conftest import DEMO
 
 @pytest.fixture
 def run(tmp_path, monkeypatch, capsys):
-    """Like the command itself, with what it remembers; gives its status and output."""
+    """Run the command with its cache; return its status and output."""
     monkeypatch.chdir(tmp_path)
 
     def go(*arguments: object) -> str:
@@ -27,7 +27,7 @@ def run(tmp_path, monkeypatch, capsys):
     return go
 
 
-def test_a_template_behind_a_link(run, demo, tmp_path):
+def test_a_changed_template_behind_a_link_is_noticed(run, demo, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "c").symlink_to("../elsewhere")
@@ -41,7 +41,7 @@ def test_a_template_behind_a_link(run, demo, tmp_path):
     assert (tmp_path / "out" / "demo.h").read_text() != "two\n"
 
 
-def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
+def test_an_included_file_whose_link_changes_is_noticed(run, tmp_path):
     head = (
         "icdgen: 1\nnode: {name: %s, title: T, byte_order: little, bit_order: lsb0}\n"
     )
@@ -59,8 +59,10 @@ def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
         }
 
 
-def test_an_icd_that_changes_while_it_is_worked_on(run, demo, tmp_path, monkeypatch):
-    """The record tells what was read, not what lay there afterwards."""
+def test_an_icd_that_changes_during_a_run_is_read_again(
+    run, demo, tmp_path, monkeypatch
+):
+    """The record contains the state that was read, not the state after the run."""
     real = loading.load
 
     def slow(paths, **options):
@@ -100,16 +102,16 @@ def test_an_erratum_of_a_renamed_node_counts(run, demo, tmp_path):
 def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
     run("--lang", "c", "--out", "out", demo)
     good = {p: p.read_bytes() for p in (tmp_path / "out").rglob("*") if p.is_file()}
-    kept = [
+    stored = [
         path
         for top, _, names in os.walk(cache.folder())
         for path in (os.path.join(top, name) for name in names)
     ]
-    assert {os.path.basename(os.path.dirname(path)) for path in kept} == {
+    assert {os.path.basename(os.path.dirname(path)) for path in stored} == {
         "models",
         "runs",
     }
-    for path in kept:
+    for path in stored:
         with open(path, "r+b") as file:
             data = bytearray(file.read())
             data[len(data) * 2 // 3] ^= 0x55
@@ -121,7 +123,7 @@ def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
     assert {p: p.read_bytes() for p in good} == good
 
 
-def test_what_cannot_be_read_twice_is_not_remembered(tmp_path):
+def test_an_input_that_cannot_be_read_twice_is_not_cached(tmp_path):
     os.mkfifo(tmp_path / "fifo")
     assert fingerprints.of_path(str(tmp_path / "fifo")) == fingerprints.UNKNOWN
     cache.remember("runs", "k", b"done", {str(tmp_path / "fifo"): fingerprints.UNKNOWN})

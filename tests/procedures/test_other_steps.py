@@ -1,5 +1,5 @@
-"""A device follows from the steps of any procedure: other maps, other numbers of packets,
-packets that are stored at once, and telecommands that are refused.
+"""A simulated device follows from the steps of any procedure: other maps, other numbers
+of packets, packets stored at once, and refused telecommands.
 
 The ICD is ``other_steps.yaml``.
 """
@@ -67,8 +67,8 @@ def test_a_procedure_of_unknown_size_has_vectors_also_if_its_blocks_are_small(tm
     assert results["read: 32 bytes of unknown number"] == "done", results
 
 
-class Device:
-    """A simulated device in memory, and a session with it, in a time of its own."""
+class SteppedDevice:
+    """A simulated device in memory and a session with it, in simulated time."""
 
     def __init__(self, **options) -> None:
         self.line, _ = run.build_device(
@@ -89,13 +89,13 @@ class Device:
         return self.session.run(Procedure(LINK, name, inputs, data))
 
     def files(self) -> list[tuple[int, int, int]]:
-        """Number, size and checksum of each file in the list."""
+        """Return number, size and checksum of each file in the list."""
         entries = self.run("list").entries
         return [(each.number, each.length, each.sum) for each in entries]
 
 
 def test_a_file_that_was_written_is_listed_and_read():
-    device = Device()
+    device = SteppedDevice()
     content = bytes(range(200))
     device.run("write", content, number=4)
     device.run("write", b"short", number=2)
@@ -105,7 +105,7 @@ def test_a_file_that_was_written_is_listed_and_read():
 
 
 def test_a_file_that_is_written_again_is_replaced():
-    device = Device()
+    device = SteppedDevice()
     device.run("write", bytes(500), number=4)
     device.run("write", b"new", number=4)
     assert [file[:2] for file in device.files()] == [(4, 3)]
@@ -114,14 +114,14 @@ def test_a_file_that_is_written_again_is_replaced():
 
 def test_files_of_the_user_are_named_by_the_inputs_of_the_icd(tmp_path):
     (tmp_path / "file").write_bytes(b"123456789")
-    device = Device(files=[f"9={tmp_path / 'file'}"])
+    device = SteppedDevice(files=[f"9={tmp_path / 'file'}"])
     assert device.run("read", number=9, size=9).data == b"123456789"
     # The checksum of files is the one that a procedure verifies.
     assert device.files() == [(9, 9, 0x29B1)]
 
 
 def test_a_copy_is_another_file():
-    device = Device()
+    device = SteppedDevice()
     device.run("write", b"content", number=1)
     device.run("copy", number=1)
     device.run("write", b"changed", number=1)
@@ -130,12 +130,12 @@ def test_a_copy_is_another_file():
 
 def test_a_telecommand_is_refused_if_nothing_else_can_report_its_failure():
     with pytest.raises(FailedError, match="refused"):
-        Device().run("copy", number=1)
+        SteppedDevice().run("copy", number=1)
 
 
 def test_a_failure_that_telemetry_reports_ends_the_procedure():
     with pytest.raises(FailedError, match="failed"):
-        Device().run("read", number=1)
+        SteppedDevice().run("read", number=1)
 
 
 def test_without_an_effect_in_the_icd_a_procedure_has_objects_of_its_own():

@@ -17,7 +17,7 @@ import pytest
 import serial
 
 from tests.python import packages, smbus_fake
-from tests.sim.port import Port
+from tests.sim.port import DevicePort
 
 QUICK = {"reply_timeout": 60, "retries": 1, "poll_interval": 1, "poll_timeout": 60}
 
@@ -40,7 +40,7 @@ class Node(threading.Thread):
         self.read, self.write, self.port = (
             read,
             write,
-            Port(packages.shipped(), "cubeacp"),
+            DevicePort(packages.shipped(), "cubeacp"),
         )
         self.start()
 

@@ -15,7 +15,7 @@ import pytest
 import serial
 
 from tests.python import packages
-from tests.sim.port import Port
+from tests.sim.port import DevicePort
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def wire(shipped):
     return shipped.module("wire")
 
 
-class Failing(Port):
+class Failing(DevicePort):
     """A port that fails when it is told to."""
 
     fails: str = ""
@@ -63,7 +63,7 @@ def test_a_session_goes_on_after_an_error_of_its_port(shipped, wire, fails, what
 
 def test_a_session_goes_on_after_whoever_is_told_of_events_fails(shipped, wire):
     acp = shipped.module("cubeacp")
-    port = Port(packages.shipped(), "cubeacp")
+    port = DevicePort(packages.shipped(), "cubeacp")
 
     def on_event(event):
         raise KeyError("no such handler")
@@ -146,7 +146,7 @@ def test_a_telecommand_without_acknowledge_is_sent_and_not_done(shipped, wire):
         assert client.output() or client.packets()
         assert client.tick(0) == [wire.Sent(acp.Reset.ID)]
     outcomes = []
-    port = Port(packages.shipped(), "cubeacp")
+    port = DevicePort(packages.shipped(), "cubeacp")
     talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
     outcomes.append(talking.start(wire.Request("telecommand", acp.Reset.ID, b"\x5a")))
     assert outcomes == [wire.Sent(acp.Reset.ID)]
@@ -180,7 +180,7 @@ class Device(threading.Thread):
 
     def __init__(self, far: int) -> None:
         super().__init__(daemon=True)
-        self.far, self.port = far, Port(packages.shipped(), "cubeacp")
+        self.far, self.port = far, DevicePort(packages.shipped(), "cubeacp")
         self.start()
 
     def run(self) -> None:
@@ -221,7 +221,7 @@ class Served(threading.Thread):
 
     def __init__(self, far: socket.socket) -> None:
         super().__init__(daemon=True)
-        self.far, self.port = far, Port(packages.shipped(), "cubeacp")
+        self.far, self.port = far, DevicePort(packages.shipped(), "cubeacp")
         self.start()
 
     def run(self) -> None:
@@ -290,7 +290,7 @@ def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
 )
 def test_an_error_names_the_message(shipped, wire, fault, error, said):
     acp = shipped.module("cubeacp")
-    port = Port(packages.shipped(), "cubeacp", faults=[fault])
+    port = DevicePort(packages.shipped(), "cubeacp", faults=[fault])
     talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
     with pytest.raises(getattr(wire, error)) as caught:
         talking.send(acp.ClearErrors())

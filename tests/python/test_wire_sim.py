@@ -9,7 +9,7 @@ import pytest
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Send
 from tests.python import packages
-from tests.sim.port import Port, Refusing
+from tests.sim.port import DevicePort, Refusing
 
 RESETS = ("Reset", "Run Selected Program")
 
@@ -20,7 +20,7 @@ def wire(shipped):
 
 
 def session(shipped, node: str = "cubeacp", **options):
-    port = Port(packages.shipped(), node, **options)
+    port = DevicePort(packages.shipped(), node, **options)
     wire = shipped.module("wire")
     return (
         wire.Session(

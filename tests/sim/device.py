@@ -1,4 +1,4 @@
-"""A simulator in a process of its own, as any client meets it."""
+"""A simulator in a process of its own, as a client uses it."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ ICD = icd_of()
 
 
 def _interruptible() -> None:
-    """A shell starts what runs in the background without an interrupt, and children
-    inherit that.
+    """Enable interrupts, because a shell starts background processes with interrupts
+    ignored and children inherit this.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @contextmanager
 def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
-    """Where it listens, and the process."""
+    """Start a simulator; yield its address and the process."""
     command = [sys.executable, "-m", "icdgen", "sim", *options]
     process = subprocess.Popen(
         command,
@@ -53,17 +53,17 @@ def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
         process.communicate(timeout=10)
 
 
-class Talking(Session):
-    """A session with a node, for messages of the model and bytes of any content."""
+class NodeSession(Session):
+    """A session with a node, for messages of the model and any bytes."""
 
     def __init__(self, node: str, port: Port, **options: Any) -> None:
         self.node, self.port = ICD.node(node), port
-        self.known = facts.of(ICD, self.node)
-        self.link = hasty(link_of(ICD, self.known))
+        self.node_facts = facts.of(ICD, self.node)
+        self.link = hasty(link_of(ICD, self.node_facts))
         super().__init__(self.link, port.write, port.read, **options)
 
     def telemetry(self, message: Message) -> bytes | None:
-        """The frame; None if there was no answer."""
+        """Return the frame, or ``None`` without a response."""
         outcome = self.start(Request("telemetry", message.telemetry_id))
         return outcome.data if isinstance(outcome, Done) else None
 
@@ -73,26 +73,26 @@ class Talking(Session):
         return self.start(Request("telecommand", message.telecommand_id, data, repeat))
 
     def identify(self) -> Identity | None:
-        """What the node says it is; None without an answer."""
-        frame = self.telemetry(self.known.identification.message)
+        """Return the identification of the node, or ``None`` without a response."""
+        frame = self.telemetry(self.node_facts.identification.message)
         return None if frame is None else identify(self.link, frame)
 
 
 @contextmanager
 def connected(
     node: str, place: str, settings: Settings = FAST, **more: Any
-) -> Iterator[Talking]:
-    """A client that is connected to a simulator."""
+) -> Iterator[NodeSession]:
+    """Yield a client that is connected to a simulator."""
     port = open_port(place, {})
     try:
-        yield Talking(node, port, settings=settings, **more)
+        yield NodeSession(node, port, settings=settings, **more)
     finally:
         port.close()
 
 
 @contextmanager
-def session(*options: str, node: str = "cubeacp", **more: Any) -> Iterator[Talking]:
-    """A client that is connected to a simulator of its own."""
+def session(*options: str, node: str = "cubeacp", **more: Any) -> Iterator[NodeSession]:
+    """Yield a client that is connected to its own simulator."""
     ways = () if {"--tcp", "--udp", "--pty"} & set(options) else ("--tcp", "0")
     with (
         simulator("--node", node, *ways, *options) as (place, _),
@@ -102,7 +102,7 @@ def session(*options: str, node: str = "cubeacp", **more: Any) -> Iterator[Talki
 
 
 def hasty(link: Any) -> Any:
-    """The link with short waits, for a device that is never slow."""
+    """Return the link with short time-outs, for a device that is never slow."""
     return link._replace(
         procedures={
             name: form._replace(steps=tuple(map(_hasty_step, form.steps)))

@@ -43,7 +43,7 @@ from tests.sim.tap import Tap, missing
 
 LOSSES = "0,1,10,30"
 ROOM = 524288  # bytes of a destination
-RUNNING = 1  # the program that a copy becomes
+RUNNING = 1  # the program after a copy
 BOOT = ("--boot", "100000")  # a client that starts slowly still meets the boot program
 
 

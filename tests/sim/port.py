@@ -1,6 +1,4 @@
-"""A byte port with the simulated device behind it, in a time that passes as fast as it
-can.
-"""
+"""A byte port to the simulated device, with simulated time."""
 
 from __future__ import annotations
 
@@ -10,8 +8,8 @@ from icdgen.icd.model import Icd
 from icdgen.sim import run
 
 
-class Port:
-    """Nothing sleeps: reading moves the clock, ``now`` in milliseconds."""
+class DevicePort:
+    """Port without sleeping: reading advances the clock ``now``, in milliseconds."""
 
     def __init__(self, icd: Icd, node: str, **options) -> None:
         self.line, _ = run.build_device(icd, node, run.Options(**options))
@@ -37,10 +35,9 @@ class Port:
         pass
 
 
-class Refusing(Port):
-    """So many times the acknowledge of the telecommand has the error code.
-
-    ``acknowledged``: how often there was one.
+class Refusing(DevicePort):
+    """Port whose acknowledges of the telecommand have the error code a number of times.
+    ``acknowledged`` counts them.
     """
 
     def __init__(
@@ -48,7 +45,9 @@ class Refusing(Port):
     ) -> None:
         super().__init__(icd, node, **options)
         link = self.line.computer.program.link
-        self.good, self.bad = (uart_encode(link, bytes((id, one))) for one in (0, code))
+        self.good, self.bad = (
+            uart_encode(link, bytes((id, code_))) for code_ in (0, code)
+        )
         self.times, self.acknowledged = times, 0
 
     def read(self, seconds: float) -> bytes:

@@ -1,4 +1,4 @@
-"""Stands between a client and the simulator, and keeps what the client sends."""
+"""A proxy between a client and the simulator that records what the client sends."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests import links
 
 
 class Tap:
-    """Takes one connection on `port`, and passes everything on in both directions."""
+    """Accepts one connection on `port` and forwards everything in both directions."""
 
     def __init__(self, host: str, port: int) -> None:
         self.target = (host, port)
@@ -34,16 +34,16 @@ class Tap:
             end.close()
 
     def messages(self, icd: Icd, node: str) -> list[bytes]:
-        """What the client sent, id first."""
-        known = facts.of(icd, icd.node(node))
-        decoder = UartDecoder(links.link(icd, node), known.longest_telecommand)
+        """Return the messages that the client sent, id first."""
+        node_facts = facts.of(icd, icd.node(node))
+        decoder = UartDecoder(links.link(icd, node), node_facts.longest_telecommand)
         events = decoder.feed(bytes(self.sent))
         return [event.message for event in events if event.event == "message"]
 
     def _serve(self) -> None:
         try:
             client, _ = self.server.accept()
-        except OSError:  # nobody came
+        except OSError:  # no client connected
             return
         device = socket.create_connection(self.target)
         self.ends = [client, device]
@@ -55,27 +55,29 @@ class Tap:
         _pass(client, device, self.sent)
 
 
-def _pass(source: socket.socket, target: socket.socket, kept: bytearray) -> None:
+def _pass(source: socket.socket, target: socket.socket, sent: bytearray) -> None:
     try:
         while data := source.recv(65536):
-            kept += data
+            sent += data
             target.sendall(data)
         target.shutdown(socket.SHUT_WR)
-    except OSError:  # one of them is gone
+    except OSError:  # one side has closed the connection
         return
 
 
 def missing(icd: Icd, node: str, messages: list[bytes]) -> list[str]:
-    """Names of what was never requested or never sent; also of what came too late,
-    after a reset.
+    """Return the names of messages that were never requested or sent, or only after a
+    reset.
     """
-    known = facts.of(icd, icd.node(node))
+    node_facts = facts.of(icd, icd.node(node))
     ids = [message[0] for message in messages]
-    resets = {id for id, message in known.telecommands.items() if message.expects_reset}
+    resets = {
+        id for id, message in node_facts.telecommands.items() if message.expects_reset
+    }
     first = next((at for at, id in enumerate(ids) if id in resets), len(ids))
     before = {*ids[:first], *resets.intersection(ids)}
     return [
         m.name
-        for id, m in (known.telemetry | known.telecommands).items()
+        for id, m in (node_facts.telemetry | node_facts.telecommands).items()
         if id not in before
     ]

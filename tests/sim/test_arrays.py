@@ -1,4 +1,4 @@
-"""Arrays in the simulator: an element, or all of them, are set."""
+"""Options of the simulator set one element of an array or all elements."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ def icd(tmp_path_factory):
 def test_values_of_an_array_come_as_a_list_and_of_an_element_as_a_number(
     icd, key, value, raw
 ):
-    found = fields_of(icd, icd.node("demo"), "Heat", key, value)
+    assignments = fields_of(icd, icd.node("demo"), "Heat", key, value)
     assert {
-        one.steps[-1].element: raw_value_of(message, one, given)
-        for message, one, given in found
+        field.steps[-1].element: raw_value_of(message, field, value_)
+        for message, field, value_ in assignments
     } == raw
 
 
 def test_a_wave_of_an_array_moves_each_element(icd):
     wave = {"wave": "sine", "min": 0, "max": 1}
-    found = fields_of(icd, icd.node("demo"), "Heat", "temperatures", wave)
-    assert [(one.steps[-1].element, given) for _, one, given in found] == [
+    assignments = fields_of(icd, icd.node("demo"), "Heat", "temperatures", wave)
+    assert [(field.steps[-1].element, value_) for _, field, value_ in assignments] == [
         (0, wave),
         (1, wave),
         (2, wave),

@@ -1,5 +1,5 @@
-"""A board that demands a checksum both ways: what is sent has one, and what comes
-without one, or with a wrong one, is told of.
+"""A device that requires checksums in both directions: sent messages have one, and
+received messages without a correct one are reported.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ LINK = link_of(ICD, facts.of(ICD, ICD.node("battery")))
 HEATER, VOLTAGES = 5, 130
 
 
-class Port:
-    """The simulated board, whose replies ``spoil`` changes, and which gets what
-    ``changed`` makes of a message.
+class BoardPort:
+    """The simulated board. ``spoil`` changes its responses, ``changed`` the received
+    messages.
     """
 
     def __init__(self, spoil=lambda message: message, changed=lambda message: message):
@@ -51,7 +51,7 @@ class Port:
         )
 
 
-def asked(port: Port, request: Request):
+def start_request(port: BoardPort, request: Request):
     heard = []
     session = Session(
         LINK, port.write, port.read, on_event=heard.append, clock=lambda: port.now
@@ -59,15 +59,15 @@ def asked(port: Port, request: Request):
     return session.start(request), heard
 
 
-def test_both_directions_have_their_checksum_without_being_told_to():
+def test_both_directions_have_their_checksum_by_default():
     seen = []
-    outcome, heard = asked(
-        Port(changed=lambda message: seen.append(message) or message),
+    outcome, heard = start_request(
+        BoardPort(changed=lambda message: seen.append(message) or message),
         Request("telecommand", HEATER, b"\1"),
     )
     assert outcome == Done(HEATER, 1, b"\0") and heard == []
     assert seen == [i2c_write(LINK, HEATER, b"\1", True)] and len(seen[0]) == 4
-    outcome, heard = asked(Port(), Request("telemetry", VOLTAGES))
+    outcome, heard = start_request(BoardPort(), Request("telemetry", VOLTAGES))
     assert isinstance(outcome, Done) and len(outcome.data) == 16 and heard == []
 
 
@@ -78,8 +78,12 @@ def test_both_directions_have_their_checksum_without_being_told_to():
         (lambda message: message[:-2], "unchecked"),
     ],
 )
-def test_a_frame_with_a_wrong_checksum_or_none_is_told_of_and_not_taken(spoil, error):
-    outcome, heard = asked(Port(spoil=spoil), Request("telemetry", VOLTAGES))
+def test_a_frame_with_a_wrong_or_missing_checksum_is_reported_and_discarded(
+    spoil, error
+):
+    outcome, heard = start_request(
+        BoardPort(spoil=spoil), Request("telemetry", VOLTAGES)
+    )
     assert (
         isinstance(outcome, Timeout)
         and heard == [LineError(error, VOLTAGES)] * outcome.attempts
@@ -94,7 +98,9 @@ def test_a_frame_with_a_wrong_checksum_or_none_is_told_of_and_not_taken(spoil, e
     ],
 )
 def test_the_board_refuses_a_telecommand_without_its_checksum(changed):
-    outcome, _ = asked(Port(changed=changed), Request("telecommand", HEATER, b"\1"))
+    outcome, _ = start_request(
+        BoardPort(changed=changed), Request("telecommand", HEATER, b"\1")
+    )
     assert isinstance(outcome, Refused) and outcome.reason == "Checksum"
 
 
@@ -113,9 +119,9 @@ class Board(socketserver.BaseRequestHandler):
 
 
 @pytest.mark.parametrize(
-    ("end", "said"), [(b"", "no checksum"), (b"\0\0", "wrong checksum")]
+    ("end", "expected"), [(b"", "no checksum"), (b"\0\0", "wrong checksum")]
 )
-def test_the_monitor_says_what_is_wrong_and_not_that_nothing_answers(end, said):
+def test_the_monitor_reports_the_wrong_checksum_and_no_time_out(end, expected):
     handler = type("Board", (Board,), {"end": end})
     with socketserver.ThreadingTCPServer(("127.0.0.1", 0), handler) as board:
         threading.Thread(target=board.serve_forever, daemon=True).start()
@@ -138,5 +144,7 @@ def test_the_monitor_says_what_is_wrong_and_not_that_nothing_answers(end, said):
         )
         board.shutdown()
     assert (
-        done.returncode == 1 and said in done.stdout and "no answer" not in done.stdout
+        done.returncode == 1
+        and expected in done.stdout
+        and "no answer" not in done.stdout
     )

@@ -1,4 +1,4 @@
-"""The simulated device is what the ICD says: over a real port, with the client of the
+"""The simulated device follows the ICD, over a real port and with the client of the
 runtime.
 """
 
@@ -32,28 +32,28 @@ WAYS = [("--tcp", "0"), ("--udp", "0"), ("--pty",)]
 
 
 def value_of(client, name: str, field: str) -> int:
-    message = next(m for m in client.known.telemetry.values() if m.name == name)
+    message = next(m for m in client.node_facts.telemetry.values() if m.name == name)
     return codec.decode(client.node, message, client.telemetry(message))[field]
 
 
 @pytest.mark.parametrize("way", WAYS, ids=lambda way: way[0])
 @pytest.mark.parametrize("node", ["cubeacp", "bootloader"])
-def test_it_identifies_itself_and_answers_every_request(node, way):
+def test_the_device_identifies_itself_and_answers_every_request(node, way):
     with session(*way, node=node) as client:
         identity = client.identify()
         assert identity.matches and identity.node_type == ICD.node(node).node_type
-        for message in client.known.telemetry.values():
+        for message in client.node_facts.telemetry.values():
             frame = client.telemetry(message)
             assert frame is not None and len(frame) == message.length, message.name
 
 
 @pytest.mark.parametrize("node", ["cubeacp", "bootloader"])
-def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_set(
+def test_every_telecommand_is_accepted_and_every_configuration_reads_back(
     node,
 ):
     with session(node=node) as client:
         client.identify()  # so that a boot program stays
-        for message in client.known.telecommands.values():
+        for message in client.node_facts.telecommands.values():
             if message.expects_reset:
                 continue
             raw = allowed_values(ICD, message)
@@ -72,11 +72,11 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
 
 
 def refusable(client) -> set[str]:
-    """Telecommands that may be refused: for what the device holds just now, for a
+    """Return the telecommands that may be refused: by the state of the device, for a
     destination, or by the node.
     """
     boot = facts.of(ICD, ICD.node("bootloader"))
-    burst = client.known.telecommands[next(iter(client.known.unsolicited))]
+    burst = client.node_facts.telecommands[next(iter(client.node_facts.unsolicited))]
     return {
         burst.name,
         *(
@@ -90,10 +90,10 @@ def refusable(client) -> set[str]:
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
     with session(crc=True) as client:
-        done = client.telecommand(client.known.telecommands[17], bytes(6))
+        done = client.telecommand(client.node_facts.telecommands[17], bytes(6))
         assert isinstance(done, Done)
         wrong = bytes([17]) + bytes(6) + b"\x01"
-        assert raw_exchange(client, wrong) == client.known.reasons["checksum"]
+        assert raw_exchange(client, wrong) == client.node_facts.reasons["checksum"]
 
 
 @pytest.mark.parametrize(
@@ -104,18 +104,20 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
         (b"\x21\x59", "value"),
     ],
 )
-def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
+def test_invalid_messages_are_refused_with_the_reason(message, reason):
     with session() as client:
-        assert raw_exchange(client, message) == client.known.reasons[reason]
-        polled = client.known.polled
+        assert raw_exchange(client, message) == client.node_facts.reasons[reason]
+        polled = client.node_facts.polled
         frame = codec.decode(client.node, polled, client.telemetry(polled))
         assert frame["Last TC ID"] == message[0]
-        assert frame["TC error status"] == client.known.reasons[reason]
+        assert frame["TC error status"] == client.node_facts.reasons[reason]
         assert frame["Processed flag"] == 1
 
 
 def raw_exchange(client, message: bytes) -> int:
-    """Sends bytes that the client would not send; the code of the acknowledge."""
+    """Send bytes that the client would not send, and return the code of the
+    acknowledge.
+    """
     client.port.write(uart_encode(client.link, message))
     decoder = UartDecoder(client.link)
     end = time.monotonic() + 5
@@ -126,14 +128,14 @@ def raw_exchange(client, message: bytes) -> int:
     raise AssertionError("no acknowledge")
 
 
-def test_counters_and_flags_of_the_communication_status():
+def test_the_communication_status_counts_messages_and_errors():
     with session() as client:
-        step = client.known.statistics
+        step = client.node_facts.statistics
         names = step.fields
         assert value_of(client, step.message.name, names["requests"]) == 1
-        client.telecommand(client.known.telecommands[17], bytes(6))
+        client.telecommand(client.node_facts.telecommands[17], bytes(6))
         assert value_of(client, step.message.name, names["telecommands"]) == 1
-        form = client.known.framing
+        form = client.node_facts.framing
         assert value_of(client, step.message.name, names["uart_protocol"]) == 0
         client.port.write(bytes([form.escape, form.start, 1, form.escape, 0x33]))
         assert value_of(client, step.message.name, names["uart_protocol"]) == 1
@@ -146,15 +148,15 @@ def test_counters_and_flags_of_the_communication_status():
 
 def test_a_telecommand_before_the_one_before_is_processed_overruns_the_buffer():
     with session("--processing", "100") as client:
-        one = uart_encode(client.link, bytes([17]) + bytes(6))
-        client.port.write(one * 3)
+        telecommand = uart_encode(client.link, bytes([17]) + bytes(6))
+        client.port.write(telecommand * 3)
         time.sleep(0.3)
-        step = client.known.statistics
+        step = client.node_facts.statistics
         assert value_of(client, step.message.name, step.fields["overrun"]) == 1
         assert value_of(client, step.message.name, step.fields["telecommands"]) == 1
 
 
-def test_the_boot_program_starts_the_application_unless_it_is_asked_who_it_is():
+def test_the_boot_program_starts_the_application_unless_it_is_identified():
     with session("--boot", "2000", node="bootloader") as client:
         assert client.identify().matches
         time.sleep(2.3)
@@ -166,8 +168,10 @@ def test_the_boot_program_starts_the_application_unless_it_is_asked_who_it_is():
 
 def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
     with session("--boot", "60000") as client:
-        reset = next(m for m in client.known.telecommands.values() if m.expects_reset)
-        client.telecommand(client.known.telecommands[17], bytes(6))
+        reset = next(
+            m for m in client.node_facts.telecommands.values() if m.expects_reset
+        )
+        client.telecommand(client.node_facts.telecommands[17], bytes(6))
         data = codec.encode(ICD.node(reset.node), reset, allowed_values(ICD, reset))
         assert isinstance(client.telecommand(reset, data), Sent)
         assert client.identify().node_type == ICD.node("bootloader").node_type
@@ -213,7 +217,7 @@ def test_values_are_set_by_options_orders_and_scripts(tmp_path):
         assert value_of(client, name, "Estimated Roll Angle") == -150
 
 
-def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
+def test_an_interrupt_while_a_client_is_connected_ends_the_simulator_silently():
     with simulator("--node", "cubeacp", "--tcp", "0") as (place, process):
         host, port = place.removeprefix("tcp://").rsplit(":", 1)
         with socket.create_connection((host, int(port))) as client:
@@ -225,7 +229,7 @@ def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
 
 
 @pytest.mark.parametrize("turns", range(4))
-def test_an_interrupt_ends_it_even_where_data_come_at_the_same_moment(turns):
+def test_an_interrupt_during_reception_ends_the_simulator(turns):
     async def ends() -> bool:
         running = asyncio.create_task(
             (server := Server(*build_device(ICD, "cubeacp", Options()))).run()
@@ -241,14 +245,16 @@ def test_an_interrupt_ends_it_even_where_data_come_at_the_same_moment(turns):
     assert asyncio.run(ends())
 
 
-def test_unsolicited_logs_come_as_they_are_configured():
+def test_unsolicited_logs_follow_the_configuration():
     events = []
     with session(on_event=events.append) as client:
         role = ICD.protocol_of(client.node)["unsolicited_log"]["configured_by"]
         message = next(
-            m for m in client.known.telecommands.values() if m.name == role["message"]
+            m
+            for m in client.node_facts.telecommands.values()
+            if m.name == role["message"]
         )
-        bit = min(client.known.mask.bits)
+        bit = min(client.node_facts.mask.bits)
         raw = allowed_values(ICD, message) | {
             role["fields"]["mask"]: bytes([1 << bit]) + bytes(9),
             role["fields"]["period"]: 1,
@@ -276,7 +282,7 @@ def test_the_same_seed_brings_the_same_faults(seed):
             "duplicate=20%",
             "late=20%",
         ]
-        faults = Faults(Random(seed), [parse(one) for one in kinds])
+        faults = Faults(Random(seed), [parse(kind) for kind in kinds])
         return [faults.apply("reply", bytes(range(20))) for _ in range(200)]
 
     first = outcomes()
@@ -298,12 +304,12 @@ FAULTS = [
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_whatever_happens_on_the_line_every_request_ends(fault):
+def test_every_request_ends_with_any_fault_on_the_line(fault):
     with session("--fault", fault, "--late", "300", "--seed", "3") as client:
         begin = time.monotonic()
         for number in range(12):
             outcome = client.telecommand(
-                client.known.telecommands[17], bytes([number] * 6), repeat=True
+                client.node_facts.telecommands[17], bytes([number] * 6), repeat=True
             )
             assert isinstance(outcome, OUTCOMES)
             client.identify()
@@ -313,7 +319,9 @@ def test_whatever_happens_on_the_line_every_request_ends(fault):
 def test_a_refused_telecommand_is_not_executed():
     with session("--fault", "nack=1") as client:
         message = next(
-            m for m in client.known.telecommands.values() if m.kind == CONFIGURATION
+            m
+            for m in client.node_facts.telecommands.values()
+            if m.kind == CONFIGURATION
         )
         before = client.telemetry(message)
         outcome = client.telecommand(message, bytes([1] * message.length))
@@ -321,10 +329,10 @@ def test_a_refused_telecommand_is_not_executed():
         assert client.telemetry(message) == before
 
 
-def test_strict_refuses_what_no_enumeration_has():
+def test_strict_refuses_unknown_enum_values():
     def outcome(*options):
         with session(*options) as client:
-            message = client.known.telecommands[10]
+            message = client.node_facts.telecommands[10]
             return type(client.start(Request("telecommand", message.id, b"\xee")))
 
     assert (outcome(), outcome("--strict")) == (Done, Refused)
@@ -388,7 +396,7 @@ def test_strict_refuses_what_no_enumeration_has():
         ),
     ],
 )
-def test_what_cannot_be_is_said(options, text, tmp_path):
+def test_misuse_is_reported(options, text, tmp_path):
     import subprocess
     import sys
 
@@ -433,7 +441,7 @@ def test_a_wrong_script_is_refused_before_anything_runs(script, words, tmp_path)
         run.build_device(ICD, "cubeacp", run.Options(script=path))
 
 
-def test_monitor_and_send_from_the_outside():
+def test_monitor_and_send_talk_to_the_device():
     import subprocess
     import sys
 
@@ -463,7 +471,7 @@ def test_monitor_and_send_from_the_outside():
             "json",
         )
         rounds = [json.loads(line) for line in shown.stdout.splitlines()]
-        assert [one["fields"][0]["value"] for one in rounds] == [1.25, 1.25]
+        assert [frame["fields"][0]["value"] for frame in rounds] == [1.25, 1.25]
         table = icdgen("monitor", "cubeacp", "146", "--port", place, "--once").stdout
         assert "Estimated Roll Angle" in table and "1.25  deg" in table
         sent = icdgen(

@@ -1,5 +1,5 @@
-"""Responses that a device, or the test of a client, makes from the table of the link:
-the client takes them for what they are.
+"""Responses that a device builds from the table of the link: the client interprets each
+as intended.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def link(name: str):
 
 
 def commands(of):
-    """Each telecommand that has responses, with the verdicts that these have."""
+    """Yield each telecommand that has responses, with their verdicts."""
     for row in of.stream.telecommands:
         if row.exchange is None:
             continue
@@ -67,20 +67,20 @@ def commands(of):
 
 
 def sent(client: Client, id: int, data: bytes) -> bytes:
-    """What a client sends for a telecommand."""
+    """Return the bytes that a client sends for a telecommand."""
     client.start(0, Request("telecommand", id, data))
     return client.output()
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "expected_text"),
     [
         ("wheel", {"ack", "reply", "nak", "busy"}),
         ("arm", {"ack", "reply", "nak", "busy", "progress"}),
         ("receiver", {"reply"}),
     ],
 )
-def test_the_client_takes_each_response_for_what_it_says(name, said):
+def test_the_client_interprets_each_response(name, expected_text):
     of, seen = link(name), set()
     for row, verdicts in commands(of):
         data = bytes(range(7, 7 + row.least))
@@ -95,7 +95,7 @@ def test_the_client_takes_each_response_for_what_it_says(name, said):
                 expected = Progress if verdict == "ack" else Reply
             assert type(end) is expected and end.id == row.id, (row, verdict, end)
             seen.add(verdict)
-    assert seen == said
+    assert seen == expected_text
 
 
 @given(
@@ -131,7 +131,7 @@ def test_the_response_to_another_telecommand_confirms_nothing(name):
     assert len(rows) > 1
 
 
-def test_a_refusal_has_the_reason_and_the_other_fields_of_the_device():
+def test_a_nak_has_the_reason_and_the_other_fields_of_the_device():
     of = link("wheel")
     assert response_to(of, 0x02, b"\1\2\3", "nak", 3) == (0x15, b"\x02\x03")
     assert response_to(of, 0x04, b"", "reply", telemetry=b"\1\2") == (
@@ -140,7 +140,7 @@ def test_a_refusal_has_the_reason_and_the_other_fields_of_the_device():
     )
     arm = link("arm")
     result, data = response_to(arm, 0x0207, b"", "ack") or (None, None)
-    assert (result, data) == (None, None)  # nothing responds to Halt
+    assert (result, data) == (None, None)  # Halt has no response
     frame = bytes.fromhex("ffffffff3412")  # all fields before the time are replaced
     _, data = response_to(arm, 0x0201, bytes(7), "ack", telemetry=frame)
     assert data == bytes.fromhex("f8ff02013412")
@@ -158,7 +158,7 @@ def test_a_reason_that_does_not_fit_is_an_error():
         response_to(link("wheel"), 0x01, b"\0", "nak", 256)
 
 
-def test_a_status_refuses_with_a_value_that_means_nothing_else():
+def test_a_status_refuses_with_a_value_that_has_no_other_meaning():
     arm = link("arm")
     (row,) = (row for row in arm.stream.telecommands if row.id == 0x0205)
     client = Client(arm)

@@ -1,5 +1,5 @@
-"""The same example program in C, Rust and Python: it compiles without a warning, and
-says the same whatever the node does.
+"""The same example program in C, Rust and Python compiles without a warning and prints
+the same for every behaviour of the node.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ FLAGS = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", *c.WARNINGS)
 
 
 class Example(NamedTuple):
-    """A program in each language, and what is generated for it."""
+    """A program in each language, and its generated code."""
 
     files: dict[str, Path]
     headers: Path
@@ -47,7 +47,7 @@ class Example(NamedTuple):
 
 
 def built(icd: Icd, files: dict[str, Path], folder: Path) -> Example:
-    """The programs, compiled."""
+    """Compile the programs."""
     (folder / "c").mkdir()
     headers = c.generate(icd, folder / "c")
     (folder / "rust").mkdir()
@@ -86,20 +86,20 @@ def example(request) -> Example:
 
 
 def outcomes(example: Example, *simulated: str) -> dict[str, tuple[int, str, str]]:
-    """The exit code and texts of each program, against a simulated device."""
-    said = {}
+    """Return the exit code and output of each program against a simulated device."""
+    results = {}
     with simulator(*simulated, "--tcp", "0") as (place, _):
         port = str(urlsplit(place).port)
         for language, command in example.commands.items():
             done = subprocess.run(
                 [*command, port], capture_output=True, text=True, timeout=60
             )
-            said[language] = (done.returncode, done.stdout, done.stderr)
-    return said
+            results[language] = (done.returncode, done.stdout, done.stderr)
+    return results
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "expected"),
     [
         (
             ["--set", "Estimated Attitude Angles", "roll=12.5"],
@@ -117,28 +117,28 @@ def outcomes(example: Example, *simulated: str) -> dict[str, tuple[int, str, str
         (["--fault", "drop=100%@acknowledge"], (1, "", "no response, attempts: 1\n")),
     ],
 )
-def test_each_language_says_the_same_of_the_same_node(control, options, said):
+def test_each_language_prints_the_same_for_the_same_node(control, options, expected):
     got = outcomes(control, "--node", "cubeacp", *options)
-    assert got == dict.fromkeys(CONTROL, said)
+    assert got == dict.fromkeys(CONTROL, expected)
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "expected"),
     [
         (["--set", "Events", "count=7"], (0, "7 events\n", "")),
         (["--fault", "nak=100%:Wrong mode"], (1, "", "refused: Wrong mode\n")),
         (["--fault", "busy=100%"], (1, "", "busy, attempts: 3\n")),
         (["--fault", "silence=100%"], (1, "", "no response, attempts: 3\n")),
-        # The response to another telecommand is none to this one.
+        # The response to another telecommand does not confirm this one.
         (["--fault", "foreign=100%"], (1, "", "no response, attempts: 3\n")),
     ],
 )
-def test_each_language_says_the_same_outcome_of_a_command(wheel, options, said):
+def test_each_language_prints_the_same_outcome_of_a_command(wheel, options, expected):
     got = outcomes(wheel, "--icd", str(WHEEL_ICD), *options)
-    assert got == dict.fromkeys(WHEEL, said)
+    assert got == dict.fromkeys(WHEEL, expected)
 
 
-def test_what_was_commanded_is_what_the_node_holds(control):
+def test_the_node_stores_the_commanded_values(control):
     for command in control.commands.values():
         with simulator("--node", "cubeacp", "--tcp", "0") as (place, _):
             subprocess.run(
@@ -192,7 +192,7 @@ def test_the_example_in_python_is_typed(example, tmp_path):
     assert done.returncode == 0, done.stdout
 
 
-def test_the_pages_show_the_examples_as_they_are():
+def test_the_pages_show_the_examples_unchanged():
     pages = {
         "c": "guides/driver-in-c",
         "rust": "guides/rust",

@@ -1,5 +1,5 @@
-"""A serial line serves one program at a time: the second one is told who has it, and
-sends nothing.
+"""A serial line serves one program at a time. A second program reports which one uses
+it and sends nothing.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def icdgen(*words: str) -> subprocess.CompletedProcess:
 
 @pytest.fixture
 def line():
-    """Both ends of a line on which nobody answers: file of the device, and path of the
+    """Return both ends of a silent line: the file of the device, and the path of the
     terminal.
     """
     device, terminal = os.openpty()
@@ -35,7 +35,7 @@ def line():
     os.close(device)
 
 
-def test_send_beside_a_monitor_says_who_has_the_line_and_sends_nothing():
+def test_send_during_a_monitor_names_the_program_and_sends_nothing():
     with simulator("--node", "cubeacp", "--pty") as (place, _):
         watching = subprocess.Popen(
             [

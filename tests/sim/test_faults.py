@@ -1,4 +1,6 @@
-"""Each simulated fault does to the bytes of a message what its name says, and no more."""
+"""Each simulated fault changes the bytes of a message as its name says, and nothing
+more.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ DATA = bytes(range(20))
 def applied(
     *texts: str, on: str = "reply", data: bytes = DATA, times: int = 2000
 ) -> Iterator[list[tuple[int, bytes]]]:
-    """Apply faults to a message many times: pieces and their delays."""
+    """Apply faults to a message many times; return the chunks and their delays."""
     faults = Faults(Random(1), [parse(text) for text in texts])
     return (faults.apply(on, data) for _ in range(times))
 
@@ -47,13 +49,13 @@ def test_a_cut_message_lacks_one_byte_anywhere():
     assert cuts == {DATA[:place] + DATA[place + 1 :] for place in range(len(DATA))}
 
 
-def test_one_byte_comes_twice_anywhere():
+def test_one_byte_at_any_position_comes_twice():
     repeats = {data for ((_, data),) in applied("repeat=1")}
     places = range(len(DATA))
     assert repeats == {DATA[: place + 1] + DATA[place:] for place in places}
 
 
-def test_noise_comes_before_the_whole_message():
+def test_noise_comes_before_the_complete_message():
     lengths = set()
     for ((_, data),) in applied("noise=1"):
         assert data.endswith(DATA)

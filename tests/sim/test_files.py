@@ -1,6 +1,6 @@
-"""Files arrive byte for byte over a real port, whatever is lost.
+"""Files arrive byte for byte over a real port with any losses.
 
-Small files here; a megabyte each way is a command of its own, `tests.sim.harness`:
+The files are small. `tests.sim.harness` transfers a megabyte each way:
 ``PYTHONPATH=generated/python python -m tests.sim.harness -- python -m
 tests.python.sim_client``.
 """
@@ -30,8 +30,8 @@ def downloaded(client, type, counter, size) -> bytes:
 
 
 def listed(client) -> list[dict[str, int]]:
-    """The files of the list: the fields of its entries."""
-    message = client.known.telemetry[client.link.procedures["list"].entry]
+    """Return the fields of the entries of the file list."""
+    message = client.node_facts.telemetry[client.link.procedures["list"].entry]
     frames = ran(client, "list").frames
     return [codec.decode(client.node, message, frame) for frame in frames]
 
@@ -65,7 +65,7 @@ def test_a_file_is_downloaded_and_a_program_uploaded(tmp_path, loss, way):
      ("cut=5%@packet", "noise=20%@packet,reply"), ("corrupt=0.3%@packet",), ("corrupt=0.3%@upload",)],
     ids=" ".join,
 )  # fmt: skip
-def test_files_survive_what_happens_to_acknowledges_and_packets(tmp_path, faults):
+def test_files_survive_faults_of_acknowledges_and_packets(tmp_path, faults):
     stored = Random(1).randbytes(6_001)
     (tmp_path / "stored").write_bytes(stored)
     options = [word for fault in faults for word in ("--fault", fault)]

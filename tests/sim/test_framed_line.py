@@ -1,5 +1,5 @@
-"""Framed links, simulated and talked over: what comes unasked, replies, gaps,
-and what is wrong with what comes.
+"""Framed links, simulated and used by a client: unsolicited telemetry, responses, gaps,
+and errors.
 """
 
 from __future__ import annotations
@@ -31,10 +31,9 @@ EXAMPLES = ["receiver", "positioner", "autopilot", "payload", "logger", "probe"]
 POLL, CLOCK, EPOCH, RATE = 0x0122, 0x0122, 0x0161, 0x0601  # of the receiver
 
 
-class Port:
-    """A simulated device in memory, in a time of its own.
-
-    ``spoil`` is what becomes of what it sends.
+class MemoryPort:
+    """A simulated device in memory with simulated time. ``spoil`` changes the bytes
+    that it sends.
     """
 
     def __init__(self, node: str, spoil=lambda data: data, **options):
@@ -63,8 +62,8 @@ class Port:
 
 
 def talking(node: str, values=None, spoil=lambda data: data, **options):
-    """A session, its port, and the list of what it is told."""
-    heard, port = [], Port(node, spoil, **options)
+    """Return a session, its port, and the list of its events."""
+    heard, port = [], MemoryPort(node, spoil, **options)
     link = link_of(ICD, facts.of(ICD, ICD.node(node)))
     session = Session(
         link,
@@ -78,45 +77,44 @@ def talking(node: str, values=None, spoil=lambda data: data, **options):
 
 
 @pytest.mark.parametrize("node", EXAMPLES)
-def test_telemetry_that_comes_unasked_is_a_stream_of_messages(node):
+def test_unsolicited_telemetry_is_a_stream_of_messages(node):
     session, port, heard = talking(node, every=0.1)
-    came = list(session.messages(seconds=0.35))
+    received = list(session.messages(seconds=0.35))
     wanted = [message.name for message in port.line.unsolicited]
-    assert [message.NAME for message in came] == wanted * 4 and len(wanted) >= 1
+    assert [message.NAME for message in received] == wanted * 4 and len(wanted) >= 1
     assert all(isinstance(event, Arrived) for event in heard)
 
 
 def test_telemetry_comes_with_the_period_of_the_icd():
-    """The measurement every 10 ms, also if a telecommand can request it."""
+    """The measurement comes every 10 ms, although a telecommand can request it."""
     session, _, _ = talking("tfmini", every=None)
-    came = [message.NAME for message in session.messages(seconds=0.095)]
-    assert came == ["Measurement"] * 10
+    received = [message.NAME for message in session.messages(seconds=0.095)]
+    assert received == ["Measurement"] * 10
     session, _, _ = talking("tfmini", every=0.05)
     assert len(list(session.messages(seconds=0.095))) == 2
 
 
-def test_only_the_kinds_that_are_listened_for_come():
+def test_only_the_selected_messages_are_reported():
     session, _, heard = talking("positioner", every=0.1)
     kind = session.client.link.TELEMETRY[0xFFFF]
-    assert {type(one) for one in session.messages(kind, seconds=0.35)} == {
+    assert {type(message) for message in session.messages(kind, seconds=0.35)} == {
         kind
     } and len(heard) == 8
 
 
-def test_a_telecommand_is_answered_with_what_the_icd_says():
+def test_a_telecommand_gets_the_response_of_the_icd():
     session, port, _ = talking("receiver", every=0)
     port.control.set("Navigation Clock", "Clock Bias", 77)
     outcome = session.start(Request("telecommand", POLL))
     assert isinstance(outcome, Done) and outcome.message.clock_bias == 77
-    assert (
-        session.get(session.client.link.TELEMETRY[CLOCK]).clock_bias == 77
-    )  # which the telecommand asks for
+    # The telemetry that the telecommand requests.
+    assert session.get(session.client.link.TELEMETRY[CLOCK]).clock_bias == 77
     assert session.start(Request("telecommand", RATE, bytes(3))) == Sent(RATE, 1)
     with pytest.raises(UnsupportedError, match="sent unasked"):
         session.start(Request("telemetry", EPOCH))
 
 
-def test_telemetry_that_comes_unasked_is_no_reply_and_a_silent_device_is_a_time_out():
+def test_unsolicited_telemetry_is_no_response_and_a_silent_device_is_a_time_out():
     session, _, heard = talking(
         "receiver", spoil=lambda data: data if data[3] == 0x61 else b"", every=0.1
     )
@@ -137,7 +135,7 @@ def test_messages_that_get_lost_are_gaps():
     assert [event for event in heard if isinstance(event, Gap)] == [Gap(30, 3)]
 
 
-def test_what_we_send_is_counted_and_has_the_addresses_that_were_chosen():
+def test_sent_messages_have_sequence_numbers_and_the_chosen_addresses():
     session, port, _ = talking(
         "autopilot", values={"source": 9, "sequence": 254}, every=0
     )
@@ -162,7 +160,7 @@ def test_values_that_the_header_cannot_have_are_refused(values, error):
 
 
 def test_a_framed_link_leaves_no_choice_of_a_checksum():
-    port = Port("receiver")
+    port = MemoryPort("receiver")
     with pytest.raises(UnsupportedError, match="no choice"):
         Session(
             link_of(ICD, facts.of(ICD, ICD.node("receiver"))),
@@ -176,7 +174,7 @@ def damaged(data: bytes) -> bytes:
     return data[:-1] + bytes([data[-1] ^ 1]) if data else data
 
 
-def test_a_wrong_checksum_is_told_of_and_no_message():
+def test_a_wrong_checksum_is_reported_and_the_message_discarded():
     session, _, heard = talking("receiver", spoil=damaged, every=0)
     assert isinstance(session.start(Request("telecommand", POLL)), Timeout)
     assert heard == [LineError("checksum", CLOCK)]
@@ -184,8 +182,8 @@ def test_a_wrong_checksum_is_told_of_and_no_message():
 
 def test_a_device_that_gets_a_wrong_checksum_does_nothing():
     session, port, _ = talking("receiver", every=0)
-    whole = port.line.received
-    port.line.received = lambda now, data: whole(now, damaged(data))
+    receive = port.line.received
+    port.line.received = lambda now, data: receive(now, damaged(data))
     assert isinstance(session.start(Request("telecommand", POLL)), Timeout)
     assert port.line.computer.program.counts == {"checksum": 1}
 
@@ -199,7 +197,7 @@ def icdgen(*words: str, folder: Path = FOLDER) -> subprocess.CompletedProcess:
     "way",
     [pytest.param(("--pty",), marks=pytest.mark.pty), ("--tcp", "0"), ("--udp", "0")],
 )
-def test_monitor_and_send_from_the_outside(way):
+def test_monitor_and_send_work_on_a_framed_link(way):
     options = (
         "--node",
         "receiver",
@@ -211,11 +209,11 @@ def test_monitor_and_send_from_the_outside(way):
         *way,
     )
     with simulator(*options, "--icd", str(FOLDER)) as (place, _):
-        asked = icdgen("send", "receiver", "Poll Clock", "--port", place)
+        result = icdgen("send", "receiver", "Poll Clock", "--port", place)
         assert (
-            asked.returncode == 0
-            and "answered with Navigation Clock" in asked.stdout
-            and "-3" in asked.stdout
+            result.returncode == 0
+            and "answered with Navigation Clock" in result.stdout
+            and "-3" in result.stdout
         )
         sent = icdgen(
             "send",
@@ -246,7 +244,7 @@ def test_monitor_and_send_from_the_outside(way):
             and "Clock Bias" in shown.stdout
             and "-3" in shown.stdout
         )
-        if "--udp" not in way:  # who never sent anything is not known there
+        if "--udp" not in way:  # UDP learns a peer from its first datagram
             all_ = icdgen(
                 "monitor",
                 "receiver",
@@ -263,7 +261,7 @@ def test_monitor_and_send_from_the_outside(way):
             ] == ["End of Epoch"]
 
 
-def test_the_monitor_says_that_the_checksum_is_wrong():
+def test_the_monitor_reports_a_wrong_checksum():
     spoiled = ("--fault", "corrupt=100%@reply", "--every", "0", "--seed", "3")
     with simulator(
         "--node", "receiver", "--tcp", "0", *spoiled, "--icd", str(FOLDER)
@@ -285,12 +283,12 @@ def test_the_monitor_says_that_the_checksum_is_wrong():
     )
 
 
-def test_the_simulated_device_calls_a_client_that_listens():
+def test_the_simulated_device_connects_to_a_listening_client():
     with socket.create_server(("127.0.0.1", 0)) as listening:
         place = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
         options = ("--node", "positioner", "--every", "0.05", "--connect", place)
-        with simulator(*options, "--icd", str(FOLDER)) as (said, _):
-            assert said == f"to {place}"
+        with simulator(*options, "--icd", str(FOLDER)) as (startup, _):
+            assert startup == f"to {place}"
             listening.settimeout(20)
             connection, _ = listening.accept()
             with connection:
@@ -298,11 +296,11 @@ def test_the_simulated_device_calls_a_client_that_listens():
                 assert connection.recv(1) == b"\x55"
 
 
-def test_packets_that_delimit_messages_need_a_way_that_keeps_them_apart():
+def test_messages_delimited_by_packets_need_a_packet_port():
     node = next(
-        one.name
-        for one in ICD.nodes
-        if ICD.protocol_of(one)["link"]["framing"]["by"] == "datagram"
+        node.name
+        for node in ICD.nodes
+        if ICD.protocol_of(node)["link"]["framing"]["by"] == "datagram"
     )
     with pytest.raises(UserError, match="only packets"):
         run.run(ICD, node, [("tcp", "127.0.0.1", 0)], run.Options(), print)

@@ -1,4 +1,6 @@
-"""The harness for clients of any language: it tells a good one from a bad one."""
+"""The harness for clients of any language accepts correct clients and detects faulty
+ones.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ import sys
 from tests.sim import harness
 
 
-def test_a_client_that_hangs_fails_or_lies_is_found():
+def test_a_client_that_hangs_fails_or_reports_wrong_results_is_detected():
     assert (
         harness.run(
             [sys.executable, "-c", "import time; time.sleep(60)"], 10, "0", [], limit=2

@@ -1,7 +1,6 @@
-"""A megabyte arrives byte for byte, whatever part of its packets is lost.
+"""A megabyte arrives byte for byte with any share of lost packets, in simulated time.
 
-Time passes as fast as it can. With a real port and clients of other languages:
-``python -m tests.sim.harness``.
+For a real port and clients of other languages: ``python -m tests.sim.harness``.
 """
 
 from __future__ import annotations
@@ -13,15 +12,15 @@ from icdgen_runtime.wire.procedures import Procedure
 from icdgen_runtime.wire.session import Session
 
 from tests.sim.device import ICD
-from tests.sim.port import Port
+from tests.sim.port import DevicePort
 
 LOSSES = [0, 10, 30]  # per cent
 LONGEST = 300  # seconds that a transfer takes at most
 
 
 def transferred(node: str, name: str, data: bytes = b"", inputs=None, **options):
-    """The procedure at its end, which comes in time."""
-    port = Port(ICD, node, **options)
+    """Run the procedure to its end, which must come in time."""
+    port = DevicePort(ICD, node, **options)
     link = port.line.computer.program.link
     session = Session(link, port.write, port.read, clock=port.clock)
     procedure = session.run(Procedure(link, name, inputs, data))

@@ -1,4 +1,4 @@
-"""Open parts in the simulator: what is set is there, and is counted."""
+"""Options of the simulator set variable-length fields and their counters."""
 
 from __future__ import annotations
 
@@ -66,11 +66,11 @@ def icd(tmp_path_factory):
 
 
 def frame(icd, message: str, *assigned: str) -> str:
-    """The frame of a message for which this was set, in hexadecimal; the same from the
-    next start on.
+    """Return the frame of a message after setting these values, in hexadecimal; equal
+    after a restart.
     """
     line, _ = build_device(
-        icd, None, Options(values=[(message, one) for one in assigned])
+        icd, None, Options(values=[(message, value) for value in assigned])
     )
     frames = [bytes(line.computer.program.values.frames[message])]
     line.computer.restart(0)
@@ -109,7 +109,7 @@ def frame(icd, message: str, *assigned: str) -> str:
         ("Data", ("data=01 02 03", "data=04"), "04"),
     ],
 )
-def test_what_is_set_is_there_and_is_counted(icd, message, assigned, expected):
+def test_set_elements_are_sent_and_counted(icd, message, assigned, expected):
     assert frame(icd, message, *assigned) == expected.replace(" ", "")
 
 
@@ -117,6 +117,6 @@ def test_what_is_set_is_there_and_is_counted(icd, message, assigned, expected):
     "assigned",
     ["levels=[1, 2, 3, 4, 5]", "levels=[]", "keys count=4", "words=longer", "data=1"],
 )
-def test_what_there_cannot_be_is_refused(icd, assigned):
+def test_impossible_elements_are_refused(icd, assigned):
     with pytest.raises(UserError):
         frame(icd, "Keys", assigned)

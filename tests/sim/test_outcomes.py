@@ -1,5 +1,5 @@
-"""Outcomes of telecommands on a link with ACK and NAK: a simulated reaction wheel, and
-what `icdgen send`, `icdgen monitor` and a session report about it.
+"""Outcomes of telecommands on a link with ACK and NAK: `icdgen send`, `icdgen monitor`
+and a session report them for a simulated reaction wheel.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from icdgen.sim import run
 from tests.conformance.icds import LINKS
 from tests.conftest import ROOT
 from tests.sim.device import simulator
-from tests.sim.test_framed_line import ICD, Port, icdgen, talking
+from tests.sim.test_framed_line import ICD, MemoryPort, icdgen, talking
 
 WHEEL = ROOT / "examples" / "links" / "wheel.yaml"
 ACK, NAK, BUSY, EVENTS = 0x06, 0x15, 0x16, 0x83
@@ -207,8 +207,8 @@ def test_monitor_shows_why_a_request_was_refused():
         assert text in row and "nothing came" not in shown.stdout
 
 
-def only_asked(folder):
-    """The ICD of a wheel that sends no telemetry without a request."""
+def only_requested(folder):
+    """Return the ICD of a wheel that sends no telemetry without a request."""
     text = WHEEL.read_text()
     begin, end = text.index("  - name: Status\n"), text.index("  - name: Events\n")
     file = folder / "wheel.yaml"
@@ -217,17 +217,17 @@ def only_asked(folder):
 
 
 def test_monitor_says_at_once_which_telemetry_must_be_requested(tmp_path):
-    file = only_asked(tmp_path)
+    file = only_requested(tmp_path)
     with simulator("--tcp", "0", "--icd", str(file)) as (place, _):
         words = ("--port", place, "--once", "--every", "0.2")
         shown = icdgen("monitor", "wheel", *words, folder=file)
-        asked = icdgen("monitor", "wheel", "Events", *words, folder=file)
+        result = icdgen("monitor", "wheel", "Events", *words, folder=file)
     assert (shown.returncode, shown.stdout) == (1, "nothing came\n")
     assert shown.stderr == (
         "icdgen: wheel sends telemetry only in response to telecommands; name messages "
         "to request them, such as `icdgen monitor wheel Events`; they can be: Events\n"
     )
-    assert (asked.returncode, asked.stderr) == (0, "")
+    assert (result.returncode, result.stderr) == (0, "")
 
 
 @pytest.mark.parametrize(
@@ -242,7 +242,7 @@ def test_monitor_says_at_once_which_telemetry_must_be_requested(tmp_path):
 def test_monitor_prints_responses_that_are_no_telemetry_as_json(
     tmp_path, fault, event, message, response
 ):
-    file = only_asked(tmp_path)
+    file = only_requested(tmp_path)
     text = file.read_text()
     if event == "stray":  # later than `late_ms` after the time-out
         file.write_text(text.replace("{ack: none, reply", "{reply"))
@@ -300,7 +300,7 @@ def test_each_fault_of_a_response_leads_to_its_outcome():
 
 
 def test_a_device_that_executes_a_telecommand_defers_the_next():
-    port = Port("wheel", every=0, processing=300)
+    port = MemoryPort("wheel", every=0, processing=300)
     link = port.line.computer.program.link
     for id, data in ((SET_MODE, b"\1"), (SET_SPEED, SPEED)):
         port.write(stream_encode(link, id, data))
@@ -311,7 +311,7 @@ def test_a_device_that_executes_a_telecommand_defers_the_next():
 
 
 def frame(id: int, data: bytes) -> bytes:
-    """A telecommand that the encoder refuses to make."""
+    """Return a telecommand that the encoder refuses to encode."""
     inner = bytes([len(data), id]) + data
     crc = 0xFFFF
     for byte in inner:
@@ -332,7 +332,7 @@ def frame(id: int, data: bytes) -> bytes:
     ],
 )
 def test_a_telecommand_is_refused_with_the_reason_of_the_icd(received, refusal):
-    port = Port("wheel", every=0, strict=True)
+    port = MemoryPort("wheel", every=0, strict=True)
     port.write(received)
     link = port.line.computer.program.link
     expected = stream_encode(link, NAK, bytes(refusal), "telemetry")
@@ -350,7 +350,7 @@ def test_without_a_reason_for_it_a_wrong_checksum_has_no_response(tmp_path):
 
 
 def test_responses_are_not_sent_periodically():
-    port = Port("wheel", every=0.1)
+    port = MemoryPort("wheel", every=0.1)
     assert [message.name for message in port.line.unsolicited] == ["Status"]
 
 
@@ -439,7 +439,7 @@ def test_a_reason_that_some_refusals_cannot_have_is_a_warning(tmp_path):
 
 
 def test_a_telecommand_that_nothing_can_refuse_is_executed():
-    port = Port("wheel", every=0, faults=["nak=1"])
+    port = MemoryPort("wheel", every=0, faults=["nak=1"])
     link = port.line.computer.program.link
     port.write(stream_encode(link, RESET, b""))
     assert port.line.computer.program.counts["telecommands"] == 1

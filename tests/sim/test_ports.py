@@ -1,4 +1,4 @@
-"""Ports: every kind carries what is given to it, and what cannot be opened is said."""
+"""Every kind of port transmits its bytes, and a port that cannot be opened is reported."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tests.sim.device import ICD, simulator
 
 
 @pytest.mark.pty
-def test_a_serial_port_by_pyserial():
+def test_a_serial_port_works_by_pyserial():
     link = cubeacp()
     with simulator("--node", "cubeacp", "--pty") as (place, _):
         port = Serial(
@@ -40,22 +40,22 @@ def test_a_serial_port_by_pyserial():
             assert isinstance(outcome, Done) and identify(link, outcome.data).matches
 
 
-def test_a_can_bus_by_python_can():
-    one, other = (
+def test_a_can_bus_works_by_python_can():
+    first, other = (
         CanBus("virtual", "icdgen", 500_000),
         CanBus("virtual", "icdgen", 500_000),
     )
     try:
         packet = CanPacket(0x1234567, b"\x01\x02")
-        one.send(packet)
+        first.send(packet)
         assert other.receive(1.0) == packet
         assert other.receive(0.01) is None
     finally:
-        one.close()
+        first.close()
         other.close()
 
 
-def test_a_request_over_can_that_nobody_answers_ends():
+def test_a_request_over_can_without_a_response_times_out():
     link = cubeacp()
     settings = link.settings._replace(reply_timeout=50, retries=2)
     with session(
@@ -74,12 +74,12 @@ def test_a_request_over_can_is_answered_by_the_node_of_the_icd():
         for packet in can_split(link, CanMessage("reply", 128, node, ours, frame)):
             other.send(packet)  # it is read once the request has been sent
         assert client.start(Request("telemetry", 128)).data == frame
-        asked = CanJoiner(link).feed(0, other.receive(1.0))[0].message
-        assert asked == CanMessage("request", 128, ours, node)
+        request = CanJoiner(link).feed(0, other.receive(1.0))[0].message
+        assert request == CanMessage("request", 128, ours, node)
     other.close()
 
 
-def test_what_cannot_be_asked_is_an_error_with_a_remedy_and_closes_the_port():
+def test_an_impossible_request_is_an_error_with_a_remedy_and_closes_the_port():
     link, port = cubeacp(), CanBus("virtual", "closed", 500_000)
     with pytest.raises(UserError) as error, session(link, port) as client:
         client.start(Request("telecommand", 1, bytes(100)))
@@ -106,7 +106,7 @@ def cubeacp() -> Link:
         ("can://none/0", "cannot open can://none/0"),
     ],
 )
-def test_what_cannot_be_opened_is_said(name, words):
+def test_a_port_that_cannot_be_opened_is_reported(name, words):
     with pytest.raises(PortError, match=words):
         open_port(name, {})
 
@@ -123,7 +123,9 @@ def test_what_cannot_be_opened_is_said(name, words):
         ("dev/ttyUSB0:1/none", "no such file"),
     ],
 )
-def test_what_was_meant_is_said_before_pyserial_is_asked_for(name, words, monkeypatch):
+def test_a_misspelt_port_gets_a_suggestion_before_pyserial_is_required(
+    name, words, monkeypatch
+):
     monkeypatch.setitem(sys.modules, "serial", None)
     with pytest.raises(PortError) as error:
         open_port(name, {})
@@ -144,7 +146,7 @@ def test_a_missing_library_is_named(name, package, monkeypatch):
 
 @pytest.fixture
 def receiver():
-    """A socket for datagrams on this machine; its address as a port of `icdgen`."""
+    """Open a datagram socket on this machine; return its address as a port of `icdgen`."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as opened:
         opened.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
         opened.bind(("127.0.0.1", 0))
@@ -183,7 +185,7 @@ def test_a_packet_that_delimits_a_message_is_never_split(receiver):
         port.close()
 
 
-def test_bytes_over_tcp_arrive_whole_in_both_directions_until_the_other_end_closes():
+def test_bytes_over_tcp_arrive_completely_in_both_directions():
     data = bytes(number % 251 for number in range(100_000))
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = open_port(f"tcp://127.0.0.1:{server.getsockname()[1]}", {})

@@ -1,4 +1,4 @@
-"""The simulated device takes part in any procedure of an ICD, on a framed link, too."""
+"""The simulated device supports every procedure of an ICD, also on a framed link."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def uploaded(image: bytes, area: int = 1, **options):
 
 
 def programs(port) -> dict:
-    """The stored programs by area."""
+    """Return the stored programs by area."""
     objects = port.line.computer.storage.objects_of("upload")
     return {key: bytes(stored.data) for key, stored in objects.items()}
 

@@ -1,4 +1,4 @@
-"""The simulated device's programs: what it takes, copies, and tells of them."""
+"""The simulated device stores, copies and reports its programs."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_a_copied_program_is_the_one_that_was_uploaded(device):
     assert device.frame(50, INFORMATION) == bytes([1, 0, 13, 0, 0, 0]) + checksum
 
 
-def test_copying_what_was_never_uploaded_fails(device):
+def test_copying_a_program_that_was_never_uploaded_fails(device):
     assert code(device, 0, COPY, 9, 0) == 0
     assert (device.frame(0, COPIED), device.frame(10, COPIED)) == (b"\x01", b"\x02")
 

@@ -1,5 +1,5 @@
-"""The table of `icdgen monitor`: values outlive a device that stops answering, and a
-small terminal scrolls.
+"""The table of `icdgen monitor` keeps the values of a device that stops answering, and
+scrolls on a small terminal.
 """
 
 from __future__ import annotations
@@ -85,7 +85,9 @@ def test_a_device_that_stops_answering_leaves_its_last_values_and_their_age(
 
 
 def screen_of(columns: int, lines: int, place: str, keys: bytes) -> str:
-    """What the monitor writes to a terminal of that size, after keys have been typed."""
+    """Return the output of the monitor to a terminal of that size after keys were
+    typed.
+    """
     terminal, end = pty.openpty()
     fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
     words = [
@@ -196,5 +198,5 @@ def test_a_table_longer_than_the_terminal_scrolls_to_its_end():
         assert "lines 2 to 10 of 20" in screen_of(80, 12, place, b"\x1b[B")
         end = screen_of(80, 12, place, b"\x1b[F")
         assert "lines 12 to 20 of 20" in end and "CAN telecommand buffer error" in end
-        whole = screen_of(100, 40, place, b"")
-        assert " of 20" not in whole and "CAN telecommand buffer error" in whole
+        full = screen_of(100, 40, place, b"")
+        assert " of 20" not in full and "CAN telecommand buffer error" in full
