@@ -1,4 +1,4 @@
-"""What is remembered must be gone as soon as anything it rests on differs."""
+"""A cached result is discarded as soon as any of its inputs differs."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_a_changed_module_of_icdgen_is_detected_as_python_does(tmp_path, monkeyp
     assert len({*digests}) == 3
 
 
-def test_what_python_leaves_behind_is_not_part_of_the_tool(tmp_path, monkeypatch):
+def test_bytecode_of_python_is_not_part_of_the_tool(tmp_path, monkeypatch):
     monkeypatch.setattr(
         fingerprints,
         "__file__",

@@ -1,4 +1,4 @@
-"""``icdgen.toml``"""
+"""``icdgen.toml``: the search for it, its keys, and its errors."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def test_paths_are_relative_to_the_file_and_the_nearest_one_upwards_counts(tmp_p
     )
     below = tmp_path / "src" / "deep"
     below.mkdir(parents=True)
-    found = config.find(below)
-    assert found.icds == [tmp_path / "icd/a.yaml"]
-    assert (found.lang, found.out) == (["c"], tmp_path / "gen")
-    assert list(found.looked_at) == [
+    settings = config.find(below)
+    assert settings.icds == [tmp_path / "icd/a.yaml"]
+    assert (settings.lang, settings.out) == (["c"], tmp_path / "gen")
+    assert list(settings.looked_at) == [
         below / "icdgen.toml",
         tmp_path / "src" / "icdgen.toml",
         tmp_path / "icdgen.toml",

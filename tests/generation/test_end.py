@@ -1,4 +1,4 @@
-"""A generation prints all its output and ends like any other Python program."""
+"""A generation writes all its output and ends like any other Python program."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ main()
 
 
 def ended(tmp_path, before="", lang="c"):
-    """Status, output and errors of a generation."""
+    """Return status, output and errors of a generation."""
     line = [
         sys.executable,
         "-c",

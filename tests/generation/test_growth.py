@@ -1,5 +1,5 @@
-"""The work of a command depends on what is declared, not on how many elements an array
-can have.
+"""The work of a command depends on the declarations, not on the number of elements of
+arrays.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ messages:
 
 
 def calls(work: Callable[[], object]) -> int:
-    """How many functions are called, which is the same in every run."""
+    """Return the number of function calls, which is the same in every run."""
     number = 0
 
     def count(_frame, event: str, _argument) -> None:
@@ -118,6 +118,6 @@ def test_check_takes_work_in_proportion_to_the_fields_of_a_message(kind, tmp_pat
         path.write_text(f"{head}messages:\n{message}    fields:\n{fields}")
         return calls(lambda: load([path]))
 
-    work_for(2)  # what is computed once
+    work_for(2)  # fill caches before counting
     few, many = work_for(50), work_for(200)
     assert many < 4.4 * few, (few, many)

@@ -1,4 +1,4 @@
-"""Names of the generated packages: two projects are installed side by side."""
+"""Names of the generated packages: two projects can be installed together."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ def run(*words: object, cwd: Path) -> str:
 
 @pytest.fixture(scope="module")
 def projects(tmp_path_factory) -> Path:
-    """Two projects whose nodes have the same name, with messages of one and two bytes."""
+    """Write two projects whose nodes have the same name, with messages of one and two
+    bytes.
+    """
     top = tmp_path_factory.mktemp("projects")
     for size, name in enumerate(PROJECTS, 1):
         folder = top / name
@@ -235,7 +237,7 @@ def re_text(text: str) -> str:
     return re.sub(r"<[^>]*>", "", text)
 
 
-def test_without_a_project_the_names_are_those_of_before(tmp_path):
+def test_without_a_project_the_names_stay_the_same(tmp_path):
     (tmp_path / "battery.yaml").write_text(ICD.format(1, 8))
     run(
         sys.executable,

@@ -1,4 +1,4 @@
-"""What a backend gets of its templates and its runtime."""
+"""The renderer of a backend: its templates and its runtime."""
 
 from __future__ import annotations
 
@@ -33,9 +33,7 @@ def test_what_tools_leave_beside_the_sources_of_a_runtime_is_not_generated(
 
 @pytest.fixture
 def tool(tmp_path, monkeypatch):
-    """The folder of the templates of a tool that may keep what it compiles, and has
-    done so.
-    """
+    """Return the template folder of a tool with compiled templates."""
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     monkeypatch.setattr(sys, "pycache_prefix", None)
     monkeypatch.setattr(shipped, "templates", lambda: tmp_path / "templates")
@@ -46,14 +44,14 @@ def tool(tmp_path, monkeypatch):
     return folder
 
 
-def kept(top):
+def compiled_files(top):
     return [path for path in top.rglob("*") if path.is_file() and path.suffix != ".j2"]
 
 
-def test_a_shipped_template_is_compiled_once_and_kept_where_python_keeps_modules(
+def test_a_shipped_template_is_compiled_once_next_to_compiled_modules(
     tool, tmp_path, monkeypatch
 ):
-    assert [path.parent for path in kept(tmp_path)] == [tool / "__pycache__"]
+    assert [path.parent for path in compiled_files(tmp_path)] == [tool / "__pycache__"]
     monkeypatch.setattr(
         "jinja2.Environment.compile", lambda *_, **__: pytest.fail("compiled again")
     )
@@ -61,43 +59,43 @@ def test_a_shipped_template_is_compiled_once_and_kept_where_python_keeps_modules
 
 
 def test_a_changed_template_is_compiled_again(tool):
-    (tool / "a.j2").write_text("{{ 1 + 2 }}")  # as long as it was
+    (tool / "a.j2").write_text("{{ 1 + 2 }}")  # the same length as before
     assert Renderer("any")("a.j2") == "3"
 
 
 def test_a_changed_tool_compiles_again(tool, monkeypatch):
-    (before,) = (path.read_bytes() for path in kept(tool))
+    (before,) = (path.read_bytes() for path in compiled_files(tool))
     monkeypatch.setattr(fingerprints, "of_tool", lambda: "another version")
     assert Renderer("any")("a.j2") == "2"
-    assert before not in [path.read_bytes() for path in kept(tool)]
+    assert before not in [path.read_bytes() for path in compiled_files(tool)]
 
 
 @pytest.mark.parametrize("left", [b"", b"\0", slice(0, 65), slice(0, -1)])
-def test_what_is_kept_and_damaged_is_compiled_again(tool, left):
-    (path,) = kept(tool)
+def test_a_damaged_compiled_template_is_compiled_again(tool, left):
+    (path,) = compiled_files(tool)
     path.write_bytes(path.read_bytes()[left] if isinstance(left, slice) else left)
     assert Renderer("any")("a.j2") == "2"
 
 
-def test_templates_of_users_and_plug_ins_are_not_kept(tool, tmp_path):
+def test_compiled_templates_of_users_and_plug_ins_are_not_stored(tool, tmp_path):
     theirs = tmp_path / "theirs"
     theirs.mkdir()
     (theirs / "a.j2").write_text("{{ 2 + 2 }}")
     assert Renderer("any", override=theirs)("a.j2") == "4"
     assert Renderer("any", templates=theirs)("a.j2") == "4"
-    assert kept(theirs) == []
+    assert compiled_files(theirs) == []
 
 
-def test_where_python_keeps_no_modules_no_template_is_kept(tool, monkeypatch):
-    for path in kept(tool):
+def test_without_bytecode_files_no_compiled_template_is_stored(tool, monkeypatch):
+    for path in compiled_files(tool):
         path.unlink()
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     assert Renderer("any")("a.j2") == "2"
-    assert kept(tool) == []
+    assert compiled_files(tool) == []
 
 
 def test_a_folder_that_cannot_be_written_is_no_error(tool):
-    for path in kept(tool):
+    for path in compiled_files(tool):
         path.unlink()
     (tool / "__pycache__").rmdir()
     (tool / "__pycache__").touch()

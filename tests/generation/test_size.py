@@ -1,5 +1,5 @@
-"""How much code there is depends on what is declared, not on how many elements an array
-has.
+"""The size of the generated code depends on the declarations, not on the number of
+elements of arrays.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ messages:
 
 
 def lines(lang: str, count: int, folder) -> dict[str, int]:
-    """How many lines each file has that is made of messages with arrays of so many
-    elements.
+    """Return the lines of each file that is generated from messages with arrays of so
+    many elements.
     """
     sizes = {
         "two": 2 * count,
@@ -59,7 +59,7 @@ def lines(lang: str, count: int, folder) -> dict[str, int]:
     text = ICD.format(count=count, pack=10 * count, packs=10 * count * count, **sizes)
     (folder / "demo.yaml").write_text(text, encoding="utf-8")
     loaded = load([folder / "demo.yaml"])
-    assert not [one for one in loaded.findings if one.severity == "error"]
+    assert not [finding for finding in loaded.findings if finding.severity == "error"]
     files = backends.get(lang).files(loaded.icd, Renderer(lang))
     return {str(path): text.count("\n") for path, text in files if "demo" in str(path)}
 

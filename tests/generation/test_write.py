@@ -1,4 +1,4 @@
-"""What a user relies on when icdgen writes into a folder of theirs."""
+"""icdgen writes safely into a folder of the user."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def generate(out, **named: str) -> write.WritePlan:
     return plan
 
 
-def test_a_second_run_touches_nothing(tmp_path):
+def test_a_second_run_writes_no_file(tmp_path):
     generate(tmp_path, a_h="one\n", sub__b_h="two\n")
     before = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*")}
     plan = generate(tmp_path, a_h="one\n", sub__b_h="two\n")
@@ -100,7 +100,7 @@ def test_a_broken_manifest_is_no_manifest(tmp_path):
     assert (tmp_path / "a.h").exists()
 
 
-def test_an_interrupted_run_leaves_whole_files_and_the_next_one_finishes(
+def test_an_interrupted_run_leaves_complete_files_and_the_next_run_finishes(
     tmp_path, monkeypatch
 ):
     generate(tmp_path, a_h="old\n", b_h="old\n")
@@ -146,9 +146,7 @@ def test_a_first_run_that_is_interrupted_may_be_repeated_with_other_content(
 
 
 @pytest.mark.parametrize("step", range(8))
-def test_a_run_that_was_killed_anywhere_leaves_nothing_that_the_next_one_does_not_mend(
-    tmp_path, monkeypatch, step
-):
+def test_a_run_repairs_the_output_of_a_killed_run(tmp_path, monkeypatch, step):
     generate(tmp_path, a_h="old\n", b_h="old\n", c_h="old\n")
     count = [0]
 

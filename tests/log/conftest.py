@@ -20,29 +20,35 @@ def icd():
 
 
 @pytest.fixture(scope="session")
-def known(icd) -> Facts:
-    """The protocol of the node that has logs."""
+def node_facts(icd) -> Facts:
+    """Return the protocol facts of the node that has logs."""
     return facts.of(icd, icd.node("cubeacp"))
 
 
 @pytest.fixture(scope="session")
-def link(icd, known) -> Link:
-    return link_of(icd, known)
+def link(icd, node_facts) -> Link:
+    return link_of(icd, node_facts)
 
 
 @pytest.fixture(scope="session")
-def everything(known) -> bytes:
-    """A mask with every frame, and a bit that is not assigned."""
-    mask = bytearray(known.mask.size)
-    free = next(bit for bit in range(known.mask.size * 8) if bit not in known.mask.bits)
-    for bit in (*known.mask.bits, free):
-        mask[bit // 8] |= 1 << (7 - bit % 8 if known.mask.msb0 else bit % 8)
+def everything(node_facts) -> bytes:
+    """Return a mask with every frame, and one unassigned bit."""
+    mask = bytearray(node_facts.mask.size)
+    free = next(
+        bit
+        for bit in range(node_facts.mask.size * 8)
+        if bit not in node_facts.mask.bits
+    )
+    for bit in (*node_facts.mask.bits, free):
+        mask[bit // 8] |= 1 << (7 - bit % 8 if node_facts.mask.msb0 else bit % 8)
     return bytes(mask)
 
 
 @pytest.fixture
 def write(tmp_path, link):
-    """Writes a log of random frames: path, and its entries."""
+    """Return a function that writes a log of random frames and returns its path and
+    entries.
+    """
 
     def write(
         mask: bytes, count: int, truncated: bytes = b""

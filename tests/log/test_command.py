@@ -1,4 +1,4 @@
-"""`icdgen log` from the outside."""
+"""`icdgen log` as a command: list and convert telemetry logs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def icdgen(*words: object) -> subprocess.CompletedProcess:
     return subprocess.run(command, capture_output=True, text=True, timeout=120)
 
 
-def test_a_log_is_listed(write, everything, known):
+def test_a_log_is_listed(write, everything, node_facts):
     path, _ = write(everything, 3, b"rest")
     result = icdgen(path)
     assert result.returncode == 0, result.stderr
@@ -23,12 +23,12 @@ def test_a_log_is_listed(write, everything, known):
         and "2020-09-13T12:26:40.000Z to 2020-09-13T12:26:42.014Z" in result.stdout
     )
     assert "note: the last 4 bytes belong to no whole entry" in result.stdout
-    for slot in known.mask.bits.values():
+    for slot in node_facts.mask.bits.values():
         assert slot.name in result.stdout
 
 
-def test_what_cannot_be_a_log_is_refused(tmp_path, known):
-    header = known.log_file.header_bytes
+def test_a_file_that_cannot_be_a_log_is_refused(tmp_path, node_facts):
+    header = node_facts.log_file.header_bytes
     for name, data, why in (
         (
             "README.md",
@@ -48,19 +48,19 @@ def test_what_cannot_be_a_log_is_refused(tmp_path, known):
     assert not (tmp_path / "out.csv").exists()
 
 
-def test_a_damaged_entry_makes_it_no_other_file(write, everything, known):
+def test_a_log_with_a_damaged_entry_is_still_a_log(write, everything, node_facts):
     path, _ = write(everything, 5)
     data = bytearray(path.read_bytes())
-    at = known.log_file.header_bytes
+    at = node_facts.log_file.header_bytes
     data[at : at + 20] = b"\xff" * 20
     path.write_bytes(data)
     result = icdgen(path)
     assert result.returncode == 1 and "damaged: bytes" in result.stdout
 
 
-def test_what_can_hardly_be_a_log_is_doubted(tmp_path, write, everything, known):
+def test_an_implausible_log_gives_a_warning(tmp_path, write, everything, node_facts):
     path, _ = write(everything, 3)
-    data, size = path.read_bytes(), known.log_file.header_bytes
+    data, size = path.read_bytes(), node_facts.log_file.header_bytes
     entry = (len(data) - size) // 3
     path.write_bytes(data[:size] + data[-entry:] + data[size:-entry])
     path.with_name("zeros.bin").write_bytes(bytes(5000))
@@ -69,13 +69,13 @@ def test_what_can_hardly_be_a_log_is_doubted(tmp_path, write, everything, known)
         in icdgen(path.with_name("zeros.bin")).stdout
     )
     listed, converted = icdgen(path), icdgen(path, "--format", "csv")
-    for said in (listed.stdout, converted.stderr):
-        assert "1 bit that no frame has; is this a log of cubeacp?" in said
-        assert "time jump at byte" in said
-    bits = sorted(known.mask.bits)[:2]
-    mask = sum(1 << (bit ^ 7 if known.mask.msb0 else bit) for bit in bits).to_bytes(
-        known.mask.size, "little"
-    )
+    for output in (listed.stdout, converted.stderr):
+        assert "1 bit that no frame has; is this a log of cubeacp?" in output
+        assert "time jump at byte" in output
+    bits = sorted(node_facts.mask.bits)[:2]
+    mask = sum(
+        1 << (bit ^ 7 if node_facts.mask.msb0 else bit) for bit in bits
+    ).to_bytes(node_facts.mask.size, "little")
     path, _ = write(mask, 3)
     assert "is this a log" not in icdgen(path).stdout
 
@@ -97,7 +97,7 @@ def test_a_conversion_goes_to_standard_output(write, everything):
     assert len(icdgen(path, "--format", "jsonl").stdout.splitlines()) == 5
 
 
-def test_what_cannot_be_is_said_and_nothing_is_left_behind(write, everything, tmp_path):
+def test_misuse_is_reported_and_leaves_no_file(write, everything, tmp_path):
     path, _ = write(everything, 5)
     short = tmp_path / "short"
     short.write_bytes(b"123")
@@ -119,7 +119,7 @@ def test_what_cannot_be_is_said_and_nothing_is_left_behind(write, everything, tm
 
 
 @pytest.mark.parametrize("form", ["csv", "jsonl", "parquet"])
-def test_a_conversion_that_fails_at_its_end_leaves_no_file_behind(
+def test_a_conversion_that_fails_at_its_end_leaves_no_file(
     write, everything, tmp_path, form
 ):
     path, _ = write(everything, 5)
@@ -147,14 +147,14 @@ def test_a_conversion_replaces_an_earlier_one(write, everything, tmp_path):
     ],
 )
 def test_a_log_is_listed_with_its_size_its_times_and_its_mask(
-    write, everything, known, count, entries, times
+    write, everything, node_facts, count, entries, times
 ):
     path, _ = write(everything, count)
-    plan_bytes = sum(slot.length for slot in known.mask.bits.values())
+    plan_bytes = sum(slot.length for slot in node_facts.mask.bits.values())
     result = icdgen(path)
     first, second, third, *_ = result.stdout.splitlines()
     assert first == f"{path}: log of cubeacp, {path.stat().st_size:,} bytes"
-    size = (path.stat().st_size - known.log_file.header_bytes) // max(count, 1)
+    size = (path.stat().st_size - node_facts.log_file.header_bytes) // max(count, 1)
     if count:
         assert size > plan_bytes and second == f"{entries} {size} bytes{times}"
     assert second.startswith(entries)

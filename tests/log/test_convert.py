@@ -1,4 +1,6 @@
-"""A log says the same in every form: what the reference codec says of each frame."""
+"""A log has the same values in every output format, equal to those of the reference
+codec.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,15 @@ from tests import links
 COUNT = 300
 
 
-def expected(icd, known, entries) -> list[list[object]]:
-    """Rows of values by the reference codec."""
+def expected(icd, node_facts, entries) -> list[list[object]]:
+    """Return the rows of values of the reference codec."""
     rows = []
     for entry in entries:
         row: list[object] = []
         for frame in entry.frames:
-            message = known.telemetry.get(frame.id) if frame.id is not None else None
+            message = (
+                node_facts.telemetry.get(frame.id) if frame.id is not None else None
+            )
             if message is None:
                 row.append(frame.data.hex())
                 continue
@@ -62,63 +66,67 @@ def milliseconds(text: str) -> int:
     return round(datetime.fromisoformat(text).timestamp() * 1000)
 
 
-def converted(write, icd, known, path, head=None) -> str:
-    """What is written of a log."""
-    file, found = io.StringIO(), open_log(icd, known.node, path, "telemetry", [])
-    write(found.names, found.rows(head, lambda size: None), file)
+def converted(write, icd, node_facts, path, head=None) -> str:
+    """Return the converted text of a log."""
+    file, source = io.StringIO(), open_log(icd, node_facts.node, path, "telemetry", [])
+    write(source.names, source.rows(head, lambda size: None), file)
     return file.getvalue()
 
 
 @pytest.fixture
-def log(icd, known, everything, write):
+def log(icd, node_facts, everything, write):
     path, entries = write(everything, COUNT, b"cut")
-    return open_source(icd, known.node, path), entries
+    return open_source(icd, node_facts.node, path), entries
 
 
-def test_csv(icd, known, log):
-    found, entries = log
+def test_csv_has_the_values_of_the_reference_codec(icd, node_facts, log):
+    source, entries = log
     head, *rows = csv.reader(
-        io.StringIO(converted(text.to_csv, icd, known, found.path))
+        io.StringIO(converted(text.to_csv, icd, node_facts, source.path))
     )
-    assert head == ["time", *(column.name for column in found.plan.columns)]
+    assert head == ["time", *(column.name for column in source.plan.columns)]
     assert [milliseconds(row[0]) for row in rows] == times(entries)
     shown = [
         [str(v).lower() if isinstance(v, bool) else str(v) for v in row]
-        for row in expected(icd, known, entries)
+        for row in expected(icd, node_facts, entries)
     ]
     assert [row[1:] for row in rows] == shown
 
 
-def test_json_lines(icd, known, log):
-    found, entries = log
+def test_json_lines_have_the_values_of_the_reference_codec(icd, node_facts, log):
+    source, entries = log
     rows = [
         json.loads(line)
-        for line in converted(text.to_json_lines, icd, known, found.path).splitlines()
+        for line in converted(
+            text.to_json_lines, icd, node_facts, source.path
+        ).splitlines()
     ]
     assert [milliseconds(row.pop("time")) for row in rows] == times(entries)
-    assert [list(row.values()) for row in rows] == expected(icd, known, entries)
+    assert [list(row.values()) for row in rows] == expected(icd, node_facts, entries)
 
 
 @pytest.mark.parametrize("piece", [1, 5000, parquet.PIECE])
-def test_parquet(icd, known, log, tmp_path, monkeypatch, piece):
+def test_parquet_has_the_values_of_the_reference_codec(
+    icd, node_facts, log, tmp_path, monkeypatch, piece
+):
     import pyarrow.parquet as pq
 
     monkeypatch.setattr(parquet, "PIECE", piece)
     monkeypatch.setattr(parquet, "GROUP", 40_000)
-    found, entries = log
+    source, entries = log
     seen = []
-    parquet.to_parquet(found, tmp_path / "log.parquet", None, seen.append)
-    assert sum(seen) == COUNT * found.plan.entry_bytes
+    parquet.to_parquet(source, tmp_path / "log.parquet", None, seen.append)
+    assert sum(seen) == COUNT * source.plan.entry_bytes
     table = pq.read_table(tmp_path / "log.parquet")
     assert [round(t.timestamp() * 1000) for t in table["time"].to_pylist()] == times(
         entries
     )
     rows = zip(
-        *(table[column.name].to_pylist() for column in found.plan.columns), strict=True
+        *(table[column.name].to_pylist() for column in source.plan.columns), strict=True
     )
     hexed = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
-    assert hexed == expected(icd, known, entries)
-    with_unit = next(column for column in found.plan.columns if column.unit)
+    assert hexed == expected(icd, node_facts, entries)
+    with_unit = next(column for column in source.plan.columns if column.unit)
     metadata = table.schema.field(with_unit.name).metadata
     assert (
         metadata[b"unit"].decode() == with_unit.unit
@@ -126,30 +134,32 @@ def test_parquet(icd, known, log, tmp_path, monkeypatch, piece):
     )
 
 
-def test_only_the_first_entries(icd, known, log, tmp_path):
-    import pyarrow.parquet as pq
-
-    found, entries = log
-    parquet.to_parquet(found, tmp_path / "log.parquet", 7, lambda size: None)
-    moments = pq.read_table(tmp_path / "log.parquet")["time"].to_pylist()
-    first = times(entries)[:7]
-    assert [round(moment.timestamp() * 1000) for moment in moments] == first
-    whole = converted(text.to_csv, icd, known, found.path)
-    head = converted(text.to_csv, icd, known, found.path, 7)
-    assert head.count("\n") == 8 and whole.startswith(head)
-
-
-def test_a_log_without_entries_or_frames_is_a_table_too(
-    icd, known, everything, write, tmp_path
+def test_a_conversion_can_be_limited_to_the_first_entries(
+    icd, node_facts, log, tmp_path
 ):
     import pyarrow.parquet as pq
 
-    for mask, count in ((everything, 0), (bytes(known.mask.size), 3)):
+    source, entries = log
+    parquet.to_parquet(source, tmp_path / "log.parquet", 7, lambda size: None)
+    moments = pq.read_table(tmp_path / "log.parquet")["time"].to_pylist()
+    first = times(entries)[:7]
+    assert [round(moment.timestamp() * 1000) for moment in moments] == first
+    all_lines = converted(text.to_csv, icd, node_facts, source.path)
+    head = converted(text.to_csv, icd, node_facts, source.path, 7)
+    assert head.count("\n") == 8 and all_lines.startswith(head)
+
+
+def test_a_log_without_entries_or_frames_is_a_table_too(
+    icd, node_facts, everything, write, tmp_path
+):
+    import pyarrow.parquet as pq
+
+    for mask, count in ((everything, 0), (bytes(node_facts.mask.size), 3)):
         path, entries = write(mask, count)
-        found = open_source(icd, known.node, path)
-        parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
+        source = open_source(icd, node_facts.node, path)
+        parquet.to_parquet(source, tmp_path / "log.parquet", None, lambda size: None)
         table = pq.read_table(tmp_path / "log.parquet")
-        columns = ["time", *(column.name for column in found.plan.columns)]
+        columns = ["time", *(column.name for column in source.plan.columns)]
         assert table.column_names == columns
         moments = [round(t.timestamp() * 1000) for t in table["time"].to_pylist()]
         assert moments == times(entries) and len(moments) == count
@@ -203,7 +213,7 @@ TURNED = re.sub(r"(name: [bdefgij], type: \w+)", r"\1, byte_order: little", ODD)
 @pytest.mark.parametrize(
     "text_of_icd", [ODD, TURNED], ids=["as the node", "of their own"]
 )
-def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
+def test_every_type_is_converted_in_both_byte_orders(tmp_path, text_of_icd):
     from random import Random
 
     import pyarrow.parquet as pq
@@ -215,35 +225,36 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     loaded = load([tmp_path / "odd.yaml"])
     icd = loaded.icd
     assert icd is not None and loaded.ok, loaded.findings
-    known, random = facts.of(icd, icd.nodes[0]), Random(1)
+    node_facts, random = facts.of(icd, icd.nodes[0]), Random(1)
     entries = [(n, 0, [random.randbytes(36)]) for n in range(200)]
-    link = link_of(icd, known)
+    link = link_of(icd, node_facts)
     data = links.log_file(link, b"\x40", entries)
     (tmp_path / "log").write_bytes(data)
-    found = open_source(icd, known.node, tmp_path / "log")
-    parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
+    source = open_source(icd, node_facts.node, tmp_path / "log")
+    parquet.to_parquet(source, tmp_path / "log.parquet", None, lambda size: None)
     table = pq.read_table(tmp_path / "log.parquet")
-    wanted = expected(icd, known, LogReader(link).feed(data))
+    wanted = expected(icd, node_facts, LogReader(link).feed(data))
     rows = zip(
-        *(table[column.name].to_pylist() for column in found.plan.columns), strict=True
+        *(table[column.name].to_pylist() for column in source.plan.columns), strict=True
     )
     got = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
     assert [list(map(_same, row)) for row in got] == [
         list(map(_same, row)) for row in wanted
     ]
-    written = converted(text.to_json_lines, icd, known, found.path)
+    written = converted(text.to_json_lines, icd, node_facts, source.path)
     lines = [list(json.loads(line).values())[1:] for line in written.splitlines()]
+    # Floats are printed in their shortest form.
     numbers = [
         index
-        for index, column in enumerate(found.plan.columns)
+        for index, column in enumerate(source.plan.columns)
         if column.kind != "float"
-    ]  # floats are printed short
+    ]
     assert [[row[index] for index in numbers] for row in lines] == [
         [row[index] for index in numbers] for row in wanted
     ]
 
 
-def test_golden_vectors_have_times_that_a_log_can_hold(tmp_path):
+def test_golden_vectors_have_times_that_a_log_can_store(tmp_path):
     from icdgen.loading import load
     from icdgen.vectors import protocol
 
@@ -251,12 +262,14 @@ def test_golden_vectors_have_times_that_a_log_can_hold(tmp_path):
     loaded = load([tmp_path / "odd.yaml"])
     assert loaded.icd is not None and loaded.ok
     (node,) = json.loads(protocol.protocol_vectors_text(loaded.icd) or "")["nodes"]
-    asked = [
+    requests = [
         case["request"]
         for case in node["cases"]
         if case["request"]["op"] == "log_encode"
     ]
-    assert {entry["seconds"] for one in asked for entry in one["entries"]} >= {
+    assert {
+        entry["seconds"] for request in requests for entry in request["entries"]
+    } >= {
         0,
         0xFFFFFF,
     }

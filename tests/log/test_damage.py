@@ -1,5 +1,5 @@
-"""Damaged telemetry logs: whole entries are kept, damaged ones are left out and
-reported, clock jumps lose nothing.
+"""Damaged telemetry logs: complete entries are converted, damaged ones are left out and
+reported, and clock jumps lose no entry.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def icd(tmp_path_factory) -> Icd:
 
 
 def frame(kind: str, number: int, seconds: int, milliseconds: int) -> bytes:
-    """Data of an entry of which no two are the same."""
+    """Return the data of an entry, which are unique in the log."""
     head = (number + 1).to_bytes(4, "little")
     if kind == "noise":
         return head + Random(number).randbytes(36)
@@ -76,7 +76,7 @@ def frame(kind: str, number: int, seconds: int, milliseconds: int) -> bytes:
 
 
 def log_of(icd: Icd, kind: str, times: list[int]) -> tuple[bytes, list[bytes]]:
-    """A log with entries at these milliseconds, and its entries as bytes."""
+    """Return a log with entries at these milliseconds, and its entries as bytes."""
     entries = [
         (*divmod(t, 1000), [frame(kind, n, *divmod(t, 1000))])
         for n, t in enumerate(times)
@@ -112,8 +112,8 @@ STEPS = st.sampled_from([10, 1000, 60_000, 3_600_000])
 
 
 def hides_itself(kind: str, size: int) -> bool:
-    """Whether so many bytes bring the copy of the time, in the data, to the place of
-    the time.
+    """Return whether so many missing bytes move the copy of the time in the data to the
+    place of the time.
     """
     return kind == "own time" and size % ENTRY in (20, ENTRY - 20)
 
@@ -126,18 +126,18 @@ def test_missing_bytes_lose_their_neighbourhood_and_invent_no_row(
     assume(not hides_itself(kind, size))
     data, entries = log_of(icd, kind, steady(step))
     at = len(data) - ENTRY * COUNT + place
-    rows, found = read(icd, path, data[:at] + data[at + size :])
+    rows, log = read(icd, path, data[:at] + data[at + size :])
     gone = {place // ENTRY + n for n in range(size // ENTRY + 2)}
     invented = set(rows) - set(entries)
-    # Where whole entries are missing the halves of two remain in place. The row beside
+    # If complete entries are missing, two halves remain in place. The row next to
     # a reported range may have a wrong time.
-    assert len(invented) <= bool(found.damages or found.truncated or size % ENTRY == 0)
+    assert len(invented) <= bool(log.damages or log.truncated or size % ENTRY == 0)
     assert len(rows) >= COUNT - len(gone) - 3
     is_cut_off = place % ENTRY == 0 and place + size >= ENTRY * COUNT
     if not is_cut_off and (
         entries[-1] not in rows or set(entries[: place // ENTRY]) - set(rows)
     ):
-        assert found.damages or found.truncated
+        assert log.damages or log.truncated
 
 
 @settings(max_examples=150, deadline=None, derandomize=True)
@@ -159,14 +159,14 @@ def test_inserted_bytes_lose_their_neighbourhood_and_invent_no_row(
         if filler == "noise"
         else bytes.fromhex(filler) * size
     )
-    rows, found = read(icd, path, data[:at] + added + data[at:])
+    rows, log = read(icd, path, data[:at] + added + data[at:])
     invented = set(rows) - set(entries)
     if place >= ENTRY * (COUNT - 1):
         assert len(invented) <= 1 and (
-            found.truncated or found.damages
+            log.truncated or log.damages
         )  # the last entry has no successor to compare with
     else:
-        assert found.damages and len(invented) <= 1
+        assert log.damages and len(invented) <= 1
     assert len(rows) >= COUNT - 5
 
 
@@ -174,13 +174,13 @@ def test_inserted_bytes_lose_their_neighbourhood_and_invent_no_row(
     ("kind", "number", "size"),
     [("noise", 4, 98), ("zeros", 29, 263), ("counter", 57, 195)],
 )
-def test_zeros_behind_the_first_byte_of_a_time_are_no_clock_that_was_set(
+def test_zeros_after_the_first_byte_of_a_time_are_no_clock_jump(
     icd, path, kind, number, size
 ):
     data, entries = log_of(icd, kind, steady())
     at = len(data) - ENTRY * (COUNT - number) + 1  # the time becomes a few seconds
-    rows, found = read(icd, path, data[:at] + bytes(size) + data[at:])
-    assert found.damages and not found.jumps
+    rows, log = read(icd, path, data[:at] + bytes(size) + data[at:])
+    assert log.damages and not log.jumps
     assert rows == entries[: number - 1] + entries[number + 1 :]
 
 
@@ -200,20 +200,20 @@ def test_overwritten_bytes_lose_their_neighbourhood(
     damaged = bytearray(data)
     size = min(size, ENTRY * COUNT - place)
     damaged[start + place : start + place + size] = Random(seed).randbytes(size)
-    rows, found = read(icd, path, bytes(damaged))
+    rows, log = read(icd, path, bytes(damaged))
     touched = range(place // ENTRY, (place + size - 1) // ENTRY + 1)
     # Data bytes have no redundancy: rows in which only they are damaged remain.
-    kept = {entries[n][:6]: n for n in touched}
-    wrong = [row for row in set(rows) - set(entries) if row[:6] not in kept]
+    touched_times = {entries[n][:6]: n for n in touched}
+    wrong = [row for row in set(rows) - set(entries) if row[:6] not in touched_times]
     near = [row for row in wrong if any(_near(row, n, step) for n in touched)]
     assert len(wrong) - len(near) <= bool(
-        found.damages or found.jumps or touched[0] == 0 or touched[-1] == COUNT - 1
+        log.damages or log.jumps or touched[0] == 0 or touched[-1] == COUNT - 1
     )
     assert len(rows) >= COUNT - len(touched) - 3
 
 
 def _near(row: bytes, number: int, step: int) -> bool:
-    """Whether the damaged time still lies between those of its neighbours."""
+    """Return whether the damaged time is still between those of its neighbours."""
     time = int.from_bytes(row[:4], "little") * 1000 + int.from_bytes(row[4:6], "little")
     return abs(time - steady(step)[number]) <= step
 
@@ -231,9 +231,9 @@ def test_several_damages_are_each_reported(icd, path, kind, places, size):
     for number in reversed(numbers):
         at = len(data) - ENTRY * COUNT + number * ENTRY + 8
         del damaged[at : at + size]
-    rows, found = read(icd, path, bytes(damaged))
-    assert len(set(rows) - set(entries)) <= len(found.damages)
-    assert len(found.damages) + bool(found.truncated) >= len(places) and len(
+    rows, log = read(icd, path, bytes(damaged))
+    assert len(set(rows) - set(entries)) <= len(log.damages)
+    assert len(log.damages) + bool(log.truncated) >= len(places) and len(
         rows
     ) >= COUNT - 3 * len(places)
 
@@ -258,38 +258,38 @@ def test_a_clock_that_is_set_loses_no_row(icd, path, kind, jumps, step):
             moved += places[number]
         times[number] = time + moved
     data, entries = log_of(icd, kind, times)
-    rows, found = read(icd, path, data)
-    assert rows == entries and not found.damages
-    assert bool(found.jumps) == any(
+    rows, log = read(icd, path, data)
+    assert rows == entries and not log.damages
+    assert bool(log.jumps) == any(
         not 0 <= b - a <= max(60_000, 5 * step) for a, b in itertools.pairwise(times)
     )
 
 
-def test_a_log_of_single_entries_between_pauses_is_whole(icd, path):
+def test_a_log_of_single_entries_between_pauses_is_complete(icd, path):
     times = [FIRST * 1000 + n * 100 for n in range(30)]
     for n in range(30):
         times.append(times[-1] + 3_600_000 + n * 60_000)
     data, entries = log_of(icd, "noise", times)
-    rows, found = read(icd, path, data)
-    assert rows == entries and not found.damages
+    rows, log = read(icd, path, data)
+    assert rows == entries and not log.damages
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3])
 @pytest.mark.parametrize("step", [0, 1000, 10**9, -(10**4)])
-def test_a_short_log_is_whole(icd, path, count, step):
+def test_a_short_log_is_complete(icd, path, count, step):
     data, entries = log_of(
         icd, "zeros", [FIRST * 1000 + n * step for n in range(count)]
     )
-    rows, found = read(icd, path, data)
-    assert rows == entries and not found.damages
+    rows, log = read(icd, path, data)
+    assert rows == entries and not log.damages
 
 
 def test_a_region_of_zeros_is_damage_and_no_restart_of_the_clock(icd, path):
     data, entries = log_of(icd, "noise", steady())
     at = len(data) - 30 * ENTRY
     for size in (3 * ENTRY, 10_000, 200_000):
-        rows, found = read(icd, path, data[:at] + bytes(size) + data[at:])
-        assert rows == entries[:29] + entries[30:] and len(found.damages) == 1, size
+        rows, log = read(icd, path, data[:at] + bytes(size) + data[at:])
+        assert rows == entries[:29] + entries[30:] and len(log.damages) == 1, size
 
 
 def test_times_are_found_without_numpy_as_well(icd, path, monkeypatch):
@@ -321,7 +321,7 @@ def test_every_format_leaves_out_the_same_damage_and_ends_with_status_1(icd, tmp
         and place in listed.stdout
         and "59 entries" in listed.stdout
     )
-    kept = [n + 1 for n in range(COUNT) if n != 20]
+    expected = [n + 1 for n in range(COUNT) if n != 20]
     for form in ("csv", "jsonl"):
         result = icdgen(log, "--icd", source, "--format", form)
         assert result.returncode == 1 and place in result.stderr
@@ -334,16 +334,17 @@ def test_every_format_leaves_out_the_same_damage_and_ends_with_status_1(icd, tmp
             numbers = [
                 json.loads(line)["f__number"] for line in result.stdout.splitlines()
             ]
-        assert numbers == kept
+        assert numbers == expected
     result = icdgen(log, "--icd", source, "--out", tmp_path / "out.parquet")
     assert result.returncode == 1 and place in result.stderr
-    assert pq.read_table(tmp_path / "out.parquet")["f__number"].to_pylist() == kept
+    assert pq.read_table(tmp_path / "out.parquet")["f__number"].to_pylist() == expected
+    # The damage is after the limit.
     assert (
         icdgen(log, "--icd", source, "--format", "csv", "--head", "5").returncode == 0
-    )  # the damage lies behind
+    )
 
 
-def test_damage_between_pieces_that_are_decoded_at_once(
+def test_damage_between_two_decoded_chunks_is_reported(
     icd, path, tmp_path, monkeypatch
 ):
     import pyarrow.parquet as pq

@@ -1,6 +1,4 @@
-"""`icdgen log` of what a receiver wrote to a file, of a link whose messages travel in
-packet formats.
-"""
+"""`icdgen log` for recorded bytes of a framed link."""
 
 from __future__ import annotations
 
@@ -36,10 +34,14 @@ CLOCK = bytes.fromhex("B562012214004AB37B0F00000000E8030000B90B000027000000")
 
 
 def ubx(*data: bytes) -> bytes:
-    """The messages with these ids and data, by the checksum of RFC 1145."""
+    """Return the messages with these ids and data, with the checksum of RFC 1145."""
     line = bytearray()
-    for one in data:
-        body = one[:2] + (len(one) - 2).to_bytes(2, "little") + one[2:]
+    for id_and_data in data:
+        body = (
+            id_and_data[:2]
+            + (len(id_and_data) - 2).to_bytes(2, "little")
+            + id_and_data[2:]
+        )
         first = second = 0
         for byte in body:
             first = (first + byte) % 256
@@ -54,8 +56,8 @@ EPOCH, OTHER = bytes.fromhex("01614AB37B0F"), bytes.fromhex("0107000102")
 
 @pytest.fixture
 def capture(tmp_path) -> Path:
-    """Three messages; one that the ICD does not have, one damaged, noise, and the
-    beginning of another.
+    """Write a recording: three messages, one unknown, one damaged, noise, and the start
+    of another.
     """
     damaged = bytearray(ubx(EPOCH))
     damaged[-1] ^= 1
@@ -94,7 +96,7 @@ def test_a_recording_is_listed(capture):
     )
 
 
-def test_a_row_is_a_message_and_what_is_wrong_is_said(capture, tmp_path):
+def test_a_row_is_a_message_and_errors_are_reported(capture, tmp_path):
     result = icdgen(capture, "--icd", UBX, "--format", "csv")
     assert result.returncode == 0, result.stderr
     assert "wrong checksum (1)" in result.stderr and "no message" in result.stderr
@@ -121,9 +123,11 @@ def test_a_row_is_a_message_and_what_is_wrong_is_said(capture, tmp_path):
     ]
 
 
-def test_only_some_messages(capture):
-    one = icdgen("receiver", capture, "End of Epoch", "--icd", UBX, "--format", "jsonl")
-    assert [json.loads(line) for line in one.stdout.splitlines()] == [
+def test_a_recording_can_be_limited_to_some_messages(capture):
+    result = icdgen(
+        "receiver", capture, "End of Epoch", "--icd", UBX, "--format", "jsonl"
+    )
+    assert [json.loads(line) for line in result.stdout.splitlines()] == [
         {"message": "End of Epoch", "end_of_epoch__time_of_week_ms": 259765066}
     ]
     first = icdgen(capture, "--icd", UBX, "--format", "jsonl", "--head", "1")
@@ -134,25 +138,25 @@ def test_only_some_messages(capture):
     )
 
 
-def test_what_was_sent_to_the_device(tmp_path):
+def test_a_recording_of_telecommands_is_converted(tmp_path):
     path = tmp_path / "sent"
     path.write_bytes(ubx(bytes.fromhex("0601012201"), bytes.fromhex("0122")))
-    said = icdgen(
+    output = icdgen(
         path, "--icd", UBX, "--direction", "telecommand", "--format", "jsonl"
     ).stdout
-    assert [json.loads(line)["message"] for line in said.splitlines()] == [
+    assert [json.loads(line)["message"] for line in output.splitlines()] == [
         "Set Message Rate",
         "Poll Clock",
     ]
 
 
-def test_what_cannot_be_is_said(capture, tmp_path):
+def test_misuse_is_reported(capture, tmp_path):
     other = tmp_path / "other"
     other.write_bytes(b"telemetry of zebras, yaks and antelopes " * 100)
     packets = tmp_path / "packets.yaml"
     content = (LINKS / "slip.yaml").read_text().replace("slip", "datagram")
     packets.write_text(content)
-    for words, said in (
+    for words, expected in (
         (
             (other, "--icd", UBX),
             "holds no telemetry of receiver: bytes that belong to no message: 3,999",
@@ -177,7 +181,7 @@ def test_what_cannot_be_is_said(capture, tmp_path):
         result = icdgen(*words)
         assert (
             result.returncode == 2
-            and said in result.stderr
+            and expected in result.stderr
             and "Traceback" not in result.stderr
         ), result.stderr
     assert not (tmp_path / "x.csv").exists()
@@ -294,7 +298,7 @@ messages:
 """
 
 
-def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
+def test_every_kind_of_message_has_the_values_of_the_reference_codec(tmp_path):
     import pyarrow.parquet as pq
 
     (tmp_path / "odd.yaml").write_text(ODD)
@@ -303,14 +307,15 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     icd, random = loaded.icd, Random(1)
     node = icd.nodes[0]
     frames = [
-        (one.message, row.frame)
-        for one in make_vectors(icd, node).messages
-        for row in one.rows
-        if _is_sent(icd, one, row)
+        (message.message, row.frame)
+        for message in make_vectors(icd, node).messages
+        for row in message.rows
+        if _is_sent(icd, message, row)
     ]
     random.shuffle(frames)
     sent = b"".join(
-        recorded(icd, node, {one.name: [data]})["telemetry"] for one, data in frames
+        recorded(icd, node, {message.name: [data]})["telemetry"]
+        for message, data in frames
     )
     (tmp_path / "sent").write_bytes(sent)
     wanted = []
@@ -319,12 +324,12 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
         wanted.append((message.name, [_same(value_of(row)) for row in rows]))
     assert len({name for name, _ in wanted}) == 11 and len(wanted) > 100
     icd_option = ("--icd", tmp_path / "odd.yaml")
-    said = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
-    rows = [json.loads(line) for line in said.stdout.splitlines()]
+    result = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
     assert {row.pop("source") for row in rows} == {7}
     assert [
-        (row.pop("message"), [_short(one) for one in row.values()]) for row in rows
-    ] == [(name, [_short(one) for one in values]) for name, values in wanted]
+        (row.pop("message"), [_short(value) for value in row.values()]) for row in rows
+    ] == [(name, [_short(value) for value in values]) for name, values in wanted]
     icdgen(tmp_path / "sent", *icd_option, "--out", tmp_path / "sent.parquet")
     table = (
         pq.read_table(tmp_path / "sent.parquet").drop_columns(["source"]).to_pylist()
@@ -332,29 +337,31 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     got = [
         (
             row.pop("message"),
-            [_same(_read(one)) for one in row.values() if one is not None],
+            [_same(_read(value)) for value in row.values() if value is not None],
         )
         for row in table
     ]
     assert got == wanted
 
 
-def _is_sent(icd, one, row) -> bool:
-    """Whether it is the frame of that message, and one that is not refused."""
-    known = [
+def _is_sent(icd, sample, row) -> bool:
+    """Return whether the row is a frame of that message that the reference codec
+    accepts.
+    """
+    candidates = [
         variant.message
-        for variant in ids_of(icd, icd.nodes[0]).telemetry[one.message.telemetry_id]
+        for variant in ids_of(icd, icd.nodes[0]).telemetry[sample.message.telemetry_id]
     ]
     try:
-        codec.decode(icd.nodes[0], one.message, row.frame)
-        return codec.message_of_frame(icd, known, row.frame) is one.message
+        codec.decode(icd.nodes[0], sample.message, row.frame)
+        return codec.message_of_frame(icd, candidates, row.frame) is sample.message
     except codec.LengthError:
         return False
 
 
 def _short(value: object) -> object:
-    """As text has it: floats in their shortest form, null for what is no number or
-    infinite.
+    """Return a value as in text output: the shortest form of a float, null for NaN and
+    infinity.
     """
     if value == "nan" or (isinstance(value, float) and math.isinf(value)):
         return None
@@ -407,7 +414,7 @@ messages:
         ("telemetry", "0403070900", [{"message": "State", "time": 7, "state__c": 9}]),
     ],
 )
-def test_columns_of_the_header_are_those_of_the_packets_of_the_direction(
+def test_header_columns_are_the_header_fields_of_the_direction(
     tmp_path, direction, sent, rows
 ):
     import pyarrow.parquet as pq
@@ -416,9 +423,9 @@ def test_columns_of_the_header_are_those_of_the_packets_of_the_direction(
     icd.write_text(PACKETS)
     (tmp_path / "sent").write_bytes(bytes.fromhex(sent))
     options = (tmp_path / "sent", "--icd", icd, "--direction", direction)
-    said = icdgen(*options, "--format", "csv")
-    assert said.returncode == 0, said.stderr
-    assert list(csv.DictReader(io.StringIO(said.stdout))) == [
+    result = icdgen(*options, "--format", "csv")
+    assert result.returncode == 0, result.stderr
+    assert list(csv.DictReader(io.StringIO(result.stdout))) == [
         {name: "" if value is None else str(value) for name, value in row.items()}
         for row in rows
     ]
@@ -434,8 +441,8 @@ def test_a_packet_that_carries_no_message_gives_no_column(tmp_path, direction):
     icd = load([file]).icd
     node = icd.nodes[0]
     frames = {
-        one.message.name: [row.frame for row in one.rows[:2]]
-        for one in make_vectors(icd, node).messages
+        message.message.name: [row.frame for row in message.rows[:2]]
+        for message in make_vectors(icd, node).messages
     }
     (tmp_path / "sent").write_bytes(recorded(icd, node, frames)[direction])
     options = (tmp_path / "sent", "--icd", file, "--direction", direction)
@@ -447,20 +454,20 @@ def test_a_packet_that_carries_no_message_gives_no_column(tmp_path, direction):
 @pytest.mark.parametrize(
     "name", ["slip", "cobs", "hdlc", "tsip", "mavlink2", "sbp", "ccsds", "kiss"]
 )
-def test_every_delimiter(name, tmp_path):
+def test_every_kind_of_delimiter_is_supported(name, tmp_path):
     file = LINKS / f"{name}.yaml"
     icd = load([file]).icd
     node = icd.nodes[0]
     frames = {
-        one.message.name: [row.frame for row in one.rows[:5]]
-        for one in make_vectors(icd, node).messages
+        message.message.name: [row.frame for row in message.rows[:5]]
+        for message in make_vectors(icd, node).messages
     }
     sent = recorded(icd, node, frames)["telemetry"]
     (tmp_path / "sent").write_bytes(sent)
     wanted = {
-        one.name: len(frames[one.name])
-        for one in node.messages
-        if one.telemetry_id is not None
+        message.name: len(frames[message.name])
+        for message in node.messages
+        if message.telemetry_id is not None
     }
     tally = Recording(icd, node, tmp_path / "sent").survey(None, lambda size: None)
     assert {

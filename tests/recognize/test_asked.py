@@ -1,5 +1,5 @@
-"""Where telecommands and telemetry share ids, naming the message or the kind decides
-what a frame is.
+"""If telecommands and telemetry share ids, the given name or kind of the message
+decides how a frame is decoded.
 """
 
 from __future__ import annotations
@@ -71,25 +71,25 @@ def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
 def test_the_message_or_the_kind_decides_with_the_header_and_with_the_id_alone(
     icd, frame, key, kind, name
 ):
-    (found,) = recognize(icd, frame, "pack", key, kind)
-    assert (found.message.name, found.what, found.data.hex()) == (
+    (frame_,) = recognize(icd, frame, "pack", key, kind)
+    assert (frame_.message.name, frame_.what, frame_.data.hex()) == (
         name,
-        found.message.kind,
+        frame_.message.kind,
         "0208",
     )
-    assert not [remark for remark in found.remarks if "can also be" in remark]
+    assert not [remark for remark in frame_.remarks if "can also be" in remark]
 
 
-def test_without_either_what_the_help_says_is_a_way_out(icd):
+def test_without_name_and_kind_the_error_suggests_what_to_give(icd):
     with pytest.raises(Ambiguous) as wrong:
         recognize(icd, LIMIT)
     assert "NODE MESSAGE FRAME" in wrong.value.help
     for name, kind in re.findall(r"`([^`]*)` \((\w+) 257\) of pack", str(wrong.value)):
-        (found,) = recognize(icd, LIMIT, "pack", name)
-        assert (found.message.name, found.what) == (name, kind)
+        (frame,) = recognize(icd, LIMIT, "pack", name)
+        assert (frame.message.name, frame.what) == (name, kind)
 
 
-def test_bytes_that_begin_with_an_id_of_the_other_kind_are_bare_data_of_the_kind_that_is_said(
+def test_bytes_that_start_with_an_id_of_the_other_kind_are_data_of_the_given_kind(
     icd,
 ):
     (poll,) = recognize(icd, "0102", kind="telecommand")
@@ -107,17 +107,17 @@ def test_another_message_is_not_read_as_the_one_that_is_named(icd):
         recognize(icd, LIMIT, "pack", "Poll")
 
 
-def test_of_a_stream_the_named_message_is_found_in_its_direction(icd):
+def test_the_named_message_is_found_in_a_stream_of_its_direction(icd):
     line = LIMIT + sent(icd, "telecommand", 258, b"") + LIMIT
-    found = recognize(icd, line, "pack", "Limit")
-    assert [(one.message.name, one.data.hex()) for one in found] == [
+    frames = recognize(icd, line, "pack", "Limit")
+    assert [(frame.message.name, frame.data.hex()) for frame in frames] == [
         ("Limit", "0208")
     ] * 2
     (poll,) = recognize(icd, line, "pack", "Poll")
     assert poll.message.name == "Poll"
 
 
-def test_nothing_tells_the_direction_of_a_configuration_message_with_one_id_but_the_kind(
+def test_only_the_kind_gives_the_direction_of_a_configuration_message_with_one_id(
     icd,
 ):
     frame = sent(icd, "telemetry", 259, b"\7")
@@ -128,8 +128,8 @@ def test_nothing_tells_the_direction_of_a_configuration_message_with_one_id_but_
         ("telecommand", "telecommand"),
         ("telemetry", "telemetry"),
     ]:
-        (found,) = recognize(icd, frame, "pack", "Rate", kind)
-        assert (found.what, found.data, found.frame.data) == (what, b"\7", b"\7")
+        (decoded,) = recognize(icd, frame, "pack", "Rate", kind)
+        assert (decoded.what, decoded.data, decoded.frame.data) == (what, b"\7", b"\7")
 
 
 @pytest.mark.parametrize(("data", "name"), [(b"\1", "Low"), (b"\2", "High")])
@@ -137,14 +137,16 @@ def test_the_id_of_messages_that_share_it_names_the_one_that_the_frame_is(
     icd, data, name
 ):
     for frame in (sent(icd, "telemetry", 260, data), "0104" + data.hex(), data.hex()):
-        (found,) = recognize(icd, frame, "pack", "260")
-        assert found.message.name == name
+        (decoded,) = recognize(icd, frame, "pack", "260")
+        assert decoded.message.name == name
 
 
-def test_a_header_comes_off_where_its_bytes_could_be_text_of_the_message_too(icd):
+def test_a_header_that_could_also_be_text_of_the_message_is_removed(icd):
     frame = sent(icd, "telemetry", 261, b"ready")
-    (found,) = recognize(icd, frame, "pack", "Log")
-    assert found.data == b"ready" and "header with id 01 05 removed" in found.remarks
+    (decoded,) = recognize(icd, frame, "pack", "Log")
+    assert (
+        decoded.data == b"ready" and "header with id 01 05 removed" in decoded.remarks
+    )
     (plain,) = recognize(icd, b"ready".hex(), "pack", "Log")
     assert plain.data == b"ready" and plain.remarks == ()
     (other,) = recognize(icd, LIMIT, "pack", "Log")

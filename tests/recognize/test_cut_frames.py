@@ -1,5 +1,5 @@
-"""A frame that is cut off is an error: it is never decoded as another message, nor with
-bytes of its header as values.
+"""A truncated frame is an error. It is never decoded as another message, nor with
+header bytes as values.
 """
 
 from __future__ import annotations
@@ -82,13 +82,11 @@ messages:
 
 
 def packets(icd: Icd) -> list[tuple[str, bytes]]:
-    """Some golden frames of each message as they are sent, with the name of the
-    message.
-    """
-    found = []
+    """Return some golden frames of each message as sent, with the name of the message."""
+    named_packets = []
     for node in icd.nodes:
-        known = facts.of(icd, node)
-        link = link_of(icd, known)
+        node_facts = facts.of(icd, node)
+        link = link_of(icd, node_facts)
         for message in make_vectors(icd, node).messages:
             for row in message.rows[:: max(1, len(message.rows) // MOST_ROWS)][
                 :MOST_ROWS
@@ -97,28 +95,30 @@ def packets(icd: Icd) -> list[tuple[str, bytes]]:
                     id = getattr(message.message, f"{direction}_id")
                     if id is None:
                         continue
-                    if known.stream:
-                        found.append(
+                    if node_facts.stream:
+                        named_packets.append(
                             (
                                 message.message.name,
                                 stream_encode(link, id, row.frame, direction),
                             )
                         )
-                    elif known.framing:
+                    elif node_facts.framing:
                         body = bytes([id]) + row.frame
-                        found.append((message.message.name, uart_encode(link, body)))
-    return found
+                        named_packets.append(
+                            (message.message.name, uart_encode(link, body))
+                        )
+    return named_packets
 
 
 def names_in(icd: Icd, data: bytes, *words: str) -> list[str]:
     try:
-        return [one.message.name for one in recognize(icd, data, *words)]
+        return [decoded.message.name for decoded in recognize(icd, data, *words)]
     except UserError:
         return []
 
 
 def prefixes(packet: bytes, most: int = 60) -> list[bytes]:
-    """The packet cut after each byte; of a long one after many."""
+    """Yield the packet cut after each byte, or after every few bytes of a long packet."""
     sizes = range(1, len(packet))
     chosen = sorted(
         {
@@ -140,11 +140,11 @@ def link(request) -> Icd:
 def test_every_golden_frame_of_a_link_is_found_while_it_is_complete(link):
     for name, packet in packets(link):
         try:
-            (one,) = recognize(link, packet)
+            (decoded,) = recognize(link, packet)
         except Ambiguous as error:
             assert f"`{name}`" in str(error)
         else:
-            assert one.message.name == name and not one.left_out
+            assert decoded.message.name == name and not decoded.left_out
 
 
 def test_no_beginning_of_a_golden_frame_of_a_link_is_decoded(link):
@@ -161,7 +161,7 @@ def test_no_end_of_a_golden_frame_of_a_link_is_decoded_as_another_message(link):
     source = random.Random(5)
     for name, packet in packets(link):
         for at in source.sample(range(1, len(packet)), min(12, len(packet) - 1)):
-            # SLIP, HDLC and COBS need no delimiter in front: what is complete may be
+            # SLIP, HDLC and COBS need no delimiter at the start: complete packets may be
             # read.
             assert set(names_in(link, packet[at:])) <= {name}, packet[at:].hex()
 
@@ -230,9 +230,7 @@ def motor(tmp_path_factory) -> Icd:
         ),
     ],
 )
-def test_bytes_that_are_no_complete_packet_are_an_error_that_says_what_is_wrong(
-    motor, text, error, says
-):
+def test_an_incomplete_packet_is_an_error_with_the_reason(motor, text, error, says):
     with pytest.raises(error, match=says):
         recognize(motor, text)
 
@@ -242,41 +240,41 @@ def test_a_packet_cut_to_the_length_of_the_named_message_is_no_data_of_it(motor)
         recognize(motor, POWER[:12], "motor", "Power")
 
 
-def test_data_alone_are_read_where_the_message_is_named_and_what_looks_like_a_packet_is_noted(
+def test_bare_data_of_a_named_message_are_decoded_with_a_note_if_they_look_like_a_packet(
     motor,
 ):
-    (one,) = recognize(motor, "A5 5A 00 02 00 03", "motor", "Power")
+    (decoded,) = recognize(motor, "A5 5A 00 02 00 03", "motor", "Power")
     assert (
-        one.data.hex() == "a55a00020003"
-        and "the data begin like a packet" in one.remarks[0]
+        decoded.data.hex() == "a55a00020003"
+        and "the data begin like a packet" in decoded.remarks[0]
     )
-    (one,) = recognize(motor, "01 86", "motor", "Set Speed")
-    assert one.data.hex() == "0186" and not one.remarks
+    (decoded,) = recognize(motor, "01 86", "motor", "Set Speed")
+    assert decoded.data.hex() == "0186" and not decoded.remarks
 
 
 def test_packets_of_both_directions_are_read_in_their_order(motor):
-    found = recognize(motor, SPEED + POWER + SPEED)
-    assert [(one.message.name, one.what) for one in found] == [
+    frames = recognize(motor, SPEED + POWER + SPEED)
+    assert [(frame.message.name, frame.what) for frame in frames] == [
         ("Set Speed", "telecommand"),
         ("Power", "telemetry"),
         ("Set Speed", "telecommand"),
     ]
-    assert not any(one.left_out for one in found)
+    assert not any(frame.left_out for frame in frames)
 
 
 def test_each_packet_that_cannot_be_decoded_is_reported(motor):
-    (one,) = recognize(motor, SPEED + "a55a090009" + POWER[:-2] + "ff" + "a55a03")
+    (decoded,) = recognize(motor, SPEED + "a55a090009" + POWER[:-2] + "ff" + "a55a03")
     assert [
-        text.partition(" is ")[0].partition(" has ")[0] for text in one.left_out
+        text.partition(" is ")[0].partition(" has ")[0] for text in decoded.left_out
     ] == [
         "a packet of motor with the id 9 and 0 bytes of data",
         "a packet of motor, `Power` (telemetry 2)",
         "a packet of motor, `Set Speed` (telecommand 3)",
     ]
-    assert "motor has no message with this id" in one.left_out[0]
+    assert "motor has no message with this id" in decoded.left_out[0]
 
 
-def test_a_request_that_the_icd_has_no_message_for_is_a_packet_and_no_text(tmp_path):
+def test_a_request_without_a_message_in_the_icd_is_a_packet(tmp_path):
     battery = icd_of(BATTERY, tmp_path)
     for words in ((), ("battery",)):
         with pytest.raises(
@@ -292,7 +290,7 @@ def test_a_long_recording_with_much_damage_costs_work_that_grows_with_its_length
     motor,
 ):
     def calls(count: int) -> int:
-        """Number of calls of functions while a recording is read."""
+        """Return the number of function calls while a recording is read."""
         number = 0
 
         def profile(frame, event, argument) -> None:
@@ -302,11 +300,11 @@ def test_a_long_recording_with_much_damage_costs_work_that_grows_with_its_length
         data = bytes.fromhex((SPEED + "a55a090009" + POWER[:-2] + "ff") * count)
         sys.setprofile(profile)
         try:
-            found = recognize(motor, data)
+            frames = recognize(motor, data)
         finally:
             sys.setprofile(None)
-        assert len(found) == count and len(found[0].left_out) == 2 * count
+        assert len(frames) == count and len(frames[0].left_out) == 2 * count
         return number
 
-    calls(1)  # what is computed once for an ICD
+    calls(1)  # fill the caches of the ICD before counting
     assert calls(800) < 8.5 * calls(100)  # 64 times where it is quadratic

@@ -1,5 +1,5 @@
-"""Framed messages, as people paste them: header and trailer come off, and what is wrong
-with them is said.
+"""Pasted packets of framed links are decoded without header and trailer, and mistakes
+in them are reported.
 """
 
 from __future__ import annotations
@@ -38,25 +38,25 @@ CASES = [
 def test_a_frame_is_found_with_its_node_direction_and_message(
     node, direction, id, data, is_named
 ):
-    (found,) = recognize(
+    (decoded,) = recognize(
         ICD, sent(node, direction, id, data).hex(" "), node if is_named else None
     )
-    assert (found.endpoint.node.name, found.what, found.id, found.data) == (
+    assert (decoded.endpoint.node.name, decoded.what, decoded.id, decoded.data) == (
         node,
         direction,
         id,
         data,
     )
-    assert found.frame.data == data and "header with id" in found.remarks[0]
+    assert decoded.frame.data == data and "header with id" in decoded.remarks[0]
 
 
-def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_said():
+def test_all_messages_of_a_recorded_stream_are_decoded_and_errors_reported():
     clock, epoch = (
         sent("receiver", "telemetry", 0x0122, bytes(20)),
         sent("receiver", "telemetry", 0x0161, bytes(4)),
     )
     first, second = recognize(ICD, b"\x00\xb5" + clock + epoch[:-1] + b"\0" + epoch)
-    assert [one.message.name for one in (first, second)] == [
+    assert [frame.message.name for frame in (first, second)] == [
         "Navigation Clock",
         "End of Epoch",
     ]
@@ -67,14 +67,14 @@ def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_
     )
 
 
-def test_what_the_sender_chose_of_the_header_is_said():
-    (found,) = recognize(
+def test_header_values_that_the_sender_chose_are_shown():
+    (decoded,) = recognize(
         ICD, sent("autopilot", "telemetry", 30, bytes(28), source=7, sequence=9).hex()
     )
-    assert "source 7" in found.remarks[0] and "sequence 9" in found.remarks[0]
+    assert "source 7" in decoded.remarks[0] and "sequence 9" in decoded.remarks[0]
 
 
-def test_a_wrong_checksum_is_said_and_nothing_is_read():
+def test_a_wrong_checksum_is_reported_and_the_data_not_decoded():
     line = bytearray(sent("receiver", "telemetry", 0x0161, bytes(4)))
     line[-1] ^= 1
     with pytest.raises(
@@ -84,6 +84,6 @@ def test_a_wrong_checksum_is_said_and_nothing_is_read():
         recognize(ICD, bytes(line))
 
 
-def test_the_data_alone_are_still_read():
-    (found,) = recognize(ICD, "01 00 00 00", "receiver", "End of Epoch")
-    assert found.data == b"\1\0\0\0"
+def test_bare_data_are_decoded():
+    (decoded,) = recognize(ICD, "01 00 00 00", "receiver", "End of Epoch")
+    assert decoded.data == b"\1\0\0\0"

@@ -1,5 +1,5 @@
-"""CAN identifiers of nodes that say nothing of CAN are the ids of their messages, as
-definitions of CAN have them.
+"""CAN identifiers are the ids of messages if a node has no section about CAN, as in
+imported CAN databases.
 """
 
 from __future__ import annotations
@@ -46,39 +46,39 @@ def icd(tmp_path_factory) -> Icd:
 )
 @pytest.mark.parametrize("names", [(), ("train",), ("train", "Drive")])
 def test_exactly_the_message_of_the_identifier_is_read(icd, text, names):
-    (found,) = recognize(icd, text, *names)
-    assert (found.message.name, found.what, found.id, found.data.hex()) == (
+    (decoded,) = recognize(icd, text, *names)
+    assert (decoded.message.name, decoded.what, decoded.id, decoded.data.hex()) == (
         "Drive",
         "telemetry",
         0x100,
         DRIVE,
     )
-    assert found.frame.remarks == ("CAN identifier 0x100 removed",)
+    assert decoded.frame.remarks == ("CAN identifier 0x100 removed",)
 
 
 @pytest.mark.parametrize(
     "text", ["can0  18914001   [2]  01 F4", "18914001#01F4", "T18914001201F4"]
 )
 def test_identifiers_of_29_bits_are_ids_too(icd, text):
-    (found,) = recognize(icd, text)
-    assert (found.message.name, found.frame.remarks) == (
+    (decoded,) = recognize(icd, text)
+    assert (decoded.message.name, decoded.frame.remarks) == (
         "Cells",
         ("CAN identifier 0x18914001 removed",),
     )
 
 
-def test_every_packet_of_a_log_is_a_message_and_what_none_knows_is_said(icd):
+def test_every_packet_of_a_log_is_a_message_and_unknown_ones_are_reported(icd):
     log = f"can0 100#{DRIVE}\ncan0 7FF#00\ncan0 101#{BRAKE}\ncan0 100#{BRAKE}"
-    found = recognize(icd, log)
-    assert [(one.message.name, one.data.hex()) for one in found] == [
+    frames = recognize(icd, log)
+    assert [(frame.message.name, frame.data.hex()) for frame in frames] == [
         ("Drive", DRIVE),
         ("Brake", BRAKE),
         ("Drive", BRAKE),
     ]
-    assert found[0].left_out == (
+    assert frames[0].left_out == (
         "no message of train has the CAN identifier 0x7FF (1 CAN packet)",
     )
-    assert [one.message.name for one in recognize(icd, log, "train", "Brake")] == [
+    assert [frame.message.name for frame in recognize(icd, log, "train", "Brake")] == [
         "Brake"
     ]
 
@@ -117,15 +117,15 @@ def test_an_identifier_of_no_message_or_of_another_is_an_error(
 def test_where_both_directions_share_an_identifier_the_message_or_the_kind_decides(
     icd, names
 ):
-    (found,) = recognize(icd, "200#01", *names)
-    assert (found.message.name, found.what) == ("Mode", "telemetry")
+    (decoded,) = recognize(icd, "200#01", *names)
+    assert (decoded.message.name, decoded.what) == ("Mode", "telemetry")
 
 
 def test_a_message_that_is_named_is_read_from_an_identifier_that_none_has(icd):
-    (found,) = recognize(icd, f"7FF#{DRIVE}", "train", "Drive")
+    (decoded,) = recognize(icd, f"7FF#{DRIVE}", "train", "Drive")
     assert (
-        found.data.hex() == DRIVE
-        and "no message of train has the CAN identifier 0x7FF" in found.frame.remarks
+        decoded.data.hex() == DRIVE
+        and "no message of train has the CAN identifier 0x7FF" in decoded.frame.remarks
     )
 
 
@@ -139,8 +139,12 @@ def test_a_message_that_is_named_is_read_from_an_identifier_that_none_has(icd):
     ],
 )
 def test_a_remote_request_asks_for_the_telemetry_of_its_identifier(icd, text, time):
-    (found,) = recognize(icd, text)
-    assert (found.what, found.message.name, found.time) == ("request", "Drive", time)
+    (decoded,) = recognize(icd, text)
+    assert (decoded.what, decoded.message.name, decoded.time) == (
+        "request",
+        "Drive",
+        time,
+    )
 
 
 def test_only_adapters_append_a_time_to_the_data():
@@ -152,21 +156,26 @@ def test_only_adapters_append_a_time_to_the_data():
 CANDUMP = f"(1600000000.250000) can0 100#{DRIVE}\n(1600000001.500000) can0 7FF#00\n(1600000002.000000) can0 101#{BRAKE}"
 
 
-def test_the_times_of_candump_are_kept(icd):
-    found = recognize(icd, CANDUMP)
-    assert [one.time for one in found] == ["1600000000.250000", "1600000002.000000"]
-    assert found[0].to_json()["time"] == "1600000000.250000"
+def test_times_of_candump_are_shown(icd):
+    frames = recognize(icd, CANDUMP)
+    assert [frame.time for frame in frames] == [
+        "1600000000.250000",
+        "1600000002.000000",
+    ]
+    assert frames[0].to_json()["time"] == "1600000000.250000"
     assert "time" not in recognize(icd, f"100#{DRIVE}")[0].to_json()
 
 
-def test_the_times_of_slcan_are_kept_as_seconds_of_the_minute(icd):
-    found = recognize(icd, f"t1008{DRIVE}1234\nt1018{BRAKE}EA5F\nt1008{DRIVE}")
-    assert [one.time for one in found] == ["4.660", "59.999", ""]
+def test_times_of_slcan_are_seconds_of_the_minute(icd):
+    frames = recognize(icd, f"t1008{DRIVE}1234\nt1018{BRAKE}EA5F\nt1008{DRIVE}")
+    assert [frame.time for frame in frames] == ["4.660", "59.999", ""]
 
 
 def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
     (message,) = [
-        one for one in shipped.node("cubeacp").messages if one.telemetry_id == 0xBE
+        message
+        for message in shipped.node("cubeacp").messages
+        if message.telemetry_id == 0xBE
     ]
     pieces = [
         bytes(range(at, at + 7))[: message.length - at].ljust(7, b"\0")
@@ -176,8 +185,11 @@ def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
         f"(10.{number}) can0 08BE0201#{piece.hex()}{len(pieces) - 1 - number:02x}"
         for number, piece in enumerate(pieces)
     ]
-    (found,) = recognize(shipped, "\n".join(lines))
-    assert (found.message.name, found.time) == (message.name, f"10.{len(pieces) - 1}")
+    (decoded,) = recognize(shipped, "\n".join(lines))
+    assert (decoded.message.name, decoded.time) == (
+        message.name,
+        f"10.{len(pieces) - 1}",
+    )
 
 
 @pytest.mark.parametrize(
@@ -202,4 +214,4 @@ def test_standard_and_extended_frames_of_one_number_are_two_messages(
         with pytest.raises(NotFound):
             recognize(icd, packet)
     else:
-        assert [one.message.name for one in recognize(icd, packet)] == [name]
+        assert [frame.message.name for frame in recognize(icd, packet)] == [name]

@@ -1,4 +1,4 @@
-"""Whatever way a frame is pasted, the same comes out."""
+"""All forms in which a frame can be pasted give the same result."""
 
 from __future__ import annotations
 
@@ -13,34 +13,35 @@ from tests.recognize.ways import BARE, DATA, WHOLE
 
 @pytest.mark.parametrize("way", BARE)
 def test_data_in_any_spelling_are_the_same_frame(shipped, way):
-    (one,) = recognize(shipped, BARE[way], "cubeacp", "146")
-    assert (one.data, one.message.name) == (
+    (decoded,) = recognize(shipped, BARE[way], "cubeacp", "146")
+    assert (decoded.data, decoded.message.name) == (
         DATA,
         "Estimated Attitude Angles",
-    ) and one.frame.rows[0].text == "-12.34"
+    ) and decoded.frame.rows[0].text == "-12.34"
 
 
 @pytest.mark.parametrize("way", WHOLE)
-def test_a_frame_that_says_what_it_is_needs_no_name(shipped, way):
-    found = [
+def test_a_frame_with_an_id_needs_no_name(shipped, way):
+    interpretations = [
         recognize(shipped, WHOLE[way], *names)
         for names in [(), ("cubeacp",), ("cubeacp", "146")]
     ]
     assert {
-        (one.endpoint.node.name, one.message.id, one.what, one.data) for (one,) in found
+        (decoded.endpoint.node.name, decoded.message.id, decoded.what, decoded.data)
+        for (decoded,) in interpretations
     } == {("cubeacp", 146, "telemetry", DATA)}
 
 
-def test_several_frames_of_a_stream_are_told_apart(shipped):
+def test_several_frames_of_a_stream_are_separated(shipped):
     text = "1F 7F 92 1F FF 1F 7F 92 2E FB 0A 00 00 00 1F FF 1F 7F 11 05 1F FF"
     request, reply, acknowledge = recognize(shipped, text)
-    assert [one.what for one in (request, reply, acknowledge)] == [
+    assert [frame.what for frame in (request, reply, acknowledge)] == [
         "request",
         "telemetry",
         "acknowledge",
     ]
     assert "error 5" in acknowledge.title and acknowledge.to_json()["error"] == 5
-    assert [one.what for one in recognize(shipped, bytes.fromhex(text))] == [
+    assert [frame.what for frame in recognize(shipped, bytes.fromhex(text))] == [
         "request",
         "telemetry",
         "acknowledge",
@@ -49,7 +50,10 @@ def test_several_frames_of_a_stream_are_told_apart(shipped):
 
 def test_a_line_may_be_a_frame(shipped):
     text = "92 2E FB 0A 00 00 00\n92 00 00 00 00 00 00\n"
-    assert [one.data for one in recognize(shipped, text, "cubeacp")] == [DATA, bytes(6)]
+    assert [frame.data for frame in recognize(shipped, text, "cubeacp")] == [
+        DATA,
+        bytes(6),
+    ]
 
 
 def test_the_packets_of_a_long_message_are_joined_and_a_missing_one_is_named(shipped):
@@ -61,8 +65,8 @@ def test_the_packets_of_a_long_message_are_joined_and_a_missing_one_is_named(shi
         f"can0 08{long.telemetry_id:02X}0201#{piece.hex()}{len(pieces) - 1 - number:02x}"
         for number, piece in enumerate(pieces)
     ]
-    (one,) = recognize(shipped, "\n".join(lines))
-    assert (one.message, one.data) == (long, data)
+    (decoded,) = recognize(shipped, "\n".join(lines))
+    assert (decoded.message, decoded.data) == (long, data)
     with pytest.raises(BadLength, match=f"1 of {len(pieces)} packets .* are missing"):
         recognize(shipped, "\n".join(lines[1:]), "cubeacp")
 
@@ -97,21 +101,21 @@ def test_the_packets_of_a_long_message_are_joined_and_a_missing_one_is_named(shi
         ("2exb01", (), BadHex, "`x`"),
     ],
 )
-def test_what_is_wrong_or_ambiguous_is_said(shipped, text, names, error, says):
+def test_invalid_and_ambiguous_input_is_reported(shipped, text, names, error, says):
     with pytest.raises(error, match=says):
         recognize(shipped, text, *names)
 
 
-def test_a_checksum_is_checked_and_taken_off(shipped):
+def test_a_checksum_is_checked_and_removed(shipped):
     with pytest.raises(BadLength, match="as CRC") as wrong:
         recognize(shipped, "2E FB 0A 00 00 00 CC", "cubeacp", "146")
     right = str(wrong.value).split("them ")[1][:2]
     data = f"2E FB 0A 00 00 00 {right}"
     for text in (data, f"92 {data}", f"1F 7F 92 {data} 1F FF"):
-        (one,) = recognize(shipped, text, "cubeacp", "146")
-        assert one.data == DATA and "CRC is right" in one.frame.remarks
-    (one,) = recognize(shipped, f"92 {data}")
-    assert (one.message.id, one.data) == (146, DATA)
+        (decoded,) = recognize(shipped, text, "cubeacp", "146")
+        assert decoded.data == DATA and "CRC is right" in decoded.frame.remarks
+    (decoded,) = recognize(shipped, f"92 {data}")
+    assert (decoded.message.id, decoded.data) == (146, DATA)
 
 
 @pytest.mark.parametrize(
@@ -123,10 +127,10 @@ def test_a_checksum_is_checked_and_taken_off(shipped):
         ),  # digits in pairs are hexadecimal, even where they could be decimal
         ("deadbeef", "deadbeef"),  # and are no base64
         ("00000000: 00", "00"),
-        ("0000 0001 0002", "000000010002"),  # an address is one only if it counts
+        ("0000 0001 0002", "000000010002"),  # an address must be consecutive
     ],
 )
-def test_what_can_be_hexadecimal_is(text, data):
+def test_text_that_can_be_hexadecimal_is_read_as_hexadecimal(text, data):
     assert read_pasted(text).data.hex() == data
 
 
@@ -141,11 +145,11 @@ def test_what_can_be_hexadecimal_is(text, data):
         "(1)][",
     ],
 )
-def test_what_only_looks_like_bytes_is_refused(text):
+def test_text_that_only_looks_like_bytes_is_refused(text):
     with pytest.raises(BadHex):
         read_pasted(text)
 
 
 def test_json_names_the_direction(shipped):
-    (one,) = recognize(shipped, WHOLE["UART"])
-    assert json.loads(json.dumps(one.to_json()))["direction"] == "telemetry"
+    (decoded,) = recognize(shipped, WHOLE["UART"])
+    assert json.loads(json.dumps(decoded.to_json()))["direction"] == "telemetry"

@@ -1,5 +1,5 @@
-"""Frames of a node whose ids have more than a byte: the id stands in front as its
-bytes, the most significant first.
+"""Frames of a node with ids of several bytes start with the id, most significant byte
+first.
 """
 
 from __future__ import annotations
@@ -41,27 +41,28 @@ def receiver(request, tmp_path):
     return loaded.icd, sent
 
 
-def test_the_id_in_front_tells_the_message(receiver):
+def test_the_leading_id_selects_the_message(receiver):
     icd, sent = receiver
-    (one,) = recognize(icd, f"{sent} 01 00 00 00")
-    assert one.message.name == "Clock" and one.data == bytes([1, 0, 0, 0])
-    assert one.id == one.message.id == int(sent.replace(" ", ""), 16)
+    (decoded,) = recognize(icd, f"{sent} 01 00 00 00")
+    assert decoded.message.name == "Clock" and decoded.data == bytes([1, 0, 0, 0])
+    assert decoded.id == decoded.message.id == int(sent.replace(" ", ""), 16)
 
 
-def test_the_id_comes_off_where_the_message_is_named_too(receiver):
+def test_the_id_is_removed_if_the_message_is_named(receiver):
     icd, sent = receiver
-    (one,) = recognize(icd, f"{sent} 01 00 00 00", "receiver", "Clock")
+    (decoded,) = recognize(icd, f"{sent} 01 00 00 00", "receiver", "Clock")
     assert (
-        one.data == bytes([1, 0, 0, 0]) and f"id {one.id} removed" in one.frame.remarks
+        decoded.data == bytes([1, 0, 0, 0])
+        and f"id {decoded.id} removed" in decoded.frame.remarks
     )
 
 
-def test_data_alone_are_known_by_their_length(receiver):
-    (one,) = recognize(receiver[0], "01 00 00 00")
-    assert (one.message.name, one.id) == ("Clock", None)
+def test_bare_data_are_recognised_by_their_length(receiver):
+    (decoded,) = recognize(receiver[0], "01 00 00 00")
+    assert (decoded.message.name, decoded.id) == ("Clock", None)
 
 
-def test_an_unknown_id_and_a_wrong_length_are_told_apart(receiver):
+def test_an_unknown_id_and_a_wrong_length_are_different_errors(receiver):
     icd, sent = receiver
     with pytest.raises(NotFound, match="no message of receiver has the id"):
         recognize(icd, "00 00 00 00 00 00 00")

@@ -1,12 +1,12 @@
-"""Ways to paste the same frame: attitude angles of -12.34, 0.1 and 0 degrees, telemetry
-146 of CubeACP.
+"""Forms of the same frame: attitude angles of -12.34, 0.1 and 0 degrees, telemetry 146
+of CubeACP.
 """
 
 from __future__ import annotations
 
 DATA = bytes.fromhex("2efb0a000000")
 
-# Of the data alone, which need the name of the message.
+# Forms of bare data, which need the name of the message.
 BARE = {
     "words": "2efb 0a00 0000",
     "pairs": "2E FB 0A 00 00 00",
@@ -48,7 +48,7 @@ BARE = {
     "after an arrow": "<< 2E FB 0A 00 00 00",
 }
 
-# With what says which message it is.
+# Forms with the id of the message.
 WHOLE = {
     "UART": "1F 7F 92 2E FB 0A 00 00 00 1F FF",
     "UART, after noise": "00 FF 1F 7F 92 2E FB 0A 00 00 00 1F FF",

@@ -1,4 +1,4 @@
-"""The checksums of the runtimes, where they lie, against the check values of the usual
+"""The checksums of the runtimes are compared with the check values of the usual
 catalogues.
 """
 
@@ -22,8 +22,8 @@ RUNTIME = ROOT / "runtime"
 HERE = Path(__file__).parent
 
 
-class Catalogued(NamedTuple):
-    """A CRC, and what it makes of the digits 1 to 9."""
+class CatalogueCrc(NamedTuple):
+    """A CRC of the catalogue and its checksum of the digits 1 to 9."""
 
     name: str
     width: int
@@ -36,48 +36,48 @@ class Catalogued(NamedTuple):
 
 
 CATALOGUE = [
-    Catalogued("CRC-3/GSM", 3, 0x3, 0x0, 0, 0, 0x7, 0x4),
-    Catalogued("CRC-5/EPC-C1G2", 5, 0x09, 0x09, 0, 0, 0x00, 0x00),
-    Catalogued("CRC-5/USB", 5, 0x05, 0x1F, 1, 1, 0x1F, 0x19),
-    Catalogued("CRC-7/MMC", 7, 0x09, 0x00, 0, 0, 0x00, 0x75),
-    Catalogued("CRC-8/SMBUS", 8, 0x07, 0x00, 0, 0, 0x00, 0xF4),
-    Catalogued("CRC-8/MAXIM-DOW", 8, 0x31, 0x00, 1, 1, 0x00, 0xA1),
-    Catalogued("CRC-8/I-432-1", 8, 0x07, 0x00, 0, 0, 0x55, 0xA1),
-    Catalogued("CRC-12/UMTS", 12, 0x80F, 0x000, 0, 1, 0x000, 0xDAF),
-    Catalogued("CRC-16/XMODEM", 16, 0x1021, 0x0000, 0, 0, 0x0000, 0x31C3),
-    Catalogued("CRC-16/IBM-3740", 16, 0x1021, 0xFFFF, 0, 0, 0x0000, 0x29B1),
-    Catalogued("CRC-16/KERMIT", 16, 0x1021, 0x0000, 1, 1, 0x0000, 0x2189),
-    Catalogued("CRC-16/MODBUS", 16, 0x8005, 0xFFFF, 1, 1, 0x0000, 0x4B37),
-    Catalogued("CRC-16/IBM-SDLC", 16, 0x1021, 0xFFFF, 1, 1, 0xFFFF, 0x906E),
-    Catalogued("CRC-24/OPENPGP", 24, 0x864CFB, 0xB704CE, 0, 0, 0x000000, 0x21CF02),
-    Catalogued(
+    CatalogueCrc("CRC-3/GSM", 3, 0x3, 0x0, 0, 0, 0x7, 0x4),
+    CatalogueCrc("CRC-5/EPC-C1G2", 5, 0x09, 0x09, 0, 0, 0x00, 0x00),
+    CatalogueCrc("CRC-5/USB", 5, 0x05, 0x1F, 1, 1, 0x1F, 0x19),
+    CatalogueCrc("CRC-7/MMC", 7, 0x09, 0x00, 0, 0, 0x00, 0x75),
+    CatalogueCrc("CRC-8/SMBUS", 8, 0x07, 0x00, 0, 0, 0x00, 0xF4),
+    CatalogueCrc("CRC-8/MAXIM-DOW", 8, 0x31, 0x00, 1, 1, 0x00, 0xA1),
+    CatalogueCrc("CRC-8/I-432-1", 8, 0x07, 0x00, 0, 0, 0x55, 0xA1),
+    CatalogueCrc("CRC-12/UMTS", 12, 0x80F, 0x000, 0, 1, 0x000, 0xDAF),
+    CatalogueCrc("CRC-16/XMODEM", 16, 0x1021, 0x0000, 0, 0, 0x0000, 0x31C3),
+    CatalogueCrc("CRC-16/IBM-3740", 16, 0x1021, 0xFFFF, 0, 0, 0x0000, 0x29B1),
+    CatalogueCrc("CRC-16/KERMIT", 16, 0x1021, 0x0000, 1, 1, 0x0000, 0x2189),
+    CatalogueCrc("CRC-16/MODBUS", 16, 0x8005, 0xFFFF, 1, 1, 0x0000, 0x4B37),
+    CatalogueCrc("CRC-16/IBM-SDLC", 16, 0x1021, 0xFFFF, 1, 1, 0xFFFF, 0x906E),
+    CatalogueCrc("CRC-24/OPENPGP", 24, 0x864CFB, 0xB704CE, 0, 0, 0x000000, 0x21CF02),
+    CatalogueCrc(
         "CRC-32/ISO-HDLC", 32, 0x04C11DB7, 0xFFFFFFFF, 1, 1, 0xFFFFFFFF, 0xCBF43926
     ),
 ]
 DIGITS = b"123456789"
 
 
-@pytest.mark.parametrize("one", CATALOGUE, ids=lambda one: one.name)
-def test_python(one):
+@pytest.mark.parametrize("crc", CATALOGUE, ids=lambda crc: crc.name)
+def test_python(crc):
     code = "import json, sys; from icdgen_runtime.wire.crc import Crc; from icdgen_runtime.wire.link import CrcForm\n"
     code += "form = CrcForm(*json.loads(sys.argv[1]), None)\n"
     code += f"whole = Crc(form).feed({DIGITS!r}).result()\n"
     code += f"assert whole == Crc(form, table=False).feed({DIGITS[:4]!r}).feed({DIGITS[4:]!r}).result()\nprint(whole)"
-    command = [sys.executable, "-B", "-c", code, json.dumps(one[1:7])]
+    command = [sys.executable, "-B", "-c", code, json.dumps(crc[1:7])]
     done = subprocess.run(
         command, cwd=RUNTIME / "python", check=True, capture_output=True, text=True
     )
-    assert int(done.stdout) == one.check
+    assert int(done.stdout) == crc.check
 
 
-@pytest.mark.parametrize("one", CATALOGUE, ids=lambda one: one.name)
-def test_the_reference(one):
+@pytest.mark.parametrize("crc", CATALOGUE, ids=lambda crc: crc.name)
+def test_the_reference(crc):
     assert (
         links.crc(
-            Crc(*one[1:4], bool(one.reflect_in), bool(one.reflect_out), one.xor_out),
+            Crc(*crc[1:4], bool(crc.reflect_in), bool(crc.reflect_out), crc.xor_out),
             DIGITS,
         )
-        == one.check
+        == crc.check
     )
 
 
@@ -142,5 +142,5 @@ def rust_program(tmp_path_factory) -> Path:
 @pytest.mark.parametrize("language", ["c_program", "rust_program"])
 def test_compiled(language, request):
     program = request.getfixturevalue(language)
-    for one in CATALOGUE:
-        assert run(program, *map(str, one[1:7])) == f"{one.check}\n", one.name
+    for crc in CATALOGUE:
+        assert run(program, *map(str, crc[1:7])) == f"{crc.check}\n", crc.name

@@ -1,5 +1,5 @@
-"""The runtimes are source: compilers, linters, type checkers and formatters take them
-as they lie.
+"""The runtimes are plain source: compilers, linters, type checkers and formatters
+accept them unchanged.
 """
 
 from __future__ import annotations
@@ -39,9 +39,8 @@ def test_every_c_file_stands_alone_and_compiles_without_a_warning(compiler, tmp_
             program.write_text(
                 f'#include "{header}"\n#include "{header}"\ntypedef int something;\n'
             )
-            shared = (
-                ("-DICDGEN_SHARED",) if header.parent.name == "wire" else ()
-            )  # a part alone lacks the functions of others
+            # A single file lacks functions of the other files.
+            shared = ("-DICDGEN_SHARED",) if header.parent.name == "wire" else ()
             run(
                 compiler,
                 f"-std={standard}",
