@@ -54,7 +54,7 @@ fn main() -> Result<(), icd::Error> {{
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory) -> Path:
-    """Copy the files of this repository, except those that only tests use."""
+    """Copy the files of this repository, except files that only tests use."""
     folder = tmp_path_factory.mktemp("clone")
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "-z"],

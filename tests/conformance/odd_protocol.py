@@ -12,7 +12,9 @@ from icdgen.icd.model import Icd, Node, buses_of
 
 
 def of(icd: Icd) -> Icd:
-    """The same messages, big-endian, bits counted from the top, under the odd protocol."""
+    """Return the same messages, big-endian, with bits counted from the top, under the
+    odd protocol.
+    """
     return Icd(tuple(_changed(node) for node in icd.nodes))
 
 

@@ -81,10 +81,8 @@ def fields_behind(
     elements: st.SearchStrategy,
     structs: list[dict],
 ) -> list[dict]:
-    """Draw up to a few fields of fixed size after a variable-length field.
-
-    ``place`` and ``number`` are those of the variable-length field; the new names start
-    with its name.
+    """Draw up to a few fields of fixed size after a variable-length field with this
+    ``place`` and ``number``. The new names start with its name.
     """
     fields: list[dict] = []
     whole_bytes = elements.filter(
@@ -110,11 +108,11 @@ def nested_end(
     inner: list[dict],
     elements: st.SearchStrategy,
 ) -> tuple[list[dict], dict]:
-    """Draw counters after ``length`` bytes, and an array of structs whose inner arrays
-    one of them counts; and the struct.
+    """Draw counters after ``length`` bytes, an array of structs whose inner arrays one
+    of them counts, and the struct.
 
-    ``names`` are for the two counters and the array, ``inner`` for the fields that
-    follow those of ``struct``.
+    ``names`` are for the two counters and the array, ``inner`` for the fields after the
+    fields of ``struct``.
     """
     count, inner_count, end = names
     counters = [

@@ -144,7 +144,7 @@ class Script:
         return {"telemetry": self.source.choice([*ids, 3])}
 
     def data(self, size: int) -> bytes:
-        """Return data that are often equal to those of other messages."""
+        """Return data that often equal the data of other messages."""
         # A response may repeat data of its telecommand, which only matters if equal.
         if self.source.random() < 0.7:
             return bytes(self.source.choices((0, 1), k=size))

@@ -86,8 +86,8 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
 
 
 def one_of_each_kind(fields: Iterable[dict]) -> list[dict]:
-    """Return the first of all fields whose vectors differ only in names and numbers. A
-    refusal depends on nothing else.
+    """Return the first of all fields whose vectors differ only in names and numbers.
+    The refusal of a request only depends on the kind.
     """
     kinds: dict[object, dict] = {}
     for field in fields:

@@ -235,8 +235,8 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
 def _struct(
     draw, names: dict, enums: list[dict], nested: list[dict], orders: dict
 ) -> dict:
-    """Draw a struct that may contain others. ``orders`` are those of its node; a
-    message that uses the struct may have another bit order.
+    """Draw a struct that may contain others, in a node with these ``orders``. A message
+    that uses the struct may have another bit order.
     """
     fields, length = draw(_fields(enums, orders, nested, in_struct=True))
     if not fields:
@@ -356,8 +356,8 @@ def _bits_of(field: dict, orders: dict) -> int:
 def _fields(
     draw, enums: list[dict], orders: dict, structs: list[dict], in_struct: bool = False
 ) -> tuple[list[dict], int]:
-    """Draw consecutive fields with gaps of reserved bits, and their length in bytes.
-    ``orders`` are those of the message.
+    """Draw consecutive fields with gaps of reserved bits, and their length in bytes,
+    for a message with these ``orders``.
     """
     fields: list[dict] = []
     names = Names(draw, set())
@@ -426,7 +426,7 @@ def _alternatives(
     draw, fields: list[dict], length: int, enums: list[dict], orders: dict
 ) -> list[dict]:
     """Draw optional fields that depend on another field, some of them in the same bits.
-    Adds the other field if there is none.
+    Adds the other field if it is missing.
     """
     selectors = [field for field in fields if _decides(field)]
     room = length + draw(st.integers(1, 9))

@@ -1,5 +1,5 @@
-"""Everything that a reader did not use of its source is reported by name and place, and
-nothing else.
+"""The import reports exactly the parts of its source that a reader did not use, by name
+and place.
 """
 
 from __future__ import annotations

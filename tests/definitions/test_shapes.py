@@ -1,7 +1,7 @@
 """Definitions with features of public files become ICDs without losing a message.
 
-`python -m tests.xtce.shapes` compares the values with those of Yamcs, `python -m
-tests.devices` with those of other libraries.
+`python -m tests.xtce.shapes` compares the values with Yamcs, `python -m tests.devices`
+with other libraries.
 """
 
 from __future__ import annotations

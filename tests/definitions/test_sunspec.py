@@ -1,6 +1,6 @@
 """SunSpec models become ICDs: points are fields, repeated groups are structs.
 
-tests/devices compares the values of random blocks with those of pysunspec2.
+tests/devices compares the values of random blocks with pysunspec2.
 """
 
 from __future__ import annotations

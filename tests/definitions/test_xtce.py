@@ -1,7 +1,7 @@
 """XTCE becomes ICDs: space packets with their header, inheritance, discriminators, and
 commands.
 
-tests/devices compares the values of random packets with those of space-packet-parser.
+tests/devices compares the values of random packets with space-packet-parser.
 """
 
 from __future__ import annotations

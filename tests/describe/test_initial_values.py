@@ -1,6 +1,4 @@
-"""The initial values of a new message in every language equal those of the reference
-codec.
-"""
+"""A new message has the initial values of the reference codec in every language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Comments and names of constants are the same in every language."""
+"""All languages have the same comments and names of constants."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What ``--check`` shows of files that are not current: their first differing lines, and
-how much it leaves out.
+"""``--check`` shows the first differing lines of outdated files, and the number of
+further ones.
 """
 
 from __future__ import annotations

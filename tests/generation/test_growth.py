@@ -43,7 +43,7 @@ messages:
 
 
 def calls(work: Callable[[], object]) -> int:
-    """Return the number of function calls, which is the same in every run."""
+    """Return the number of function calls, which every run repeats exactly."""
     number = 0
 
     def count(_frame, event: str, _argument) -> None:

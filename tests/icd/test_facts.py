@@ -177,8 +177,8 @@ def test_a_note_does_not_contradict_the_manual_or_another_note(icd, id, gone, ho
 
 
 def test_correct_statements_have_no_note(icd):
-    """Table 40 and section 5.5 say what a byte too many is; all set and get ids stand
-    in Table 47; and so on.
+    """Table 40 and section 5.5 define the effect of an extra byte, Table 47 contains
+    all set and get ids, and so on.
     """
     erratum_ids = {e.id for node in icd.nodes for e in node.errata}
     assert not erratum_ids & {

@@ -1,4 +1,4 @@
-"""Formulas are exact: nothing is rounded, and non-linear formulas are refused."""
+"""Formulas are computed exactly, without rounding, and non-linear formulas are refused."""
 
 from __future__ import annotations
 

@@ -190,7 +190,7 @@ def test_a_counter_is_a_plain_number_of_the_fixed_part_that_can_hold_the_size(pa
 
 
 def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
-    """The bytes of every field are those in the longest frame without the gaps."""
+    """Every field has the same bytes as in the longest frame without the gaps."""
     icd = read_unchecked(ROOT / "tests" / "conformance" / "odd_icds")
     (node,) = (node for node in icd.nodes if node.name == "curves")
     assert any(message.layout.parts[-1].inner for message in node.messages)

@@ -1,7 +1,7 @@
 """Limits of the format: each accepts its own value and refuses the next.
 
-The numbers are those of the documents, not those of the code: who changes a limit has
-to change it here as well.
+The numbers come from the documents, not from the code. A changed limit must be changed
+here as well.
 """
 
 from __future__ import annotations
@@ -253,10 +253,10 @@ def can_message(length: int) -> str:
     """Return a message of a node that sends single CAN packets."""
     packet = "packets: {Command: {from: host, buses: [can], type: 3}}"
     can_section = can("source", 8, 1).removeprefix("protocol: {link: {")
-    whole = f"protocol: {{link: {{{packet}, {can_section}"
-    whole = whole.replace("node_address", "max_data_bytes: 8, node_address")
+    protocol = f"protocol: {{link: {{{packet}, {can_section}"
+    protocol = protocol.replace("node_address", "max_data_bytes: 8, node_address")
     data = f"at: 0, bits: {8 * length}, name: Data, type: bytes"
-    return whole + message(length, data)
+    return protocol + message(length, data)
 
 
 FIELDS: dict[str, tuple[str, Callable[[int], str], int | None, int | None]] = {

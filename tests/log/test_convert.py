@@ -1,6 +1,4 @@
-"""A log has the same values in every output format, equal to those of the reference
-codec.
-"""
+"""A log has the values of the reference codec in every output format."""
 
 from __future__ import annotations
 

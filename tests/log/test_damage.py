@@ -213,7 +213,7 @@ def test_overwritten_bytes_lose_their_neighbourhood(
 
 
 def _near(row: bytes, number: int, step: int) -> bool:
-    """Return whether the damaged time is still between those of its neighbours."""
+    """Return whether the damaged time is still between the times of its neighbours."""
     time = int.from_bytes(row[:4], "little") * 1000 + int.from_bytes(row[4:6], "little")
     return abs(time - steady(step)[number]) <= step
 

@@ -87,7 +87,7 @@ def run(
     node: str = "cubeacp",
     limit: float = 900.0,
 ) -> str | None:
-    """What went wrong; None if nothing did."""
+    """Return the error, or ``None``."""
     data = Random(f"{loss} {size}").randbytes(size)
     with tempfile.TemporaryDirectory() as folder:
         stored, uploaded = Path(folder, "stored"), Path(folder, "3.bin")

@@ -1,5 +1,5 @@
-"""The same example program in C, Rust and Python compiles without a warning and prints
-the same for every behaviour of the node.
+"""One example program in C, Rust and Python compiles without a warning and prints the
+same text for every behaviour of the node.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What `icdgen monitor` and `icdgen send` say of the line and of outcomes."""
+"""`icdgen monitor` and `icdgen send` report line statistics and outcomes."""
 
 from __future__ import annotations
 

@@ -152,7 +152,7 @@ class Table:
         self.lines = lines
 
     def typed(self, *keys: str) -> str:
-        """Return the line that says which part of the table is shown, after keys."""
+        """Return the line with the visible part of the table after these keys."""
         for key in keys:
             self.screen.keyboard.on_key(key)
         return self.shown()[-1].partition(";")[0]

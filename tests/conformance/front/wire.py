@@ -32,7 +32,7 @@ TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 
 
 class LinkProgram(NamedTuple):
-    """How the program is asked about a link, and the plan of the link."""
+    """The function that asks the program about a link, and the plan of the link."""
 
     ask: Callable[..., Reply]
     link: dict[str, Any]

@@ -63,8 +63,8 @@ def version(tool: str) -> str | None:
 
 
 def all_languages() -> dict[str, Language]:
-    """Return every language by name: first in the order of their modules, then those of
-    other packages.
+    """Return every language by name, in the order of their modules, followed by
+    languages of other packages.
     """
     languages: dict[str, Language] = {}
     for info in sorted(iter_modules(__path__), key=lambda i: i.name):

@@ -184,7 +184,7 @@ class CTesteeBackend:
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Return no identifiers, because all names derive from those of the ``c``
+        """Return no identifiers, because all names derive from names of the ``c``
         backend.
         """
         return iter(())

@@ -1,8 +1,7 @@
 """The JavaScript testee: a Node program that answers requests about the codec of the
 site.
 
-The codec is the file that the pages load, and the plans are those that the pages
-contain.
+Codec and plans are the files that the pages load.
 """
 
 from __future__ import annotations

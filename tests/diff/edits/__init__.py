@@ -2,7 +2,7 @@
 diff must report.
 
 Each edit takes a set of ICDs and a random source. It returns the edited set with the
-codes that must and those that may be reported, or ``None`` if it does not apply.
+codes that must and the codes that may be reported, or ``None`` if it does not apply.
 """
 
 from __future__ import annotations

@@ -15,8 +15,8 @@ from icdgen.naming import words
 
 @dataclass(frozen=True)
 class Edited:
-    """An edited set of ICDs. The diff must report the codes in ``must``, may report
-    those in ``may``, and no others. ``at`` names the message or enumeration.
+    """An edited set of ICDs. The diff must report the codes in ``must``, may report the
+    codes in ``may``, and no others. ``at`` names the message or enumeration.
     """
 
     icd: Icd
@@ -149,7 +149,7 @@ def members_of(icd: Icd) -> list[tuple[Enum, int]]:
 
 
 def is_plain(field: Scalar) -> bool:
-    """Return whether a field is a number on whose range nothing else depends."""
+    """Return whether a field is a number whose range no other property depends on."""
     return (
         field.type in ("uint", "int")
         and field.const is None

@@ -1,5 +1,5 @@
-"""Random ICDs like those in manuals: long names, gaps, long tables, every type and kind
-of formula.
+"""Random ICDs like the ICDs of manuals: long names, gaps, long tables, every type and
+kind of formula.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Documents like those of vendors of sensors and modems, each with its ICD and the
+"""Documents in the style of vendors of sensors and modems, each with its ICD and the
 profile that it needs.
 """
 

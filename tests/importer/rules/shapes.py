@@ -1,7 +1,7 @@
-"""Documents in the shapes of real ones, each with a profile of at most 15 lines and
-what it must give.
+"""Documents with the features of real ones, each with a profile of at most 15 lines and
+the expected result.
 
-Names, numbers and texts are invented; the shapes are those of data sheets and protocol
+Names, numbers and texts are invented. The features come from data sheets and protocol
 descriptions of battery management, sensors, receivers and motor controllers.
 """
 

@@ -150,7 +150,7 @@ class OwnedField(NamedTuple):
 
 
 def _owned_fields(owner: Any, head: str = "", is_made: bool = False) -> Iterator[OwnedField]:
-    """Yield the fields of a message, including those of structs and counters without a
+    """Yield the fields of a message, including fields of structs and counters without a
     field.
 
     Missing elements of a variable-length array read as 0, and with ``is_made`` are
@@ -194,7 +194,7 @@ def _full_tail(message: Any) -> Any:
 
 def _cut(message: Message, word: str) -> None:
     """Drop the elements that do not belong to the frame. The counter gives their
-    number, or ``word`` if there is none.
+    number, or ``word`` without a counter.
     """
     tail: Any = message.TAIL
     if tail.counter:
