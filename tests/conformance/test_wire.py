@@ -52,12 +52,12 @@ def ask(testee, **request) -> dict:
     return json.loads(answer)
 
 
-def differences(asked, testee) -> list[tuple[dict, str]]:
+def differences(exchanges, testee) -> list[tuple[dict, str]]:
     """The requests that are answered otherwise than the reference does."""
-    answers = testee.ask([json.dumps(request).encode() for request, _ in asked])
+    answers = testee.ask([json.dumps(request).encode() for request, _ in exchanges])
     compared = (
         (request, difference(expected, answer))
-        for (request, expected), answer in zip(asked, answers, strict=True)
+        for (request, expected), answer in zip(exchanges, answers, strict=True)
     )
     return [(request, what) for request, what in compared if what]
 
@@ -79,26 +79,28 @@ def test_every_golden_vector_is_answered_as_demanded(icd, name):
 
 
 @pytest.mark.parametrize("name", ["c-sanitizers", "python"])
-def test_a_protocol_that_is_odd_in_every_point_is_spoken_as_well(odd_icd, name):
+def test_an_unusual_protocol_is_answered_like_the_reference(odd_icd, name):
     vectors, language = wire.vectors_of(odd_icd), all_languages()[name]
     (result,) = wire.run([language], odd_icd, vectors)
     assert result.differences == 0, "\n".join(result.shown)
     source = random.Random(7)
-    asked = list(wire_changed.requests(odd_icd, vectors, source, 1000))
-    assert differences(asked, Testee(build(language, odd_icd))) == []
+    exchanges = list(wire_changed.requests(odd_icd, vectors, source, 1000))
+    assert differences(exchanges, Testee(build(language, odd_icd))) == []
 
 
 def test_changed_requests_are_answered_like_the_reference(icd, testee):
     source = random.Random(7)
-    asked = list(wire_changed.requests(icd, wire.vectors_of(icd), source, 3000))
-    assert differences(asked, testee) == []
-    assert {request["op"] for request, _ in asked} == set(reference.OPS) - FRAMED_OPS
+    exchanges = list(wire_changed.requests(icd, wire.vectors_of(icd), source, 3000))
+    assert differences(exchanges, testee) == []
+    assert {request["op"] for request, _ in exchanges} == set(
+        reference.OPS
+    ) - FRAMED_OPS
 
 
-def test_streams_packets_and_scripts_that_nobody_thought_of(icd, testee):
+def test_random_requests_are_answered_like_the_reference(icd, testee):
     requests = wire_random.requests(icd, 60)
-    asked = [(request, reference.answer(icd, request)) for request in requests]
-    assert differences(asked, testee) == []
+    exchanges = [(request, reference.answer(icd, request)) for request in requests]
+    assert differences(exchanges, testee) == []
 
 
 @settings(max_examples=150, deadline=None)
@@ -112,8 +114,8 @@ def test_events_do_not_depend_on_how_the_stream_was_cut(testee, data):
     pieces = [
         stream[a:b].hex() for a, b in zip([0, *cuts], [*cuts, len(stream)], strict=True)
     ]
-    whole = ask(testee, op="uart_events", chunks=[stream.hex()])
-    assert whole["ok"] and ask(testee, op="uart_events", chunks=pieces) == whole
+    uncut = ask(testee, op="uart_events", chunks=[stream.hex()])
+    assert uncut["ok"] and ask(testee, op="uart_events", chunks=pieces) == uncut
 
 
 def test_noise_of_a_megabyte_before_a_frame_costs_nothing_but_that_noise(testee):

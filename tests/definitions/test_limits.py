@@ -77,8 +77,8 @@ def xtce_nested(depth: int) -> str:
 
 
 def xtce_systems(depth: int) -> str:
-    whole = xtce_files.system(xtce_files.container("A"))
-    return '<SpaceSystem name="a">' * depth + whole + "</SpaceSystem>" * depth
+    system = xtce_files.system(xtce_files.container("A"))
+    return '<SpaceSystem name="a">' * depth + system + "</SpaceSystem>" * depth
 
 
 XTCE: dict[str, Case] = {
