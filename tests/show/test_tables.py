@@ -67,7 +67,7 @@ def test_a_pipe_and_a_file_have_no_width(tmp_path):
 
 
 def test_a_pipe_never_pays_for_rich():
-    script = "import sys; from icdgen.tables import *; render([Column('a')], [('b' * 999,)]); print('rich' in sys.modules)"
+    script = "import sys; from icdgen.tables import *; render_table([Column('a')], [('b' * 999,)]); print('rich' in sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
