@@ -1,4 +1,4 @@
-"""Packages that the tests of a session share."""
+"""Fixtures: generated packages that the tests of a session share."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.python.packages import Package
 
 @pytest.fixture(scope="session")
 def shipped(tmp_path_factory) -> Package:
-    """Made from the ICDs of the project."""
+    """Package generated from the ICDs of the project."""
     return packages.write(
         packages.shipped(), tmp_path_factory.mktemp("shipped"), "icdgen_messages"
     )
@@ -18,7 +18,7 @@ def shipped(tmp_path_factory) -> Package:
 
 @pytest.fixture(scope="session")
 def odd(tmp_path_factory) -> Package:
-    """Made from an ICD with odd layouts and hostile names."""
+    """Package generated from an ICD with odd layouts and hostile names."""
     return packages.write(
         packages.read(packages.ODD), tmp_path_factory.mktemp("odd"), "odd_messages"
     )
@@ -26,12 +26,12 @@ def odd(tmp_path_factory) -> Package:
 
 @pytest.fixture(scope="session")
 def ordered(tmp_path_factory) -> Package:
-    """Made from ICDs of all bit and byte orders."""
+    """Package generated from ICDs of all bit and byte orders."""
     icd = packages.read(orders.write(tmp_path_factory.mktemp("orders")))
     return packages.write(icd, tmp_path_factory.mktemp("ordered"), "ordered_messages")
 
 
 @pytest.fixture(params=["shipped", "odd", "ordered"])
 def package(request) -> Package:
-    """Each of them."""
+    """Run the test once for each of the three packages."""
     return request.getfixturevalue(request.param)

@@ -26,7 +26,7 @@ _TYPES = (
 
 
 def write(folder: Path, lengths: range) -> Path:
-    """The file."""
+    """Write the ICD to a file in ``folder`` and return its path."""
     messages, enums = (
         [],
         [{"name": "Mode", "members": [_member(length) for length in lengths]}],
@@ -63,12 +63,12 @@ def _member(length: int) -> dict:
 
 def _message(name: str, id: int, types, length: int) -> dict:
     fields, at = [], 0
-    for number, one in enumerate(types):
-        if one["bits"] not in (1, 3, 11, 12, 13):
+    for number, keys in enumerate(types):
+        if keys["bits"] not in (1, 3, 11, 12, 13):
             at = -(-at // 8) * 8
         suffix = "x" * (number + 1)
-        fields.append({"at": at, "name": "f" * (length - len(suffix)) + suffix, **one})
-        at += one["bits"]
+        fields.append({"at": at, "name": "f" * (length - len(suffix)) + suffix, **keys})
+        at += keys["bits"]
     return {
         "name": name,
         "kind": "telemetry",

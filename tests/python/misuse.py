@@ -1,4 +1,4 @@
-"""What a type checker must find. One mistake a line."""
+"""Mistakes that a type checker must report, one on each line with ``# expect``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Generates Python packages from ICDs and imports them."""
+"""Generate Python packages from ICDs, write them to a folder and import them.
+
+The fixtures of `tests.python.conftest` provide the packages that most tests share.
+"""
 
 from __future__ import annotations
 
@@ -24,14 +27,14 @@ ODD = Path(__file__).with_name("odd")
 
 @dataclass(eq=False)
 class Package:
-    """A generated package, where it is, and the ICDs that it was made from."""
+    """A generated package, its folder and name, and the ICDs it was generated from."""
 
     icd: Icd
     folder: Path
     name: str
 
     def answer(self, request: bytes) -> dict[str, Any]:
-        """What the testee answers, by way of the front, within this program."""
+        """Return the testee's answer to a request, computed in this process."""
         return self._front.answer(request)
 
     @cached_property
@@ -39,18 +42,18 @@ class Package:
         return Front(plan(self.icd), self.module("_testee").answer)
 
     def module(self, name: str = "") -> ModuleType:
-        """The package, or a module of it."""
+        """Import the package, or the module ``name`` of it."""
         return import_module(f"{self.name}.{name}" if name else self.name)
 
 
 @cache
 def shipped() -> Icd:
-    """The ICDs of the project, errata applied."""
+    """ICDs of the project, errata applied."""
     return read(ROOT / "icd")
 
 
 def read(path: Path) -> Icd:
-    """ICDs in which nothing is wrong."""
+    """Load the ICDs of a path; fail if `icdgen` reports an error in them."""
     loaded = load([path])
     assert not [f for f in loaded.findings if f.severity == "error"], loaded.findings
     return loaded.icd
@@ -62,14 +65,14 @@ def renderer() -> Renderer:
 
 
 def files(icd: Icd, name: str = "icdgen_messages") -> dict[str, str]:
-    """Path and text of every generated file."""
+    """Return the text of every generated file by its path."""
     return {
         str(path): text for path, text in PythonBackend(name).files(icd, renderer())
     }
 
 
 def testee(icd: Icd, name: str) -> dict[str, str]:
-    """What answers questions about the package, from within."""
+    """Return the files of the testee: the module `_testee`, which answers requests."""
     backend = PythonTesteeBackend(name)
     return {
         str(path): text
@@ -78,7 +81,7 @@ def testee(icd: Icd, name: str) -> dict[str, str]:
 
 
 def write(icd: Icd, folder: Path, name: str) -> Package:
-    """The package in ``folder``, ready to be imported under ``name``."""
+    """Write a package and its testee to ``folder``, importable as ``name``."""
     for path, text in (files(icd, name) | testee(icd, name)).items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")

@@ -1,8 +1,7 @@
-"""The generated package as the client of `tests.sim.harness`: python -m
-tests.python.sim_client HOST PORT SIZE
+"""Client of `tests.sim.harness` that uses the generated Python package.
 
-``generated/python`` has to be on the path; the ICD itself is asked only which
-telecommands restart the node.
+Usage: ``python -m tests.python.sim_client HOST PORT SIZE``, with ``generated/python``
+on the path. The client reads the ICD only to learn which telecommands restart the node.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ TRIES = 20
 
 
 class Failed(Exception):
-    """Not what the harness expects."""
+    """The node did not do what the harness expects."""
 
 
 def main(host: str, number: str, size: str) -> int:
@@ -57,29 +56,33 @@ def main(host: str, number: str, size: str) -> int:
             for _, message in LINK.TELEMETRY.items():
                 device.get(message)
             every_setting(device)
-            insist(device, LOGS())  # none during the transfers
+            send_until_acknowledged(device, LOGS())  # none during the transfers
             file = {"type": 2, "counter": 1, "size": int(size)}
             data = transfer(device, lambda: Procedure(LINK, "download", file)).data
             every_telecommand(device)
-            started(device, Session(BOOT, port.sendall, read, settings=FAST), data)
+            start_program(
+                device, Session(BOOT, port.sendall, read, settings=FAST), data
+            )
         except (Failed, FailedError, RefusedError, ReplyTimeoutError) as failure:
             print(type(failure).__name__, failure, file=sys.stderr)
             return 1
     return 0
 
 
-def started(device: Session, boot: Session, data: bytes) -> None:
-    """Uploads a program, copies it to where it can run, and starts it.
+def start_program(device: Session, boot: Session, data: bytes) -> None:
+    """Upload a program, copy it to where it can run, and start it.
 
-    The boot program runs.
+    The boot program is running when this is called.
     """
     data = data[: BOOT.procedures["upload"].blocks.most]
     to, program = {"destination": DESTINATION}, {"program": DESTINATION}
     transfer(boot, lambda: Procedure(BOOT, "upload", to, data))
     transfer(boot, lambda: Procedure(BOOT, "program_copy", program))
     running = {"program": RUNNING}
-    told = transfer(boot, lambda: Procedure(BOOT, "program_information", running))
-    size, value = told.output("size"), told.output("checksum")
+    information = transfer(
+        boot, lambda: Procedure(BOOT, "program_information", running)
+    )
+    size, value = information.output("size"), information.output("checksum")
     if (size, value) != (len(data), checksum(BOOT, "crc16", data)):
         raise Failed(
             f"the program that can run has {size} bytes and the checksum {value:#x}"
@@ -96,25 +99,26 @@ def identity(device: Session):
 def every_setting(device: Session) -> None:
     for _, message in LINK.TELECOMMANDS.items():
         if message.KIND == "configuration":
-            made = numbered(message)
-            insist(device, made)
-            if device.get(message) != made:
+            setting = with_distinct_numbers(message)
+            send_until_acknowledged(device, setting)
+            if device.get(message) != setting:
                 raise Failed(f"{message.NAME} is not what was set")
 
 
-def numbered(message: type[Message]) -> Message:
-    """A message in which hardly two numbers have the same value, so that none can be
-    taken for another.
+def with_distinct_numbers(message: type[Message]) -> Message:
+    """Make a message in which nearly all numbers differ.
+
+    A node that mixes up two fields then returns another message.
     """
-    made = message.from_bytes(message().to_bytes())
+    numbers = message.from_bytes(message().to_bytes())
     for number, info in enumerate(message.FIELDS, 1):
         if info.type in ("uint", "int") and info.const is None:
-            setattr(made, info.attribute, number % (1 << info.bits - 1))
-    return made
+            setattr(numbers, info.attribute, number % (1 << info.bits - 1))
+    return numbers
 
 
 def every_telecommand(device: Session) -> None:
-    others = [
+    messages = [
         message
         for _, message in LINK.TELECOMMANDS.items()
         if message.KIND != "configuration"
@@ -124,25 +128,25 @@ def every_telecommand(device: Session) -> None:
         for m in facts.of(ICD, ICD.node("cubeacp")).telecommands.values()
         if m.expects_reset
     }
-    for message in sorted(others, key=lambda message: message.NAME in resets):
+    for message in sorted(messages, key=lambda message: message.NAME in resets):
         if message.NAME in resets:
             device.send(message())
             if identity(device).matches:
                 raise Failed(f"{message.NAME} does not restart the node")
         elif message.ACKNOWLEDGED:
             try:
-                insist(device, message())
+                send_until_acknowledged(device, message())
             except RefusedError as error:
                 if error.event.reason is None:
                     raise
         else:
-            silent(device, message)
+            send_without_acknowledge(device, message)
 
 
-def silent(device: Session, message: type[Message]) -> None:
-    """The node does not acknowledge it, but remembers that it was the last one.
+def send_without_acknowledge(device: Session, message: type[Message]) -> None:
+    """Send a telecommand that the node does not acknowledge until it arrives.
 
-    If it is lost nobody notices.
+    The node reports the id of its last telecommand, which shows whether it arrived.
     """
     polled = LINK.bus_exchanges["i2c"].command
     last = LINK.TELEMETRY[polled.poll.telemetry]
@@ -154,9 +158,10 @@ def silent(device: Session, message: type[Message]) -> None:
     raise Failed(f"{message.NAME} does not arrive")
 
 
-def insist(device: Session, message: Message) -> None:
-    """Sends it until it is acknowledged, or refused twice: an acknowledge may be
-    spoilt.
+def send_until_acknowledged(device: Session, message: Message) -> None:
+    """Send a message until it is acknowledged, or refused twice.
+
+    A damaged acknowledge may look like a refusal.
     """
     refused = 0
     for _ in range(TRIES):
@@ -170,8 +175,9 @@ def insist(device: Session, message: Message) -> None:
 
 
 def transfer(device: Session, procedure):
-    """A spoilt acknowledge may look like a refusal, which ends a transfer: only what
-    happens each time is believed.
+    """Run a procedure, and repeat it while it is refused.
+
+    A damaged acknowledge may look like a refusal, which ends a transfer.
     """
     for _ in range(TRIES):
         try:

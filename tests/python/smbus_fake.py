@@ -1,4 +1,4 @@
-"""What of smbus2 a session uses, with a node behind it that is as quick as the bus."""
+"""Test double of smbus2: the part that a session uses, and a node on the bus."""
 
 from __future__ import annotations
 
@@ -27,12 +27,13 @@ class i2c_msg:
 class SMBus:
     """A bus with one node.
 
-    ``errors`` are raised first, one a transaction; ``parts`` is how many each had.
+    The first transactions raise ``errors``, one each. ``parts`` counts the messages of
+    each later transaction.
     """
 
     def __init__(self, acp: Any, errors: list[int]) -> None:
         self.acp, self.errors, self.last, self.telecommands = acp, errors, 0, []
-        self.asked: int | None = None
+        self.requested: int | None = None
         self.parts: list[int] = []
 
     def i2c_rdwr(self, *parts: i2c_msg) -> None:
@@ -43,15 +44,15 @@ class SMBus:
             raise OSError(errno.ENXIO, "no such node")
         for part in parts:
             if part.is_read:
-                part.data = self.frame(self.asked)[: len(part.data)]
+                part.data = self.frame(self.requested)[: len(part.data)]
             elif len(part.data) == 1 and part.data[0] in self.acp.LINK.TELEMETRY:
-                self.asked = part.data[0]
+                self.requested = part.data[0]
             else:
                 self.last = part.data[0]
                 self.telecommands.append(part.data)
 
     def frame(self, id: int) -> bytes:
-        """What the node has under an id."""
+        """Telemetry frame that the node returns for an id."""
         kind = self.acp.LINK.TELEMETRY[id]
         if kind is self.acp.TelecommandAcknowledge:
             return kind(last_tc_id=self.last, processed_flag=True).to_bytes()

@@ -1,5 +1,6 @@
-"""Arrays in Python: tuples of raw and of physical values, in errors, JSON and columns.
-`tests/every_language/arrays.py` has what all languages do with arrays.
+"""Array fields are tuples of raw and physical values, in errors, JSON and columns.
+
+`tests/every_language/arrays.py` tests what all languages have in common.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ def test_physical_values_of_an_array_are_read_and_set_together(everything):
 
 
 @pytest.mark.parametrize(
-    ("attribute", "value", "said"),
+    ("attribute", "value", "message_text"),
     [
         ("temperatures", (1, 2), "temperatures takes 3 values, not (1, 2)"),
         ("temperatures", 7, "temperatures takes 3 values, not 7"),
@@ -88,14 +89,14 @@ def test_physical_values_of_an_array_are_read_and_set_together(everything):
         ),
     ],
 )
-def test_what_an_array_cannot_hold_is_refused_and_the_element_is_named(
-    package, everything, attribute, value, said
+def test_an_array_value_out_of_range_is_refused_and_the_element_is_named(
+    package, everything, attribute, value, message_text
 ):
     message = everything()
     setattr(message, attribute, value)
     with pytest.raises(package.module().RangeError) as caught:
         message.to_bytes()
-    assert said in str(caught.value)
+    assert message_text in str(caught.value)
 
 
 def test_nans_in_arrays_keep_their_bits(everything):
@@ -107,12 +108,12 @@ def test_nans_in_arrays_keep_their_bits(everything):
     assert message.to_bytes() == bytes(frame)
 
 
-def test_json_brings_an_array_back(everything):
+def test_an_array_survives_a_round_trip_through_json(everything):
     message = everything.from_bytes(bytes(11) + bytes(24) + bytes(range(8)))
     assert everything.from_json(message.to_json()) == message
 
 
-def test_columns_of_arrays_have_two_dimensions_and_tables_lists(everything):
+def test_arrays_are_columns_of_two_dimensions_and_lists_in_tables(everything):
     frames = [
         bytes((7 * number + index) % 128 for index in range(43)) for number in range(5)
     ]
@@ -129,7 +130,7 @@ def test_columns_of_arrays_have_two_dimensions_and_tables_lists(everything):
     ):
         assert columns[name].shape == (5, len(getattr(messages[0], name)))
         assert [tuple(row) for row in columns[name].tolist()] == [
-            getattr(one, name) for one in messages
+            getattr(message, name) for message in messages
         ]
     table = everything.decode_table(b"".join(frames))
     assert (
@@ -137,11 +138,11 @@ def test_columns_of_arrays_have_two_dimensions_and_tables_lists(everything):
         == "fixed_size_list<item: double>[3]"
     )
     assert [tuple(row) for row in table["temperatures_c"].to_pylist()] == [
-        one.temperatures_c for one in messages
+        message.temperatures_c for message in messages
     ]
 
 
-def test_what_is_told_of_an_array_is_told_of_its_elements(everything):
+def test_field_information_of_an_array_has_one_part_for_each_element(everything):
     info = everything.FIELDS[0]
     assert (info.attribute, info.at, info.bits, info.elements) == (
         "temperatures",
@@ -149,7 +150,7 @@ def test_what_is_told_of_an_array_is_told_of_its_elements(everything):
         16,
         3,
     )
-    assert [(one.attribute, one.at) for one in info.parts] == [
+    assert [(part.attribute, part.at) for part in info.parts] == [
         ("temperatures[0]", 0),
         ("temperatures[1]", 16),
         ("temperatures[2]", 32),

@@ -1,4 +1,7 @@
-"""Many frames at once give the same values as one by one."""
+"""`decode_many` and `decode_table` give the same values as decoding frame by frame.
+
+The tests compare the columns with `from_bytes` for each frame, and check their types.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ WIDTHS = {"bool": "?", "uint": "u", "enum": "u", "int": "i", "float": "f"}
 
 
 @pytest.mark.parametrize("physical", [False, True])
-def test_columns_hold_what_single_frames_hold(package, physical):
+def test_columns_have_the_values_of_single_frames(package, physical):
     for case in cases(package):
         if not case.message.length:
             continue
@@ -29,7 +32,7 @@ def test_columns_hold_what_single_frames_hold(package, physical):
             (*case.cls.FIELDS, *case.cls.VIEWS), columns.items(), strict=True
         ):
             is_raw = info.type == "bytes" or (info.type == "text" and not physical)
-            found = [bytes(row) for row in column] if is_raw else column.tolist()
+            values = [bytes(row) for row in column] if is_raw else column.tolist()
             if info.curve and physical:
                 assert _bits(column.tolist()) == _bits([row[name] for row in rows]), (
                     case.message.name,
@@ -42,15 +45,16 @@ def test_columns_hold_what_single_frames_hold(package, physical):
                     name,
                 )
             else:
-                assert found == [row[name] for row in rows], (case.message.name, name)
+                assert values == [row[name] for row in rows], (case.message.name, name)
 
 
 def _bits(values: list) -> list[bytes]:
-    return [
-        struct.pack("<d", value)
-        for one in values
-        for value in (one if hasattr(one, "__len__") else (one,))
-    ]
+    """Return the bytes of all doubles, so that NaN and -0.0 compare exactly."""
+    packed = []
+    for value in values:
+        elements = value if hasattr(value, "__len__") else (value,)
+        packed += [struct.pack("<d", element) for element in elements]
+    return packed
 
 
 def test_columns_have_the_smallest_native_type(package):
@@ -84,7 +88,7 @@ def test_no_frames_give_empty_columns(angles):
     assert [len(column) for column in angles.decode_many(b"").values()] == [0, 0, 0]
 
 
-def test_a_part_of_a_frame_is_refused(shipped, angles):
+def test_an_incomplete_frame_is_refused(shipped, angles):
     with pytest.raises(shipped.module().LengthError) as caught:
         angles.decode_many(bytes(13))
     assert (caught.value.expected, caught.value.actual) == (18, 13)
@@ -104,7 +108,7 @@ def test_columns_do_not_change_with_the_buffer(angles):
     assert columns["estimated_roll_angle"].tolist() == [1]
 
 
-def test_any_buffer_will_do(angles):
+def test_columns_are_decoded_from_any_buffer(angles):
     frame = struct.pack("<3h", 1, 2, 3)
     array = numpy.frombuffer(frame * 2, dtype="<i2")
     for buffer in (
@@ -143,7 +147,7 @@ def test_tables_carry_units_and_names(shipped):
     assert values["0"] == acp.ConModeSelect(0).label
 
 
-def test_tables_hold_every_type(package):
+def test_tables_store_every_type(package):
     for case in cases(package):
         if not raw_fields_in(case.message.layout):
             continue
@@ -161,7 +165,7 @@ def test_tables_hold_every_type(package):
                 )
 
 
-def test_without_numpy_the_error_says_so(shipped):
+def test_the_error_names_numpy_if_it_is_not_installed(shipped):
     code = (
         "import sys; sys.modules['numpy'] = None; from icdgen_messages.cubeacp import EstimatedAttitudeAngles as angles\n"
         "try: angles.decode_many(bytes(6))\nexcept ImportError as error: print(error.name)"

@@ -1,6 +1,4 @@
-"""Messages are dataclasses for whoever looks at them as such: the standard library,
-pydantic, msgspec, JSON.
-"""
+"""Messages are dataclasses for the standard library, pydantic, msgspec and JSON."""
 
 from __future__ import annotations
 
@@ -21,19 +19,19 @@ def acp(shipped):
 
 
 def raw(message) -> dict:
-    """What a message is made of: its values but for those of views."""
+    """Return the values of all fields, without overlay fields."""
     return {info.attribute: getattr(message, info.attribute) for info in message.FIELDS}
 
 
-def test_defaults_stand_in_the_fields(package):
+def test_dataclass_fields_have_the_defaults_of_a_new_message(package):
     for case in cases(package):
-        fresh = case.cls()
+        message = case.cls()
         for field in dataclasses.fields(case.cls):
-            assert field.default == getattr(fresh, field.name)
+            assert field.default == getattr(message, field.name)
             assert field.kw_only and field.init
 
 
-def test_patterns_match_by_place_and_by_name(acp):
+def test_patterns_match_by_position_and_by_name(acp):
     assert acp.EstimatedAttitudeAngles.__match_args__ == (
         "estimated_roll_angle", "estimated_pitch_angle", "estimated_yaw_angle",
     )  # fmt: skip
@@ -44,10 +42,12 @@ def test_patterns_match_by_place_and_by_name(acp):
             pytest.fail("nothing matched")
 
 
-def test_the_signature_tells_raw_and_physical_names(acp):
+def test_the_signature_lists_raw_and_physical_names(acp):
     parameters = inspect.signature(acp.EstimatedAttitudeAngles).parameters
     assert [*parameters][:2] == ["estimated_roll_angle", "estimated_roll_angle_deg"]
-    assert {one.kind for one in parameters.values()} == {inspect.Parameter.KEYWORD_ONLY}
+    assert {parameter.kind for parameter in parameters.values()} == {
+        inspect.Parameter.KEYWORD_ONLY
+    }
     assert (
         parameters["estimated_roll_angle_deg"].default,
         parameters["estimated_roll_angle"].default,
@@ -65,7 +65,7 @@ def test_a_subclass_has_the_signature_of_its_own_init(acp):
     assert Mine(1.5).estimated_roll_angle == 150
 
 
-def test_a_message_is_made_of_raw_or_of_physical_values(acp):
+def test_a_message_is_created_from_raw_or_physical_values(acp):
     assert (
         acp.EstimatedAttitudeAngles(estimated_roll_angle_deg=1.5).estimated_roll_angle
         == 150
@@ -90,7 +90,7 @@ def test_values_are_replaced_raw_or_physical(acp):
     assert angles.estimated_roll_angle == 7
 
 
-def test_dictionaries_and_json_bring_messages_back(package):
+def test_messages_survive_a_round_trip_through_dictionaries_and_json(package):
     for case in cases(package):
         for frame in frames(case.message.length, 2):
             message = case.cls.from_bytes(frame)
@@ -117,7 +117,7 @@ def test_json_has_digits_for_bytes_and_numbers_for_enumerations(acp):
 
 
 @pytest.mark.parametrize(
-    ("data", "told"),
+    ("data", "message_text"),
     [
         ("[1]", "no object"),
         ("{", "no JSON"),
@@ -129,8 +129,8 @@ def test_json_has_digits_for_bytes_and_numbers_for_enumerations(acp):
         ('{"estimated_roll_angle_deg": null}', "takes -327.68 to 327.67"),
     ],
 )
-def test_json_that_is_no_message_is_refused(shipped, acp, data, told):
-    with pytest.raises(shipped.module().IcdError, match=told):
+def test_invalid_json_is_refused(shipped, acp, data, message_text):
+    with pytest.raises(shipped.module().IcdError, match=message_text):
         acp.EstimatedAttitudeAngles.from_json(data)
 
 

@@ -1,4 +1,4 @@
-"""Derived values in Python: read-only attributes, dictionaries and columns."""
+"""Derived values are read-only attributes, and values in dictionaries and columns."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def derived(odd):
     return odd.module("odd").Derived
 
 
-def test_it_is_not_set(derived):
+def test_a_derived_value_cannot_be_set(derived):
     message = derived()
     with pytest.raises(AttributeError):
         message.longitude_deg = 1.0
@@ -21,7 +21,7 @@ def test_it_is_not_set(derived):
         derived(longitude_deg=1.0)
 
 
-def test_it_stands_behind_the_fields_of_a_message(derived):
+def test_derived_values_follow_the_fields_of_a_message(derived):
     message = derived(lon=5)
     assert [info.attribute for info in derived.VIEWS] == [
         "low",
@@ -39,9 +39,9 @@ def test_it_stands_behind_the_fields_of_a_message(derived):
 
 
 @pytest.mark.parametrize("physical", [False, True])
-def test_columns_have_the_same_bits(derived, physical):
-    chance = Random(1)
-    frames = [chance.randbytes(24) for _ in range(300)] + [bytes(24)]
+def test_columns_of_derived_values_have_the_bits_of_single_frames(derived, physical):
+    generator = Random(1)
+    frames = [generator.randbytes(24) for _ in range(300)] + [bytes(24)]
     columns = derived.decode_many(b"".join(frames), physical=physical)
     for name in ("longitude_deg", "power_v", "class_name", "mixed"):
         expected = [

@@ -1,5 +1,6 @@
-"""The words of an ICD are words in docstrings too, for Sphinx and for tools that read
-Markdown.
+"""Text of an ICD appears literally in docstrings, for Sphinx and for Markdown tools.
+
+Words that look like markup of reStructuredText or Markdown are escaped.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ BLOCK = re.compile(r"[-+*] |\.\. |>>>|:\w|\d+[.)] ")
 
 
 @pytest.mark.parametrize("word", hostile_words.WORDS)
-def test_a_docstring_has_no_markup_and_says_what_the_icd_says(word):
+def test_a_docstring_shows_the_text_of_the_icd_without_markup(word):
     text = ast.literal_eval(
         docstring(0, [prose(f"{word} {word}"), "Further words."])
     ).splitlines()[0]
@@ -32,7 +33,7 @@ def test_a_docstring_has_no_markup_and_says_what_the_icd_says(word):
     assert re.sub(r"\\(.)", r"\1", text) == f"{word} {word}"
 
 
-def test_every_file_is_python_and_every_word_stays_in_its_docstring(tmp_path):
+def test_every_file_is_valid_python_with_hostile_words_in_the_icd(tmp_path):
     icd = read_unchecked(hostile_words.write(tmp_path))
     for path, text in PythonBackend().files(icd, Renderer("python")):
         if path.suffix == ".py":

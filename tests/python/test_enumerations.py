@@ -1,4 +1,4 @@
-"""Enumerations are integers with names, and keep values that have none."""
+"""Enumerations are integers with names, and store values that have no name."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ def test_every_member_has_the_value_and_the_name_of_the_manual(package):
         module = package.module(node.name)
         assert list(module.ENUMS) == [enum.name for enum in node.enums]
         for enum in node.enums:
-            found = getattr(module, module.ENUMS[enum.name])
-            assert [(member.value, member.label) for member in found] == [
+            enumeration = getattr(module, module.ENUMS[enum.name])
+            assert [(member.value, member.label) for member in enumeration] == [
                 (end.value, m.name) for m in enum.members for end in m.ends
             ]
-            assert all(member.is_known for member in found)
+            assert all(member.is_known for member in enumeration)
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def mode(shipped):
 
 
 @pytest.mark.parametrize("value", [77, 255, 256, 65535, (1 << 64) - 1])
-def test_unknown_values_are_kept(mode, value):
+def test_unknown_values_are_stored(mode, value):
     unknown = mode(value)
     assert unknown == value
     assert isinstance(unknown, mode)
@@ -50,7 +50,7 @@ def test_unknown_values_are_kept(mode, value):
         (2, "UNKNOWN_2"),
     ],
 )
-def test_unknown_values_of_a_signed_enumeration_are_kept(odd, value, name):
+def test_unknown_values_of_a_signed_enumeration_are_stored(odd, value, name):
     signed = odd.module("odd").Signed
     assert (signed(value), signed(value).name, signed(value).is_known) == (
         value,
@@ -58,12 +58,12 @@ def test_unknown_values_of_a_signed_enumeration_are_kept(odd, value, name):
         False,
     )
     assert pickle.loads(pickle.dumps(signed(value))) == value
-    for beyond in (1 << 63, -(1 << 63) - 1):
+    for value_out_of_range in (1 << 63, -(1 << 63) - 1):
         with pytest.raises(ValueError):
-            signed(beyond)
+            signed(value_out_of_range)
 
 
-def test_values_of_a_range_have_its_name_and_are_kept(odd):
+def test_values_of_a_range_have_its_name_and_are_stored(odd):
     wide = odd.module("odd").WideEnum
     assert (wide.A_RANGE_FIRST, wide.A_RANGE_LAST) == (100, 200)
     assert [wide(value).label for value in (99, 100, 101, 199, 200, 201)] == [
@@ -77,17 +77,17 @@ def test_values_of_a_range_have_its_name_and_are_kept(odd):
     ) is wide(150)
 
 
-def test_unknown_bytes_are_made_once(mode):
+def test_an_unknown_value_is_always_the_same_object(mode):
     assert mode(200) is mode(200)
 
 
 @pytest.mark.parametrize("value", [-1, 1 << 64, "1", None, 1.5])
-def test_what_is_no_value_of_any_enumeration_is_refused(mode, value):
+def test_values_that_no_enumeration_can_store_are_refused(mode, value):
     with pytest.raises(ValueError):
         mode(value)
 
 
-def test_members_print_alike_in_every_python(mode):
+def test_members_are_printed_identically_by_every_python(mode):
     member = next(iter(mode))
     assert str(member) == f"{member}" == str(member.value)
     assert repr(member) == f"<ConModeSelect.{member.name}: {member.value}>"

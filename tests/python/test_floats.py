@@ -27,14 +27,14 @@ def test_infinities_that_cancel_out_are_not_mistaken_for_nans(shipped):
     assert message.to_bytes() == frame
 
 
-def test_a_nan_made_by_a_program_is_encoded_as_the_usual_one(shipped):
+def test_a_nan_of_a_program_is_encoded_as_the_default_nan(shipped):
     cls = shipped.module("cubemag").PrimaryMagnetometerMeasurement
     assert cls(x_axis=math.nan).to_bytes()[:4] == struct.pack("<I", 0x7FC00000)
 
 
 @pytest.mark.parametrize("bits", [0x7FF0000000000001, 0xFFF0000010000000])
-def test_a_payload_too_fine_for_32_bits_stays_a_nan(shipped, bits):
+def test_a_nan_whose_payload_needs_64_bits_stays_a_nan_in_32_bits(shipped, bits):
     floats = shipped.module("_floats")
-    found = floats.float32_bits(floats.float64(bits))
-    assert math.isnan(floats.float32(found))
-    assert found >> 31 == bits >> 63
+    float_bits = floats.float32_bits(floats.float64(bits))
+    assert math.isnan(floats.float32(float_bits))
+    assert float_bits >> 31 == bits >> 63

@@ -1,4 +1,7 @@
-"""Messages of framed links, as classes of the generated package."""
+"""Messages of framed links are classes of the generated package.
+
+The tests use `stream_encode`, `StreamDecoder`, `Client` and `Session` of the package.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ def events(stream, node, message):
     return decoder.feed(stream.stream_encode(node.LINK, message, direction="telemetry"))
 
 
-def test_the_data_tell_which_message_of_a_shared_id_it_is(node, stream):
+def test_the_data_distinguish_the_messages_of_a_shared_id(node, stream):
     for message in (
         node.ShortLevel(level=7),
         node.LevelOfTheFirst(level=1000),
@@ -51,7 +54,7 @@ def test_the_data_tell_which_message_of_a_shared_id_it_is(node, stream):
         assert event.of(node.Least) is None
 
 
-def test_data_that_are_of_no_message_of_their_id_have_no_class(package, node, stream):
+def test_data_that_match_no_message_of_their_id_have_no_class(package, node, stream):
     line = stream.stream_encode(node.LINK, 3, bytes(2), direction="telemetry")
     (event,) = stream.StreamDecoder(node.LINK).feed(line)
     assert (event.event, event.kind, event.of(node.ShortLevel)) == (
@@ -63,7 +66,7 @@ def test_data_that_are_of_no_message_of_their_id_have_no_class(package, node, st
         node.decode_telemetry(event.id, event.data)
 
 
-def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_on_framed_links(
+def test_optional_fields_and_variable_length_arrays_of_structs_travel_on_framed_links(
     node, stream
 ):
     choice = node.Choice(mode=1, level=5)
@@ -77,55 +80,53 @@ def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_on_fra
     assert event.of(node.Points) == points
 
 
-def test_requests_that_different_telemetry_answers_are_under_way_together(
-    package, node, stream
-):
+def test_requests_with_different_replies_are_in_flight_together(package, node, stream):
     settings = node.LINK.settings._replace(in_flight=2)
     client = package.module("wire.client").Client(node.LINK, settings=settings)
     events = package.module("wire.events")
-    asked = node.Order()
-    client.send(0, asked, reply=node.ShortLevel)
-    client.send(1, asked, reply=node.Least)
-    # Its reply could be taken for that of the first, so it waits.
-    client.send(2, asked, reply=node.LevelOfTheFirst)
+    order = node.Order()
+    client.send(0, order, reply=node.ShortLevel)
+    client.send(1, order, reply=node.Least)
+    # Its reply has the id of the first reply, so the client waits before it sends it.
+    client.send(2, order, reply=node.LevelOfTheFirst)
     assert client.output() and client.output() and not client.output()
 
-    def comes(now, message):
+    def receive(now, message):
         return client.received(
             now, stream.stream_encode(node.LINK, message, direction="telemetry")
         )
 
-    (done,) = comes(3, node.Least())
+    (done,) = receive(3, node.Least())
     assert (
         isinstance(done, events.Done) and done.message == node.Least() and client.busy
     )
-    (other,) = comes(4, node.LevelOfTheFirst(level=1000))
+    (other,) = receive(4, node.LevelOfTheFirst(level=1000))
     assert isinstance(other, events.Arrived)
-    (done,) = comes(5, node.ShortLevel(level=7))
+    (done,) = receive(5, node.ShortLevel(level=7))
     assert (
         isinstance(done, events.Done)
         and done.of(node.ShortLevel).level == 7
         and done.reply == 3
     )
     assert client.output() and not client.output()
-    (done,) = comes(6, node.LevelOfTheFirst(level=1000))
+    (done,) = receive(6, node.LevelOfTheFirst(level=1000))
     assert isinstance(done, events.Done) and done.message.level == 1000
     assert not client.busy and client.deadline is None
 
 
-def test_a_request_is_given_up_alone_and_what_was_not_taken_is_not_sent(package, node):
+def test_cancelling_a_request_leaves_the_other_requests_in_flight(package, node):
     client = package.module("wire.client").Client(node.LINK, requests=2)
-    asked = node.Order()
-    client.send(0, asked, reply=node.ShortLevel)
+    order = node.Order()
+    client.send(0, order, reply=node.ShortLevel)
     client.send(1, node.Points(), reply=node.Least)
     with pytest.raises(package.module("wire.errors").BusyError, match="as many"):
-        client.send(2, asked)
+        client.send(2, order)
     client.cancel("telecommand", node.Points.IDS[0])
     assert client.output() and not client.output() and client.busy
     assert client.tick(client.deadline) and not client.busy
 
 
-ASKING = """\
+SESSION_PROGRAM = """\
 from collections.abc import Iterator
 
 from icdgen_messages.receiver import LINK, NavigationClock, PollClock, SetMessageRate
@@ -145,24 +146,24 @@ session = Session(LINK, sent.append, read, on_event=heard.append, clock=lambda: 
 clock: NavigationClock = session.get(NavigationClock)
 assert clock.clock_bias == 1 and session.answer(PollClock(), NavigationClock).clock_bias == 2
 session.send(SetMessageRate(rate=5))
-asked = [event for line in sent for event in StreamDecoder(LINK, "telecommand").feed(line)]
-assert [event.kind for event in asked] == [PollClock, PollClock, SetMessageRate]
-came: Iterator[NavigationClock] = session.messages(NavigationClock, seconds=2)
-assert [one.clock_bias for one in came] == [3, 3, 3, 3]
+requests = [event for line in sent for event in StreamDecoder(LINK, "telecommand").feed(line)]
+assert [event.kind for event in requests] == [PollClock, PollClock, SetMessageRate]
+clocks: Iterator[NavigationClock] = session.messages(NavigationClock, seconds=2)
+assert [message.clock_bias for message in clocks] == [3, 3, 3, 3]
 assert all(isinstance(event, Arrived) and event.of(NavigationClock) for event in heard) and len(heard) == 4
 """
 
 
-def test_a_session_asks_is_answered_and_listens_and_its_types_are_known(tmp_path):
+def test_a_session_requests_and_receives_messages_with_static_types(tmp_path):
     packages.write(
         packages.read(ROOT / "examples" / "links" / "ubx.yaml"),
         tmp_path,
         "icdgen_messages",
     )
-    (tmp_path / "asking.py").write_text(ASKING)
+    (tmp_path / "program.py").write_text(SESSION_PROGRAM)
     for command in (
-        [sys.executable, "asking.py"],
-        [sys.executable, "-m", "mypy", "--strict", "asking.py"],
+        [sys.executable, "program.py"],
+        [sys.executable, "-m", "mypy", "--strict", "program.py"],
     ):
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr

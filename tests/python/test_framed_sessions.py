@@ -1,5 +1,6 @@
-"""Several requests under way in sessions over framed links, over a port that answers as
-the test says.
+"""Sessions over framed links handle several requests that are in flight together.
+
+A test double of the device sends the telemetry that each test lists.
 """
 
 from __future__ import annotations
@@ -46,8 +47,10 @@ def wire(package):
 
 
 class Device:
-    """Notes which telecommands came, and sends what it is told to when so many have
-    come.
+    """Test double of a device: records telecommands and sends prepared telemetry.
+
+    ``answers`` are pairs of a count and a message: the device sends the message once it
+    has received so many telecommands.
     """
 
     def __init__(self, wire, node, *answers):
@@ -61,14 +64,15 @@ class Device:
         self.asked += [event.kind for event in self.decoder.feed(data)]
 
     def due(self):
-        """What is to be sent by now."""
-        due = [
-            self.line(message)
-            for count, message in self.answers
-            if count <= len(self.asked)
-        ]
-        self.answers = [one for one in self.answers if one[0] > len(self.asked)]
-        return b"".join(due)
+        """Return the bytes to send now, and remove their messages from ``answers``."""
+        due, later = b"", []
+        for count, message in self.answers:
+            if count <= len(self.asked):
+                due += self.line(message)
+            else:
+                later.append((count, message))
+        self.answers = later
+        return due
 
     def read(self, seconds):
         self.now += min(seconds, 0.1)
@@ -80,7 +84,7 @@ class Device:
         )
 
 
-def test_several_are_asked_for_before_the_first_is_answered(wire, node):
+def test_several_requests_are_sent_before_the_first_reply(wire, node):
     answers = (
         (2, node.NavigationStatus(fix=3)),
         (2, node.EndOfEpoch()),
@@ -95,21 +99,21 @@ def test_several_are_asked_for_before_the_first_is_answered(wire, node):
     assert session.get_several() == ()
 
 
-def test_the_same_is_asked_for_again_when_it_has_come(wire, node):
+def test_a_repeated_request_is_sent_after_the_first_reply(wire, node):
     device = Device(
         wire,
         node,
         (1, node.NavigationClock(clock_bias=1)),
         (2, node.NavigationClock(clock_bias=2)),
     )
-    found = device.session().get_several(node.NavigationClock, node.NavigationClock)
-    assert [one.clock_bias for one in found] == [1, 2] and device.asked == [
+    clocks = device.session().get_several(node.NavigationClock, node.NavigationClock)
+    assert [clock.clock_bias for clock in clocks] == [1, 2] and device.asked == [
         node.PollClock,
         node.PollClock,
     ]
 
 
-def test_a_reply_that_does_not_come_is_told_of_and_nothing_goes_on(wire, node):
+def test_a_missing_reply_is_an_error_and_ends_all_requests(wire, node):
     device = Device(wire, node, (2, node.NavigationClock()))
     session = device.session(settings=node.LINK.settings._replace(retries=0))
     with pytest.raises(wire.ReplyTimeoutError, match="Navigation Status"):
@@ -117,7 +121,7 @@ def test_a_reply_that_does_not_come_is_told_of_and_nothing_goes_on(wire, node):
     assert not session.client.busy and session.client.deadline is None
 
 
-def test_a_port_that_fails_ends_all(wire, node):
+def test_an_error_of_the_port_ends_all_requests(wire, node):
     def read(seconds):
         raise OSError("unplugged")
 
@@ -128,7 +132,7 @@ def test_a_port_that_fails_ends_all(wire, node):
 
 
 class Writer:
-    """The part of a stream's writer that a session uses; the device answers at once."""
+    """Test double of a stream's writer; the device responds at once."""
 
     def __init__(self, device, reader):
         self.device, self.reader = device, reader
@@ -143,7 +147,7 @@ class Writer:
 
 
 def talk(wire, node, talking, *answers, **settings):
-    """Runs ``talking(session, device, reader)``, which may take five seconds."""
+    """Run ``talking(session, device, reader)``, which may take five seconds."""
 
     async def run():
         reader = asyncio.StreamReader()
@@ -158,7 +162,7 @@ def talk(wire, node, talking, *answers, **settings):
     asyncio.run(run())
 
 
-def test_tasks_ask_together_and_one_listens(wire, node):
+def test_several_tasks_request_messages_while_another_receives_telemetry(wire, node):
     async def talking(session, device, reader):
         heard = []
 
@@ -172,12 +176,12 @@ def test_tasks_ask_together_and_one_listens(wire, node):
         await asyncio.sleep(0)
         reader.feed_data(device.line(node.EndOfEpoch(time_of_week=1)))
         get = session.get
-        clock, status, again = await asyncio.gather(
+        clock, status, next_clock = await asyncio.gather(
             get(node.NavigationClock),
             get(node.NavigationStatus),
             get(node.NavigationClock),
         )
-        assert (clock.clock_bias, status.fix, again.clock_bias) == (1, 3, 2)
+        assert (clock.clock_bias, status.fix, next_clock.clock_bias) == (1, 3, 2)
         assert device.asked == [node.PollClock, node.PollStatus, node.PollClock]
         reader.feed_data(device.line(node.EndOfEpoch(time_of_week=2)))
         await listening
@@ -188,9 +192,7 @@ def test_tasks_ask_together_and_one_listens(wire, node):
     talk(wire, node, talking, *answers, (3, node.NavigationClock(clock_bias=2)))
 
 
-def test_a_program_that_is_slow_has_the_last_messages_and_hears_how_many_it_lost(
-    wire, node
-):
+def test_a_slow_program_gets_the_last_messages_and_the_number_of_lost_ones(wire, node):
     async def talking(session, device, reader):
         reported, taken = [], []
         session._on_event = reported.append
@@ -218,8 +220,10 @@ def test_a_program_that_is_slow_has_the_last_messages_and_hears_how_many_it_lost
 
 
 @pytest.mark.parametrize("given_up", [0, 1])
-def test_a_task_that_is_given_up_leaves_the_others_going_on(wire, node, given_up):
-    """Whichever of them reads for both."""
+def test_cancelling_a_task_does_not_end_the_requests_of_other_tasks(
+    wire, node, given_up
+):
+    """Either task may be the one that reads for both tasks."""
 
     async def talking(session, device, reader):
         kinds = node.NavigationClock, node.NavigationStatus
@@ -238,36 +242,36 @@ def test_a_task_that_is_given_up_leaves_the_others_going_on(wire, node, given_up
     talk(wire, node, talking)
 
 
-def test_each_task_is_told_of_its_own_time_out(wire, node):
+def test_each_task_gets_its_own_time_out_error(wire, node):
     async def talking(session, device, reader):
-        found = await asyncio.gather(
+        results = await asyncio.gather(
             session.get(node.NavigationClock),
             session.get(node.NavigationStatus),
             return_exceptions=True,
         )
-        assert found[0] == node.NavigationClock() and isinstance(
-            found[1], wire.ReplyTimeoutError
+        assert results[0] == node.NavigationClock() and isinstance(
+            results[1], wire.ReplyTimeoutError
         )
 
     talk(wire, node, talking, (2, node.NavigationClock()), reply_timeout=30, retries=1)
 
 
-def test_all_are_told_that_the_connection_is_closed(wire, node):
+def test_every_task_gets_an_error_when_the_connection_is_closed(wire, node):
     async def talking(session, device, reader):
         asyncio.get_running_loop().call_later(0.01, reader.feed_eof)
         kinds = node.NavigationClock, node.NavigationStatus
-        found = await asyncio.gather(*map(session.get, kinds), return_exceptions=True)
-        assert [type(one) for one in found] == [ConnectionResetError] * 2
+        errors = await asyncio.gather(*map(session.get, kinds), return_exceptions=True)
+        assert [type(error) for error in errors] == [ConnectionResetError] * 2
 
     talk(wire, node, talking)
 
 
-def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
+def test_the_documented_example_runs_and_passes_the_type_checker(package, tmp_path):
     text = documents.text("reference/wire-framing")
     (shown,) = re.findall(
         r"```python\n(clock, status = session.get_several.*?)```", text, re.S
     )
-    first, rest = shown.split("\n", 1)
+    first, following = shown.split("\n", 1)
     program = f"""\
     import asyncio
     from several_messages.receiver import LINK, NavigationClock, NavigationStatus
@@ -288,7 +292,7 @@ def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
     assert (clock.clock_bias, status.fix, len(sent)) == (5, 3, 2)
     """
     (tmp_path / "several.py").write_text(
-        "from __future__ import annotations\n\n" + textwrap.dedent(program) + rest
+        "from __future__ import annotations\n\n" + textwrap.dedent(program) + following
     )
     environment = {"PYTHONPATH": str(package.folder), "MYPYPATH": str(package.folder)}
     for command in ("several.py",), ("-m", "mypy", "--strict", "several.py"):
@@ -302,16 +306,16 @@ def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
         assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_over_other_links_several_are_asked_for_in_turn(shipped):
+def test_requests_over_other_links_are_sent_in_turn(shipped):
     acp, wire = shipped.module("cubeacp"), shipped.module("wire")
     kinds = acp.EstimatedAttitudeAngles, acp.CurrentAdcsState
-    decoder, asked, replies = wire.UartDecoder(acp.LINK), [], []
+    decoder, requested, replies = wire.UartDecoder(acp.LINK), [], []
 
     def write(data):
         for event in decoder.feed(data):
             assert not replies  # to the request before
-            asked.append(event.message[0])
-            (kind,) = (one for one in kinds if event.message[0] == one.ID)
+            requested.append(event.message[0])
+            (kind,) = (kind for kind in kinds if event.message[0] == kind.ID)
             replies.append(
                 wire.uart_encode(acp.LINK, bytes([kind.ID]) + kind().to_bytes())
             )
@@ -320,4 +324,4 @@ def test_over_other_links_several_are_asked_for_in_turn(shipped):
         acp.LINK, write, lambda seconds: replies.pop() if replies else b""
     )
     assert session.get_several(*kinds) == tuple(kind() for kind in kinds)
-    assert asked == [kind.ID for kind in kinds]
+    assert requested == [kind.ID for kind in kinds]

@@ -1,7 +1,7 @@
-"""Generated decoders and encoders in Python, for integers of every width at every bit;
-types and attributes of all messages.
+"""Generated classes decode and encode integers of every width at every bit position.
 
-`tests/conformance` compares shipped and odd ICDs with the reference codec.
+The tests compare them with the reference codec, and check types and attributes of all
+messages. `tests/conformance` does this for shipped and odd ICDs in all languages.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ def test_every_frame_decodes_to_the_reference_values_and_back(ordered):
         for frame in frames(message.length):
             expected = codec.decode(node, message, frame)
             decoded = cls.from_bytes(frame)
-            found = {
+            values = {
                 name: raw(ordered, info, getattr(decoded, info.attribute))
                 for name, info in infos.items()
             }
-            assert found == expected, (message.name, frame.hex())
+            assert values == expected, (message.name, frame.hex())
             assert decoded.to_bytes() == codec.encode(node, message, expected), (
                 message.name,
                 frame.hex(),
@@ -66,12 +66,12 @@ def test_any_buffer_decodes(package):
             )
 
 
-def test_a_raw_value_that_does_not_fit_is_refused_by_name(odd):
+def test_the_error_about_an_invalid_raw_value_names_the_field(odd):
     range_error = odd.module().RangeError
     for case in cases(odd):
         for field in raw_fields_in(case.message.layout):
             attribute = case.infos[field.name].attribute
-            for value in unfit(field):
+            for value in invalid_values(field):
                 message = case.cls()
                 setattr(message, attribute, value)
                 with pytest.raises(range_error) as caught:
@@ -80,8 +80,8 @@ def test_a_raw_value_that_does_not_fit_is_refused_by_name(odd):
                 assert attribute in str(caught.value)
 
 
-def unfit(field) -> list[object]:
-    """Raw values that the field cannot hold."""
+def invalid_values(field) -> list[object]:
+    """Raw values that are out of range for a field, or of a wrong type."""
     if field.type == "float":
         return [
             None,
@@ -114,7 +114,7 @@ def unfit(field) -> list[object]:
     ]
 
 
-def test_classes_say_what_the_icd_says(package):
+def test_classes_have_the_properties_of_the_icd(package):
     for node, message, cls in cases(package):
         assert (node.name, message.name, message.kind, message.length) == (
             cls.NODE,

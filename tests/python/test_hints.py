@@ -1,5 +1,6 @@
-"""What the README promises of annotations: all of what is public can be evaluated, with
-the oldest Python too.
+"""Annotations of all public classes and functions can be evaluated at run time.
+
+The README of the generated package promises this for the oldest supported Python too.
 """
 
 from __future__ import annotations
@@ -33,27 +34,27 @@ def functions_of(owner):
             yield getattr(member, "__func__", member)
 
 
-def evaluate(one):
+def evaluate(member):
     global seen
     seen += 1
     try:
-        typing.get_type_hints(one)
+        typing.get_type_hints(member)
     except Exception as error:
-        failed.append(f"{one.__module__}.{one.__qualname__}: {error!r}")
+        failed.append(f"{member.__module__}.{member.__qualname__}: {error!r}")
 
 
-for found in pkgutil.walk_packages(icdgen_messages.__path__, "icdgen_messages."):
-    module = import_module(found.name)
-    for name, one in list(vars(module).items()):
-        if getattr(one, "__module__", None) != module.__name__ or name.startswith("_"):
+for info in pkgutil.walk_packages(icdgen_messages.__path__, "icdgen_messages."):
+    module = import_module(info.name)
+    for name, member in list(vars(module).items()):
+        if getattr(member, "__module__", None) != module.__name__ or name.startswith("_"):
             continue
-        if inspect.isclass(one):
-            evaluate(one)
-            for function in functions_of(one):
+        if inspect.isclass(member):
+            evaluate(member)
+            for function in functions_of(member):
                 if inspect.isfunction(function) and function.__module__ == module.__name__:
                     evaluate(function)
-        elif inspect.isfunction(inspect.unwrap(one)):
-            evaluate(inspect.unwrap(one))
+        elif inspect.isfunction(inspect.unwrap(member)):
+            evaluate(inspect.unwrap(member))
 assert not failed, "\\n".join([f"{len(failed)} of {seen}:", *failed])
 node = import_module("icdgen_messages.cubeacp")
 message, hints = node.TELEMETRY[146], typing.get_type_hints
@@ -68,6 +69,7 @@ print(seen)
 
 
 def works(interpreter: str) -> bool:
+    """Check that an interpreter starts; one of pyenv may be an empty shim."""
     try:
         return (
             subprocess.run([interpreter, "-c", ""], capture_output=True).returncode == 0
@@ -77,7 +79,7 @@ def works(interpreter: str) -> bool:
 
 
 def oldest() -> list[str]:
-    """Python 3.9, where there is one."""
+    """Python 3.9, if it is installed: the oldest version that is supported."""
     installed = sorted(
         map(str, (Path.home() / ".pyenv/versions").glob("3.9*/bin/python"))
     )
@@ -85,7 +87,7 @@ def oldest() -> list[str]:
 
 
 @pytest.mark.parametrize("interpreter", [sys.executable, *oldest()])
-def test_annotations_of_all_that_is_public_can_be_evaluated(interpreter):
+def test_annotations_of_all_public_members_can_be_evaluated(interpreter):
     done = subprocess.run(
         [interpreter, "-c", PROGRAM],
         cwd=ROOT / "generated/python",
@@ -96,7 +98,7 @@ def test_annotations_of_all_that_is_public_can_be_evaluated(interpreter):
     assert int(done.stdout) > 450
 
 
-def test_importing_a_node_loads_nothing_that_only_annotations_name():
+def test_importing_a_node_does_not_load_modules_that_only_annotations_use():
     program = "import sys, icdgen_messages.cubeacp as node; before = {*sys.modules}; assert node.decode_telemetry; "
     program += "assert not [name for name in ('icdgen_messages._base', 'typing') if name in before], before"
     command = [sys.executable, "-S", "-c", program]

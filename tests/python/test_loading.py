@@ -1,4 +1,7 @@
-"""Types are loaded when they are first used."""
+"""Modules of a generated package are loaded when they are first used.
+
+Most tests run a short program in a new interpreter and list the modules it has loaded.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ import pytest
 
 
 def run(package, code: str) -> str:
-    """What a fresh interpreter prints."""
+    """Run code in a new interpreter and return its output."""
     code = f"import sys; sys.dont_write_bytecode = True\n{code}"
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=package.folder, capture_output=True, text=True
@@ -35,21 +38,21 @@ def test_importing_a_node_loads_no_message(shipped):
     )
 
 
-def test_a_star_brings_all_that_a_node_has(shipped):
+def test_a_star_import_brings_all_public_names_of_a_node(shipped):
     code = (
         "from icdgen_messages.cubeacp import *\nfrom icdgen_messages import cubeacp\n"
     )
-    told = run(
+    output = run(
         shipped,
         f"{code}print(EstimatedAttitudeAngles.ID, TELEMETRY[146] is EstimatedAttitudeAngles, NAME)",
     )
-    assert told == "146 True cubeacp"
+    assert output == "146 True cubeacp"
     missing = "print([n for n in dir(cubeacp) if n[0] != '_' and n not in globals()])"
     assert run(shipped, f"{code}{missing}") == "['TYPE_CHECKING', 'annotations']"
 
 
 def test_every_public_module_lists_its_names_as_a_literal(package):
-    """Type checkers and editors read it there; and all of it can be imported."""
+    """Type checkers and editors read ``__all__``. Every name in it can be imported."""
     files = [
         file
         for file in (package.folder / package.name).rglob("*.py")
@@ -58,12 +61,14 @@ def test_every_public_module_lists_its_names_as_a_literal(package):
     for file in files:
         tree = ast.parse(file.read_text(encoding="utf-8"))
         (names,) = (
-            ast.literal_eval(one.value) for one in tree.body if _assigns(one, "__all__")
+            ast.literal_eval(node.value)
+            for node in tree.body
+            if _assigns(node, "__all__")
         )
         defined = {
-            one.name
-            for one in tree.body
-            if isinstance(one, (ast.ClassDef, ast.FunctionDef))
+            node.name
+            for node in tree.body
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef))
         }
         assert {name for name in defined if name[0] != "_"} <= {*names} and len(
             {*names}
@@ -77,8 +82,9 @@ def test_every_public_module_lists_its_names_as_a_literal(package):
 
 
 def _is_public(file: Path) -> bool:
-    """Whether users import from it: the package, its nodes, the wire layer; or it holds
-    the types and links of a node.
+    """Report whether users import from a file: the package, a node, the wire layer.
+
+    This includes the modules that define the types and links of a node.
     """
     return file.name == "_link.py" or (file.parent.name == "_types") != (
         file.name == "__init__.py"
@@ -103,7 +109,7 @@ def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
     )
 
 
-def test_every_name_of_the_wire_layer_is_listed_and_there(shipped):
+def test_every_listed_name_of_the_wire_layer_exists(shipped):
     wire = shipped.module("wire")
     assert {*wire._HOME} == {*wire.__all__}
     for name in wire.__all__:
@@ -121,7 +127,7 @@ def test_only_nodes_with_a_protocol_have_a_link(shipped, ordered):
         assert not hasattr(ordered.module(node.name), "LINK")
 
 
-def test_importing_a_node_needs_nothing_that_is_slow_to_import(shipped):
+def test_importing_a_node_loads_no_slow_modules(shipped):
     code = (
         "before = set(sys.modules)\nimport icdgen_messages.cubeacp\n"
         "print({'typing', 'dataclasses', 'enum', 'inspect', 're'} & (set(sys.modules) - before))"
@@ -135,7 +141,7 @@ def test_a_message_loads_itself_and_its_enumerations(shipped):
     assert "cubeacp._types.current_adcs_state" not in run(shipped, code)
 
 
-def test_dispatch_loads_what_it_needs(shipped):
+def test_dispatch_loads_only_the_message_of_the_id(shipped):
     code = f"from icdgen_messages import cubeacp\ncubeacp.decode_telemetry(146, bytes(6))\n{LOADED}"
     assert "cubeacp._types.estimated_attitude_angles" in run(shipped, code)
     assert "cubeacp._types.adcs_configuration" not in run(shipped, code)
@@ -146,7 +152,7 @@ def test_numpy_is_not_needed_until_columns_are(shipped):
     assert run(shipped, code) == "False"
 
 
-def test_every_name_is_listed_and_there(package):
+def test_every_listed_name_of_a_node_exists(package):
     for node in package.icd.nodes:
         module = package.module(node.name)
         for name in module._HOMES:
@@ -154,7 +160,7 @@ def test_every_name_is_listed_and_there(package):
             assert name == "LINK" or getattr(module, name).__name__ == name
 
 
-def test_a_name_that_is_not_there_is_an_attribute_error(shipped):
+def test_a_missing_name_is_an_attribute_error(shipped):
     with pytest.raises(AttributeError, match="Nonsense"):
         _ = shipped.module("cubeacp").Nonsense
     with pytest.raises(AttributeError, match="nonsense"):

@@ -59,7 +59,7 @@ def test_fields_are_given_by_name_only(acp):
         acp.EstimatedAttitudeAngles(1, 2, 3)
 
 
-def test_dictionaries_hold_raw_or_physical_values(acp):
+def test_dictionaries_have_raw_or_physical_values(acp):
     angles = acp.EstimatedAttitudeAngles(estimated_roll_angle=-1234)
     assert angles.as_dict() == {
         "estimated_roll_angle": -1234,
@@ -85,15 +85,15 @@ def test_dispatch_finds_the_message_of_an_id(shipped):
         module = shipped.module(node.name)
         for message in shipped.icd.messages_of(node):
             if message.telecommand_id is not None:
-                found = module.decode_telecommand(
+                decoded = module.decode_telecommand(
                     message.telecommand_id, bytes(message.length)
                 )
-                assert (message.name, message.node) == (found.NAME, found.NODE)
+                assert (message.name, message.node) == (decoded.NAME, decoded.NODE)
             if message.telemetry_id is not None:
-                found = module.decode_telemetry(
+                decoded = module.decode_telemetry(
                     message.telemetry_id, bytes(message.length)
                 )
-                assert (message.name, message.node) == (found.NAME, found.NODE)
+                assert (message.name, message.node) == (decoded.NAME, decoded.NODE)
 
 
 @pytest.mark.parametrize("id", [-1, 256, 10**30, "146", None, [], 1.5])
@@ -107,7 +107,7 @@ def test_dispatch_refuses_unknown_ids(shipped, acp, id):
     )
 
 
-def test_there_is_one_family_of_errors(shipped):
+def test_all_errors_derive_from_icd_error_and_can_be_pickled(shipped):
     package = shipped.module()
     for error in (
         package.LengthError("A", 6, 5),
@@ -115,6 +115,6 @@ def test_there_is_one_family_of_errors(shipped):
         package.UnknownIdError("n", "telemetry", 1),
     ):
         assert isinstance(error, package.IcdError)
-        again = pickle.loads(pickle.dumps(error))
-        assert str(again) == str(error)
-        assert vars(again) == vars(error)
+        copied_error = pickle.loads(pickle.dumps(error))
+        assert str(copied_error) == str(error)
+        assert vars(copied_error) == vars(error)

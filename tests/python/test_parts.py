@@ -1,4 +1,7 @@
-"""Parts of composite messages are messages of their own, which one handler serves."""
+"""Parts of composite messages are ordinary messages, so one handler serves them all.
+
+`iter_parts` and `from_part` extract them from a composite message.
+"""
 
 from __future__ import annotations
 
@@ -27,28 +30,28 @@ def class_of(package, message: Message):
     return getattr(package.module(message.node), camel(words))
 
 
-def test_all_parts_come_in_the_order_of_the_frame(package):
+def test_all_parts_are_yielded_in_the_order_of_the_frame(package):
     for case in composites.cases(package.icd, 1):
-        begins = {one.message: one.at for one in case.message.contains}
+        positions = {part.message: part.at for part in case.message.contains}
         composite = class_of(package, case.message).from_bytes(case.frame)
-        found = [(type(part), part.to_bytes()) for part in composite.iter_parts()]
-        expected = [(class_of(package, one.part), one.frame) for one in case.parts]
-        assert sorted(found, key=str) == sorted(expected, key=str)
-        if len(begins) == len(found):
-            assert [kind.NAME for kind, _ in found] == sorted(
-                begins, key=begins.__getitem__
+        parts = [(type(part), part.to_bytes()) for part in composite.iter_parts()]
+        expected = [(class_of(package, part.part), part.frame) for part in case.parts]
+        assert sorted(parts, key=str) == sorted(expected, key=str)
+        if len(positions) == len(parts):
+            assert [kind.NAME for kind, _ in parts] == sorted(
+                positions, key=positions.__getitem__
             )
 
 
-def test_what_it_does_not_repeat_is_refused(package):
+def test_a_message_that_the_composite_does_not_contain_is_refused(package):
     for case in composites.cases(package.icd, 1):
         composite = class_of(package, case.message).from_bytes(case.frame)
-        known = class_of(package, case.parts[0].part)
+        part_class = class_of(package, case.parts[0].part)
         with pytest.raises(ValueError, match="does not repeat"):
             type(composite).from_part(composite)
         with pytest.raises(ValueError, match="does not repeat"):
-            known.from_part(known())
+            part_class.from_part(part_class())
         for index in (-1, 9):
             with pytest.raises(ValueError, match=f"has none with the index {index}"):
-                known.from_part(composite, index)
-        assert list(known().iter_parts()) == []
+                part_class.from_part(composite, index)
+        assert list(part_class().iter_parts()) == []

@@ -1,4 +1,7 @@
-"""Physical values are correctly rounded, and setting one finds the nearest raw value."""
+"""Physical values are correctly rounded, and are set to the nearest raw value.
+
+The reference codec computes the expected values with exact fractions.
+"""
 
 from __future__ import annotations
 
@@ -12,21 +15,21 @@ from icdgen.icd.places import raw_fields_in
 from tests.python.reference import cases
 
 
-def distinct(package, widest: int):
-    """One field of each scale, type and width up to ``widest`` bits."""
-    found = {}
+def distinct_fields(package, widest: int):
+    """Return one field of each scale, type and width up to ``widest`` bits."""
+    fields = {}
     for case in cases(package):
         for field in raw_fields_in(case.message.layout):
             if field.scale and field.bits <= widest:
-                found.setdefault((field.scale, field.type, field.bits), (case, field))
-    return found.values()
+                fields.setdefault((field.scale, field.type, field.bits), (case, field))
+    return fields.values()
 
 
 @pytest.mark.parametrize("name", ["odd", "ordered"])
-def test_any_double_finds_the_raw_value_that_the_reference_finds(name, request):
+def test_any_double_is_set_to_the_raw_value_of_the_reference_codec(name, request):
     package = request.getfixturevalue(name)
     range_error = package.module().RangeError
-    for case, field in distinct(package, 64):
+    for case, field in distinct_fields(package, 64):
         info = case.infos[field.name]
         message = case.cls()
         for value in doubles(field):
@@ -89,19 +92,21 @@ def test_ties_go_to_the_even_raw_value_of_the_exact_quotient(shipped):
         assert angles.estimated_roll_angle == raw
 
 
-def test_what_is_no_number_is_refused(shipped):
+def test_a_physical_value_that_is_not_a_number_is_refused(shipped):
     angles = shipped.module("cubeacp").EstimatedAttitudeAngles()
     for value in ("1", None, b"", 1j, [], 10**400):
         with pytest.raises(shipped.module().RangeError):
             angles.estimated_roll_angle_deg = value
 
 
-def test_a_physical_value_in_a_raw_attribute_is_told_where_it_belongs(shipped):
+def test_the_error_about_a_physical_value_in_a_raw_attribute_names_the_physical_one(
+    shipped,
+):
     angles = shipped.module("cubeacp").EstimatedAttitudeAngles(
         estimated_roll_angle=12.5
     )
-    said = r"^estimated_roll_angle takes integers .* \(estimated_roll_angle_deg takes physical values\), not 12\.5$"
-    with pytest.raises(shipped.module().RangeError, match=said):
+    message_text = r"^estimated_roll_angle takes integers .* \(estimated_roll_angle_deg takes physical values\), not 12\.5$"
+    with pytest.raises(shipped.module().RangeError, match=message_text):
         angles.to_bytes()
 
 
@@ -109,22 +114,22 @@ def physical_name(info) -> str:
     return info.physical or info.attribute
 
 
-def test_messages_are_made_from_physical_values(package):
+def test_messages_are_created_from_physical_values(package):
     for case in cases(package):
         if not any(field.scale for field in case.message.fields):
             continue
         message = case.cls.from_bytes(bytes(case.message.length))
         values = message.as_dict(physical=True)
-        again = case.cls.from_physical(
+        rebuilt = case.cls.from_physical(
             **{name: values[name] for name in map(physical_name, case.cls.FIELDS)}
         )
-        assert again == message
+        assert rebuilt == message
         assert case.cls.from_physical() == case.cls()
 
 
-def test_whole_numbers_of_parts_of_a_unit_are_exact_and_come_back(package):
+def test_integers_of_a_smaller_unit_are_exact_and_survive_a_round_trip(package):
     seen = 0
-    for case, field in distinct(package, 64):
+    for case, field in distinct_fields(package, 64):
         info = case.infos[field.name]
         if not info.whole:
             continue
@@ -145,7 +150,7 @@ def test_whole_numbers_of_parts_of_a_unit_are_exact_and_come_back(package):
     assert seen > 10 or package.name == "ordered_messages"
 
 
-def test_whole_numbers_are_set_to_the_nearest_raw_value(shipped):
+def test_integers_of_a_smaller_unit_are_set_to_the_nearest_raw_value(shipped):
     angles = shipped.module("cubeacp").EstimatedAttitudeAngles()
     for value, raw in ((15, 2), (25, 2), (-327685, -32768), (327674, 32767)):
         angles.estimated_roll_angle_mdeg = value

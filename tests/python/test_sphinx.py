@@ -1,5 +1,6 @@
-"""Sphinx makes pages of a generated package without a warning, and finds what stands
-beside each attribute.
+"""Sphinx documents a generated package without warnings, with all attributes.
+
+The tests build HTML pages with `sphinx.ext.autodoc` and search their text.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ SHIPPED = (
 
 
 def pages(package, modules, folder) -> str:
-    """The text of the page of these modules; fails at a warning."""
+    """Build the page of some modules and return its text; fail if Sphinx warns."""
     source, out = folder / "source", folder / "out"
     source.mkdir()
     names = [package.name, *(f"{package.name}.{module}" for module in modules)]
@@ -39,8 +40,10 @@ def pages(package, modules, folder) -> str:
     (source / "index.rst").write_text(
         "Messages\n########\n\n" + "\n".join(sections), encoding="utf-8"
     )
-    told = CONFIGURATION.format(folder=str(package.folder), package=package.name)
-    (source / "conf.py").write_text(told, encoding="utf-8")
+    configuration = CONFIGURATION.format(
+        folder=str(package.folder), package=package.name
+    )
+    (source / "conf.py").write_text(configuration, encoding="utf-8")
     command = [
         sys.executable,
         "-m",
@@ -67,14 +70,14 @@ def test_sphinx_makes_pages_of_the_shipped_package(shipped, tmp_path):
     assert "Request telemetry or read a configuration." in text
 
 
-def test_examples_in_docstrings_are_true(shipped):
-    found = [doctest.testmod(shipped.module(name)) for name in ("_errors", "_codec")]
-    assert [one.failed for one in found] == [0, 0] and all(
-        one.attempted for one in found
+def test_examples_in_docstrings_pass_doctest(shipped):
+    results = [doctest.testmod(shipped.module(name)) for name in ("_errors", "_codec")]
+    assert [result.failed for result in results] == [0, 0] and all(
+        result.attempted for result in results
     )
 
 
-def test_sphinx_takes_hostile_descriptions_of_an_icd_as_text(odd, tmp_path):
+def test_sphinx_shows_hostile_descriptions_of_an_icd_as_text(odd, tmp_path):
     modules = [
         f"{node.name}._types.{path.stem}"
         for node in odd.icd.nodes

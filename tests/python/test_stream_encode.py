@@ -1,4 +1,4 @@
-"""What `stream_encode` takes: a slip of the pen is no message that is sent otherwise."""
+"""`stream_encode` refuses unknown header values, such as a misspelt keyword."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
-"""Structs in Python: dictionaries, JSON, dataclasses and columns of messages that have
-them. `tests/every_language/structs.py` has what all languages do with structs.
+"""Messages with structs convert to dictionaries, JSON, dataclasses and columns.
+
+`tests/every_language/structs.py` tests what all languages have in common.
 """
 
 from __future__ import annotations
@@ -32,16 +33,16 @@ def demo(package):
 
 
 def test_each_new_message_has_structs_of_its_own(demo):
-    one, other = demo.View(), demo.View()
-    assert one == other and one.pairs[0].version == 7
-    one.best.azimuth = 3
-    one.pairs[0].both[0].quality = 1
+    view, other_view = demo.View(), demo.View()
+    assert view == other_view and view.pairs[0].version == 7
+    view.best.azimuth = 3
+    view.pairs[0].both[0].quality = 1
     assert (
-        other.best.azimuth,
-        other.pairs[0].both[0].quality,
-        one.pairs[0].both[1].quality,
+        other_view.best.azimuth,
+        other_view.pairs[0].both[0].quality,
+        view.pairs[0].both[1].quality,
     ) == (0, 0, 0)
-    assert one != other
+    assert view != other_view
     assert demo.View(best=demo.Satellite(azimuth_deg=-2.0)).best.azimuth == -4
 
 
@@ -64,7 +65,7 @@ def test_dictionaries_and_json_nest(demo):
     assert demo.Satellite.from_json(view.best.to_json()) == view.best
 
 
-def test_what_takes_dataclasses_takes_structs(demo):
+def test_structs_work_as_dataclasses(demo):
     view = demo.View.from_bytes(FRAME)
     assert dataclasses.asdict(view)["pairs"][0]["both"][0]["signals"] == (3, 4)
     assert dataclasses.replace(view.best, quality=1).quality == 1
@@ -75,7 +76,7 @@ def test_what_takes_dataclasses_takes_structs(demo):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message_text"),
     [
         (
             lambda v: setattr(v.best, "quality", 16),
@@ -97,12 +98,14 @@ def test_what_takes_dataclasses_takes_structs(demo):
         (lambda v: setattr(v, "pairs", 3), "pairs takes 1 values, not 3"),
     ],
 )
-def test_what_a_struct_cannot_hold_is_refused_and_named(package, demo, change, said):
+def test_a_value_out_of_range_in_a_struct_is_refused_and_named(
+    package, demo, change, message_text
+):
     view = demo.View.from_bytes(FRAME)
     change(view)
     with pytest.raises(package.module().RangeError) as caught:
         view.to_bytes()
-    assert said in str(caught.value)
+    assert message_text in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -115,7 +118,7 @@ def test_what_a_struct_cannot_hold_is_refused_and_named(package, demo, change, s
         {"pairs": "x"},
     ],
 )
-def test_values_that_are_no_structs_are_refused(package, demo, values):
+def test_values_that_do_not_describe_structs_are_refused(package, demo, values):
     with pytest.raises(package.module().IcdError):
         demo.View.from_dict(values)
 
@@ -158,5 +161,5 @@ def test_nans_in_structs_keep_their_bits(tmp_path):
     )
     frame = bytes.fromhex("7f8000010000000000ffa5a5a50000000000")
     message = floats.from_bytes(frame)
-    assert all(math.isnan(one.aligned) for one in message.all)
+    assert all(math.isnan(struct.aligned) for struct in message.all)
     assert message.to_bytes() == frame

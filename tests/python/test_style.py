@@ -1,5 +1,6 @@
-"""Generated packages pass the formatter, the linter and both type checkers, whatever
-the names.
+"""Generated packages pass the formatters, the linter and both type checkers.
+
+This includes packages with names of all lengths and with hostile names.
 """
 
 from __future__ import annotations
@@ -19,23 +20,23 @@ HERE = Path(__file__).parent
 
 
 def check(package: Package, *command: str | Path) -> str:
-    """What a tool prints; fails if it finds anything."""
+    """Run a tool and return its output; fail if it reports an error."""
     done = tool(package, *command)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 def tool(package: Package, *command: str | Path) -> subprocess.CompletedProcess[str]:
-    """Runs a tool of the test environment in the folder of the package."""
+    """Run a tool of the test environment in the folder of the package."""
     words = [sys.executable, "-m", *map(str, command)]
     return subprocess.run(words, cwd=package.folder, capture_output=True, text=True)
 
 
 @pytest.fixture(scope="module")
 def long(tmp_path_factory) -> Package:
-    """Made from an ICD with names of all lengths.
+    """Package generated from an ICD with names of all lengths.
 
-    It is not imported: files of such names are beyond most file systems.
+    No test imports it: most file systems do not allow file names of such length.
     """
     icd = packages.read(
         lengths.write(tmp_path_factory.mktemp("lengths"), range(48, 98))
@@ -44,28 +45,30 @@ def long(tmp_path_factory) -> Package:
 
 
 @pytest.mark.parametrize("name", ["shipped", "odd", "ordered", "long"])
-def test_ruff_changes_nothing(name, request):
+def test_ruff_format_leaves_the_package_unchanged(name, request):
     package = request.getfixturevalue(name)
     check(package, "ruff", "format", "--no-cache", "--check", package.name)
 
 
 @pytest.mark.parametrize("name", ["odd", "long"])
-def test_nor_does_black(name, request):
-    """Asked of two packages, since it takes seconds: ruff and black differ in the lines
-    that they break, and here are lines of all lengths.
+def test_black_leaves_the_package_unchanged(name, request):
+    """ruff and black may break different lines; the packages have lines of all lengths.
+
+    The test checks only two packages, since black takes seconds.
     """
     check(request.getfixturevalue(name), "black", "--check", ".")
 
 
 @pytest.mark.parametrize("name", ["shipped", "odd", "ordered", "long"])
-def test_ruff_finds_nothing(name, request):
+def test_ruff_check_reports_no_errors(name, request):
     check(request.getfixturevalue(name), "ruff", "check", "--no-cache", ".")
 
 
 @pytest.fixture(scope="module", params=["mypy", "pyright"])
 def mistakes(request, shipped, odd, ordered, tmp_path_factory) -> dict[str, set[int]]:
-    """Lines in which a type checker finds errors, by file, in one run for all packages
-    and for two programs that use the shipped one.
+    """Line numbers of the errors that a type checker reports, by file.
+
+    One run checks all packages and two programs that use the shipped one.
     """
     folder = tmp_path_factory.mktemp("checked")
     packages = (shipped, odd, ordered)
@@ -94,11 +97,11 @@ def mistakes(request, shipped, odd, ordered, tmp_path_factory) -> dict[str, set[
     return lines
 
 
-def test_type_checkers_find_nothing_in_packages_and_programs(mistakes):
+def test_type_checkers_report_no_errors_in_packages_and_programs(mistakes):
     assert {file: mistakes[file] for file in mistakes if file != "misuse.py"} == {}
 
 
-def test_type_checkers_find_mistakes_in_programs(mistakes):
+def test_type_checkers_report_mistakes_in_programs(mistakes):
     lines = (HERE / "misuse.py").read_text(encoding="utf-8").splitlines()
     wrong = {
         number for number, line in enumerate(lines, 1) if line.endswith("# expect")

@@ -1,4 +1,4 @@
-"""The testee answers whatever it is asked."""
+"""The testee of the conformance tests answers every request, even an invalid one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 @pytest.fixture(scope="module")
 def ask(shipped):
-    """Answers a request, through the package that is imported."""
+    """Function that sends a request to the testee of the imported package."""
     return lambda **request: shipped.answer(json.dumps(request).encode())
 
 
@@ -30,7 +30,7 @@ def test_frames_are_decoded(ask):
     assert answer["bytes"] == "2efb0a000000"
 
 
-def test_common_messages_are_found_by_every_node_that_speaks_them(ask):
+def test_common_messages_are_found_in_every_node_that_includes_them(ask):
     for node in ("common", "cubeacp", "bootloader"):
         assert ask(op="decode", node=node, kind="telecommand", id=1, bytes="5a")["ok"]
     assert (
@@ -39,7 +39,7 @@ def test_common_messages_are_found_by_every_node_that_speaks_them(ask):
     )
 
 
-def test_configuration_takes_either_id(ask):
+def test_a_configuration_message_has_two_ids(ask):
     for id in (120, 247):
         assert ask(
             op="decode", node="common", kind="configuration", id=id, bytes="00" * 16
@@ -61,13 +61,13 @@ def test_configuration_takes_either_id(ask):
         b'{"op": []}',
     ],
 )
-def test_what_is_no_request_is_refused(shipped, line):
+def test_an_invalid_request_is_refused(shipped, line):
     answer = shipped.answer(line)
     assert (answer["ok"], answer["error"]) == (False, "request")
     assert json.dumps(answer)
 
 
-def test_it_answers_a_line_a_line_until_the_end(shipped):
+def test_the_program_answers_each_line_until_the_end_of_its_input(shipped):
     lines = [b"enum 0 0 999999", b"node 2", b"decode 2 1 255 "]
     done = subprocess.run(
         [sys.executable, "-B", "-m", "icdgen_messages._testee"],

@@ -1,4 +1,4 @@
-"""Texts in Python: values that are refused, dictionaries and columns."""
+"""Text fields are Python strings, in attributes, dictionaries and columns."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def texts(odd):
 
 
 @pytest.mark.parametrize("text", ["x" * 31, "a\0b", b"bytes", None, 7])
-def test_what_is_no_such_text_is_refused_and_nothing_set(odd, texts, text):
+def test_an_invalid_text_is_refused_and_the_value_stays_unchanged(odd, texts, text):
     message = texts(software=b"y" * 30)
     with pytest.raises(odd.module().RangeError) as caught:
         message.software_text = text
@@ -19,7 +19,7 @@ def test_what_is_no_such_text_is_refused_and_nothing_set(odd, texts, text):
     assert message.software == b"y" * 30
 
 
-def test_physical_values_of_a_message_hold_its_texts(texts):
+def test_physical_values_of_a_message_include_its_texts(texts):
     message = texts.from_physical(software_text="1.2", raw_physical=6)
     physical = {
         "software_text": "1.2",

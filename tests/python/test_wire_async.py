@@ -1,4 +1,4 @@
-"""The asyncio session over a connection to a simulator, and over connections that fail."""
+"""The asyncio session works over connections to a simulator, and reports failures."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def acp(shipped):
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory):
-    """Where a simulator listens that holds a file."""
+def simulator_address(tmp_path_factory):
+    """Address of a simulator that stores a file."""
     file = tmp_path_factory.mktemp("files") / "file.bin"
     file.write_bytes(bytes(range(256)) * 3)
     options = (
@@ -33,13 +33,15 @@ def place(tmp_path_factory):
         "--file",
         f"2:5={file}",
     )
-    with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, _):
-        yield urlsplit(place)
+    with simulator("--node", "cubeacp", "--tcp", "0", *options) as (address, _):
+        yield urlsplit(address)
 
 
 @asynccontextmanager
-async def session(wire, acp, place, **options):
-    reader, writer = await asyncio.open_connection(place.hostname, place.port)
+async def session(wire, acp, simulator_address, **options):
+    reader, writer = await asyncio.open_connection(
+        simulator_address.hostname, simulator_address.port
+    )
     try:
         yield wire.AsyncSession(acp.LINK, reader, writer, **options)
     finally:
@@ -49,7 +51,7 @@ async def session(wire, acp, place, **options):
 
 @asynccontextmanager
 async def served(wire, acp, answer):
-    """A session over a connection to whatever ``answer(reader, writer)`` does."""
+    """Open a session to a server that runs ``answer(reader, writer)``."""
 
     async def handle(reader, writer):
         await answer(reader, writer)
@@ -65,9 +67,11 @@ async def served(wire, acp, answer):
             writer.close()
 
 
-def test_a_command_is_acknowledged_and_a_frame_comes(wire, acp, place):
+def test_a_command_is_acknowledged_and_telemetry_is_received(
+    wire, acp, simulator_address
+):
     async def talk():
-        async with session(wire, acp, place) as device:
+        async with session(wire, acp, simulator_address) as device:
             await device.send(acp.SetAdcsRunMode(enabled=acp.AdcsRunMode.ENABLED))
             outcome = await device.ask(acp.EstimatedAttitudeAngles)
             return await device.get(acp.EstimatedAttitudeAngles), outcome
@@ -81,17 +85,17 @@ def test_a_command_is_acknowledged_and_a_frame_comes(wire, acp, place):
     )
 
 
-def test_requests_of_several_tasks_wait_for_each_other(wire, acp, place):
+def test_requests_of_several_tasks_wait_for_each_other(wire, acp, simulator_address):
     async def talk():
-        async with session(wire, acp, place) as device:
+        async with session(wire, acp, simulator_address) as device:
             return await asyncio.gather(
                 *(device.get(acp.Identification) for _ in range(5))
             )
 
-    assert [one.node_type for one in asyncio.run(talk())] == [acp.NODE_TYPE] * 5
+    assert [message.node_type for message in asyncio.run(talk())] == [acp.NODE_TYPE] * 5
 
 
-def test_a_file_is_downloaded_while_the_loop_goes_on(wire, acp, place):
+def test_a_download_does_not_block_the_event_loop(wire, acp, simulator_address):
     shown, turns = [], 0
 
     async def count():
@@ -101,7 +105,7 @@ def test_a_file_is_downloaded_while_the_loop_goes_on(wire, acp, place):
             await asyncio.sleep(0)
 
     async def talk():
-        async with session(wire, acp, place) as device:
+        async with session(wire, acp, simulator_address) as device:
             counting = asyncio.create_task(count())
             download = acp.procedures.Download(type=2, counter=5, size=768)
             done = await device.run(download, lambda *progress: shown.append(progress))
@@ -113,16 +117,17 @@ def test_a_file_is_downloaded_while_the_loop_goes_on(wire, acp, place):
 
 
 class Quiet:
-    """A writer to which nothing is written."""
+    """Test double of a writer that fails if a session writes to it."""
 
     def write(self, data):
         raise AssertionError(data)
 
 
 @pytest.mark.parametrize("turns", range(6))
-def test_a_cancellation_at_the_moment_that_bytes_come_loses_neither(wire, acp, turns):
-    """Bytes come, and some turns of the loop later the task is cancelled, unless it is
-    done by then.
+def test_a_cancellation_while_bytes_arrive_loses_no_bytes(wire, acp, turns):
+    """Cancel the task ``turns`` turns of the loop after bytes arrive.
+
+    The task may have ended by then.
     """
 
     async def talk():
@@ -144,7 +149,7 @@ def test_a_cancellation_at_the_moment_that_bytes_come_loses_neither(wire, acp, t
     assert (event.id, event.data) == (146, bytes(range(6)))
 
 
-def test_a_cancelled_session_leaves_the_streams_to_whoever_reads_next(wire, acp):
+def test_a_cancelled_session_releases_the_streams(wire, acp):
     async def talk():
         reader = asyncio.StreamReader()
         device = wire.AsyncSession(acp.LINK, reader, Quiet())
@@ -159,7 +164,7 @@ def test_a_cancelled_session_leaves_the_streams_to_whoever_reads_next(wire, acp)
     assert asyncio.run(talk()) == b"free"
 
 
-def test_a_request_that_is_cancelled_leaves_the_session_free(wire, acp, place):
+def test_a_cancelled_request_leaves_the_session_idle(wire, acp, simulator_address):
     async def silent(reader, writer):
         await reader.read()
 
@@ -175,7 +180,7 @@ def test_a_request_that_is_cancelled_leaves_the_session_free(wire, acp, place):
     assert asyncio.run(talk()) is False
 
 
-def test_silence_is_a_time_out_and_a_connection_that_closes_is_told(wire, acp):
+def test_a_silent_node_is_a_time_out_and_a_closed_connection_is_an_error(wire, acp):
     async def silent(reader, writer):
         await reader.read()
 
@@ -197,7 +202,9 @@ def test_silence_is_a_time_out_and_a_connection_that_closes_is_told(wire, acp):
     asyncio.run(talk())
 
 
-def test_a_message_of_another_node_is_refused_at_once(shipped, wire, acp, place):
+def test_a_message_of_another_node_is_refused_at_once(
+    shipped, wire, acp, simulator_address
+):
     boot = shipped.module("bootloader")
     assert (
         boot.State.ID in acp.TELEMETRY
@@ -205,8 +212,8 @@ def test_a_message_of_another_node_is_refused_at_once(shipped, wire, acp, place)
     )
 
     async def talk():
-        async with session(wire, acp, place) as device:
-            for asked in (
+        async with session(wire, acp, simulator_address) as device:
+            for request in (
                 device.get(boot.State),
                 device.ask(boot.State),
                 device.send(boot.SetBootIndex()),
@@ -214,7 +221,7 @@ def test_a_message_of_another_node_is_refused_at_once(shipped, wire, acp, place)
                 with pytest.raises(
                     shipped.module().UnknownIdError, match="cubeacp has no"
                 ):
-                    await asked
+                    await request
 
     asyncio.run(talk())
     for bus in ("uart", "i2c", "can"):

@@ -1,5 +1,6 @@
-"""`Session(LINK, port)` with the ports that users have: pyserial, sockets, python-can,
-smbus2.
+"""`Session(LINK, port)` works with ports of pyserial, sockets, python-can and smbus2.
+
+The other end of each port is a simulated node in a thread, or a test double.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def acp(shipped):
 
 
 class Node(threading.Thread):
-    """The simulated node behind functions that read and write; it ends when they fail."""
+    """Simulated node that uses functions to read and write, and ends when they fail."""
 
     def __init__(self, read, write) -> None:
         super().__init__(daemon=True)
@@ -53,26 +54,26 @@ class Node(threading.Thread):
             return
 
 
-def talks(acp, session) -> None:
-    """A short frame, a telecommand, a long frame."""
+def exchange_messages(acp, session) -> None:
+    """Request a short frame, send a telecommand and request a long frame."""
     assert session.get(acp.Identification).node_type == acp.NODE_TYPE
     session.send(acp.ClearErrors())
     assert len(session.get(acp.AdcsConfiguration).to_bytes()) == 504
 
 
 @pytest.mark.pty
-def test_a_serial_port_of_pyserial(acp, wire):
+def test_a_session_works_over_a_serial_port_of_pyserial(acp, wire):
     far, near = pty.openpty()
     tty.setraw(near)
     with serial.Serial(os.ttyname(near), 921600) as port:
         node = Node(lambda: os.read(far, 4096), lambda data: os.write(far, data))
-        talks(acp, wire.Session(acp.LINK, port))
+        exchange_messages(acp, wire.Session(acp.LINK, port))
     os.close(near)
     node.join()  # before another file gets the number of this one
     os.close(far)
 
 
-def test_a_socket_of_tcp(acp, wire):
+def test_a_session_works_over_a_tcp_socket(acp, wire):
     with (
         socket.create_server(("127.0.0.1", 0)) as server,
         socket.create_connection(server.getsockname()) as port,
@@ -80,27 +81,27 @@ def test_a_socket_of_tcp(acp, wire):
         far, _ = server.accept()
         with far:
             Node(lambda: far.recv(4096), far.sendall)
-            talks(acp, wire.Session(acp.LINK, port))
+            exchange_messages(acp, wire.Session(acp.LINK, port))
             port.shutdown(socket.SHUT_RDWR)
 
 
-def test_a_socket_of_udp(acp, wire):
+def test_a_session_works_over_a_udp_socket(acp, wire):
     with (
         socket.socket(type=socket.SOCK_DGRAM) as port,
         socket.socket(type=socket.SOCK_DGRAM) as far,
     ):
-        for one in (port, far):
-            one.bind(("127.0.0.1", 0))
+        for end in (port, far):
+            end.bind(("127.0.0.1", 0))
         port.connect(far.getsockname())
         far.connect(port.getsockname())
         far.settimeout(5)
         Node(lambda: far.recv(4096), lambda data: data and far.send(data))
         far.send(b"")  # a datagram without bytes closes nothing
-        talks(acp, wire.Session(acp.LINK, port))
+        exchange_messages(acp, wire.Session(acp.LINK, port))
         port.send(b"")  # to the node it does
 
 
-def test_streams_of_asyncio(acp, wire):
+def test_an_async_session_works_over_streams_of_asyncio(acp, wire):
     async def main() -> None:
         with socket.create_server(("127.0.0.1", 0)) as server:
             reader, writer = await asyncio.open_connection(*server.getsockname())
@@ -119,9 +120,9 @@ def test_streams_of_asyncio(acp, wire):
 
 
 class CanNode(threading.Thread):
-    """A node on a CAN bus: acknowledges telecommands, and answers requests.
+    """Node on a CAN bus that acknowledges telecommands and responds to requests.
 
-    ``noise`` is sent before each answer.
+    It sends ``noise`` before each response.
     """
 
     def __init__(self, acp, wire, bus: can.BusABC, noise: list[can.Message]) -> None:
@@ -139,33 +140,30 @@ class CanNode(threading.Thread):
 
     def run(self) -> None:
         while not self.over.is_set():
-            found = self.bus.recv(0.05)
-            for event in (
-                self.joiner.feed(
-                    0, self.wire.CanPacket(found.arbitration_id, bytes(found.data))
-                )
-                if found
-                else ()
-            ):
+            frame = self.bus.recv(0.05)
+            if frame is None:
+                continue
+            packet = self.wire.CanPacket(frame.arbitration_id, bytes(frame.data))
+            for event in self.joiner.feed(0, packet):
                 if event.message:
                     self.answer(event.message)
 
-    def answer(self, asked) -> None:
+    def answer(self, request) -> None:
         kind, data = "acknowledge", b""
-        if asked.kind == "request":
-            frame = self.acp.LINK.TELEMETRY[asked.id]
-            one = (
+        if request.kind == "request":
+            frame = self.acp.LINK.TELEMETRY[request.id]
+            telemetry = (
                 frame(node_type=self.acp.NODE_TYPE)
                 if frame is self.acp.Identification
                 else frame()
             )
-            kind, data = "reply", one.to_bytes()
+            kind, data = "reply", telemetry.to_bytes()
         else:
-            self.telecommands.append((asked.id, asked.data))
+            self.telecommands.append((request.id, request.data))
         for message in self.noise:
             self.bus.send(message)
         reply = self.wire.CanMessage(
-            kind, asked.id, self.acp.LINK.can.node_address, asked.source, data
+            kind, request.id, self.acp.LINK.can.node_address, request.source, data
         )
         for packet in self.wire.can_split(self.acp.LINK, reply):
             self.bus.send(
@@ -184,30 +182,30 @@ class CanNode(threading.Thread):
             can.Message(is_remote_frame=True),
         ],
     ],
-    ids=["alone", "beside others"],
+    ids=["alone", "with other traffic"],
 )
-def test_a_can_bus_of_python_can(acp, wire, noise, request):
+def test_a_session_works_over_a_can_bus_of_python_can(acp, wire, noise, request):
     channel = request.node.name
     with (
         can.Bus(channel, interface="virtual") as port,
         can.Bus(channel, interface="virtual") as far,
     ):
         node = CanNode(acp, wire, far, noise)
-        talks(acp, wire.Session(acp.LINK, port, address=7))
+        exchange_messages(acp, wire.Session(acp.LINK, port, address=7))
         node.over.set()
         node.join()
     assert node.telecommands == [(acp.ClearErrors.ID, acp.ClearErrors().to_bytes())]
 
 
-def test_an_i2c_bus_of_smbus2(acp, wire):
+def test_a_session_works_over_an_i2c_bus_of_smbus2(acp, wire):
     bus = smbus_fake.SMBus(acp, [])
-    talks(acp, wire.Session(acp.LINK, bus))
+    exchange_messages(acp, wire.Session(acp.LINK, bus))
     assert bus.telecommands == [
         bytes([acp.ClearErrors.ID]) + acp.ClearErrors().to_bytes()
     ]
 
 
-def test_a_transaction_that_the_node_does_not_take_is_made_again(acp, wire):
+def test_a_transaction_that_the_node_does_not_acknowledge_is_repeated(acp, wire):
     bus = smbus_fake.SMBus(acp, [errno.EREMOTEIO])
     session = wire.Session(acp.LINK, bus, settings=wire.Settings(**QUICK))
     assert session.get(acp.Identification).node_type == acp.NODE_TYPE
@@ -216,7 +214,7 @@ def test_a_transaction_that_the_node_does_not_take_is_made_again(acp, wire):
         session.get(acp.Identification)
 
 
-def test_a_read_that_wants_a_stop_before_it_is_a_transaction_of_its_own(acp, wire):
+def test_a_read_is_a_separate_transaction_without_repeated_start(acp, wire):
     for link, parts in (
         (acp.LINK, [2]),
         (
@@ -238,7 +236,7 @@ def test_other_errors_of_an_i2c_bus_are_raised(acp, wire):
     assert session.get(acp.Identification).node_type == acp.NODE_TYPE
 
 
-def test_what_is_no_port_is_refused(acp, wire):
+def test_an_object_that_is_not_a_port_is_refused(acp, wire):
     with pytest.raises(
         TypeError, match="str is no port: a session takes a serial port, a socket"
     ):

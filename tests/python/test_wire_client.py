@@ -1,4 +1,7 @@
-"""The client with generated messages: a program can rely on the outcome."""
+"""`Client` handles requests of generated messages and reports the outcome of each.
+
+The tests pass bytes, packets and times to the client, without a port.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ def acknowledge(like, wire, id: int, code: int = 0) -> bytes:
     return wire.uart_encode(like, bytes((id, code)))
 
 
-def test_typed_telemetry(shipped, wire):
+def test_telemetry_is_requested_and_decoded_by_its_class(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart")
     client.request(0, acp.EstimatedAttitudeAngles)
@@ -51,7 +54,7 @@ def test_settings_are_written_by_one_id_and_read_by_the_other(shipped, wire):
     )
 
 
-def test_a_request_waits_until_the_one_before_has_ended(shipped, wire):
+def test_a_request_waits_until_the_previous_one_has_ended(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart", requests=2)
     client.request(0, acp.Identification)
@@ -68,7 +71,7 @@ def test_a_request_waits_until_the_one_before_has_ended(shipped, wire):
     assert (type(done), done.handle, client.busy) == (wire.Done, client.begun, False)
 
 
-def test_a_telecommand_without_acknowledge_is_over_when_it_was_taken(shipped, wire):
+def test_a_telecommand_without_acknowledge_ends_when_it_is_sent(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart", requests=1)
     client.send(0, acp.Reset())
@@ -90,8 +93,8 @@ def test_each_bus_has_its_own_output_and_input(shipped, wire):
     for bus, own in outputs.items():
         client = wire.Client(acp.LINK, bus)
         client.request(0, acp.Identification)
-        others = [name for name in outputs.values() if name != own]
-        assert not any(getattr(client, name)() for name in others)
+        for name in outputs.values():
+            assert name == own or not getattr(client, name)()
         assert getattr(client, own)()
         for other, (name, received) in inputs.items():
             if other != bus:
@@ -99,7 +102,7 @@ def test_each_bus_has_its_own_output_and_input(shipped, wire):
                     getattr(client, name)(1, received)
 
 
-def test_what_only_another_link_has_is_refused(shipped, wire):
+def test_features_of_another_kind_of_link_are_refused(shipped, wire):
     acp = shipped.module("cubeacp")
     with pytest.raises(wire.UnsupportedError, match="framed"):
         wire.Client(acp.LINK, "uart", values={"source": 1})
@@ -137,7 +140,7 @@ def test_messages_of_another_node_are_refused(shipped, wire):
         client.send(0, acp.SetAdcsRunMode(enabled=300))
 
 
-def test_a_message_in_the_place_of_its_class_is_told_of_and_the_other_way_round(
+def test_the_error_explains_a_message_passed_instead_of_a_class_and_vice_versa(
     shipped, wire
 ):
     acp = shipped.module("cubeacp")
@@ -148,13 +151,13 @@ def test_a_message_in_the_place_of_its_class_is_told_of_and_the_other_way_round(
         client.send(0, acp.Reset)
 
 
-def test_what_comes_unasked_is_told(shipped, wire):
+def test_unsolicited_input_is_reported(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart")
     log = wire.LogMessage.encode(acp.LINK, bytes(10), [])
     packet = bytes((119, 5, 0)) + bytes(range(20))
     stream = b"".join(
-        wire.uart_encode(acp.LINK, one) for one in (log, packet, b"\x1f\x00")
+        wire.uart_encode(acp.LINK, data) for data in (log, packet, b"\x1f\x00")
     )
     events = client.received(0, stream + b"\x1f\x7f\x80\x1f\x00")
     assert [type(event) for event in events] == [
@@ -195,7 +198,7 @@ def test_i2c_polls_until_the_telecommand_is_processed(shipped, wire):
     assert (done.id, done.attempts, done.data) == (10, 1, b"\x0a\1\0\0")
 
 
-def test_a_wrong_checksum_is_sent_again(shipped, wire):
+def test_a_telecommand_with_a_wrong_checksum_is_repeated(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart", crc=True)
     client.send(0, acp.SetAdcsRunMode(enabled=1))
@@ -210,7 +213,7 @@ def test_a_wrong_checksum_is_sent_again(shipped, wire):
     ]
 
 
-def test_two_requests_at_a_time_if_the_device_handles_them(shipped, wire):
+def test_two_requests_are_in_flight_if_the_device_supports_it(shipped, wire):
     acp = shipped.module("cubeacp")
     settings = acp.LINK.settings._replace(in_flight=2)
     client = wire.Client(acp.LINK, "uart", settings=settings)
@@ -228,7 +231,7 @@ def test_two_requests_at_a_time_if_the_device_handles_them(shipped, wire):
     assert (done.id, done.handle) == (146, 1)
 
 
-def test_i2c_results_belong_to_their_requests_in_the_order_of_transactions(
+def test_i2c_results_are_matched_to_requests_in_the_order_of_transactions(
     shipped, wire
 ):
     acp = shipped.module("cubeacp")
@@ -249,7 +252,7 @@ def test_i2c_results_belong_to_their_requests_in_the_order_of_transactions(
     assert (done.id, done.handle, client.busy) == (10, 1, False)
 
 
-def test_a_request_wakes_the_program_only_for_late_responses_it_waits_for(
+def test_the_deadline_of_a_waiting_request_is_that_of_a_late_response_with_its_id(
     shipped, wire
 ):
     acp = shipped.module("cubeacp")

@@ -1,4 +1,4 @@
-"""Logs, times, identification, assumptions and errors of the generated package."""
+"""The wire layer handles logs, times, identification, assumptions and errors."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def wire(shipped):
     return shipped.module("wire")
 
 
-def test_a_link_is_shown_in_a_line(shipped):
+def test_a_link_is_printed_in_one_line(shipped):
     assert repr(link(shipped)) == "Link(node='cubeacp', ...)"
 
 
-def test_frames_of_logs_become_messages_and_unassigned_bits_do_not(shipped, wire):
+def test_frames_of_logs_are_decoded_unless_their_bit_is_unassigned(shipped, wire):
     like = link(shipped)
     bits = {bit.id: bit.bit for bit in like.mask.bits.values()}
     mask = bytearray(10)
@@ -38,11 +38,11 @@ def test_frames_of_logs_become_messages_and_unassigned_bits_do_not(shipped, wire
     assert entry.frames[1] == (79, None, b"unused")
     with pytest.raises(wire.UnsupportedError, match="79"):
         entry.frames[1].message(like)
-    whole = wire.LogMessage.encode(like, bytes(mask), [message.to_bytes(), b"unused"])
-    assert wire.LogMessage.decode(like, whole) == (bytes(mask), entry.frames)
+    log = wire.LogMessage.encode(like, bytes(mask), [message.to_bytes(), b"unused"])
+    assert wire.LogMessage.decode(like, log) == (bytes(mask), entry.frames)
 
 
-def test_logs_refuse_what_does_not_fit(shipped, wire):
+def test_log_writer_and_reader_refuse_invalid_input(shipped, wire):
     like, errors = link(shipped), shipped.module()
     with pytest.raises(errors.LengthError, match="mask"):
         wire.LogWriter(like, b"\1")
@@ -58,7 +58,7 @@ def test_logs_refuse_what_does_not_fit(shipped, wire):
         wire.LogReader(bootloader)
 
 
-def test_a_packed_time_that_no_calendar_has_is_unpacked_all_the_same(shipped, wire):
+def test_an_invalid_packed_time_is_unpacked_and_marked_invalid(shipped, wire):
     time = wire.dos_time_unpack(link(shipped), 0)
     assert time == (1980, 0, 0, 0, 0, 0) and not time.is_valid
 
@@ -77,28 +77,30 @@ def test_a_node_is_identified(shipped, wire):
     assert not wire.identify(acp.LINK, frame.to_bytes()).matches
 
 
-def test_assumptions_are_data(shipped):
-    found = {(one.section, one.key): one for one in link(shipped).assumptions}
-    (field,) = found["link.packets.telecommand", "trailer"].value
+def test_a_link_lists_its_assumptions(shipped):
+    assumptions = {}
+    for assumption in link(shipped).assumptions:
+        assumptions[assumption.section, assumption.key] = assumption
+    (field,) = assumptions["link.packets.telecommand", "trailer"].value
     assert field["covers"] == {"from": "data", "to": "data"}
-    assert all(one.why for one in found.values())
-    known = facts.of(shipped.icd, shipped.icd.node("cubeacp"))
-    assert {(one.section, one.key) for one in known.assumptions} == set(found)
+    assert all(assumption.why for assumption in assumptions.values())
+    expected = facts.of(shipped.icd, shipped.icd.node("cubeacp"))
+    assert {(a.section, a.key) for a in expected.assumptions} == set(assumptions)
 
 
-def test_errors_survive_being_pickled(wire, shipped):
+def test_errors_can_be_pickled(wire, shipped):
     for error in (
         wire.TooLongError(8, 9),
         wire.ChecksumError(1, 2),
         wire.FailedError("rounds"),
     ):
-        again = pickle.loads(pickle.dumps(error))
-        assert (type(again), str(again)) == (type(error), str(error))
-        assert isinstance(again, shipped.module().IcdError)
+        copied_error = pickle.loads(pickle.dumps(error))
+        assert (type(copied_error), str(copied_error)) == (type(error), str(error))
+        assert isinstance(copied_error, shipped.module().IcdError)
 
 
 def comments(source: str) -> str:
-    """The comments of a module as one text."""
+    """Join the comments of a module into one text."""
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     return " ".join(
         token.string.lstrip("# ") for token in tokens if token.type == tokenize.COMMENT
@@ -106,21 +108,20 @@ def comments(source: str) -> str:
 
 
 @pytest.mark.parametrize("node", ["cubeacp", "bootloader", "common"])
-def test_what_is_assumed_has_its_reason_in_a_comment(shipped, node):
-    told = comments(
+def test_every_assumption_has_its_reason_in_a_comment(shipped, node):
+    text = comments(
         (shipped.folder / "icdgen_messages" / node / "_link.py").read_text("utf-8")
     )
     link = shipped.module(node).LINK
     assert len(link.assumptions) > 20
-    elsewhere = {
-        "unsolicited_log.configured_by",
-        "boot",
-    }  # no part of the link: of a message, of the device alone
-    rest = [one for one in link.assumptions if one.section not in elsewhere]
-    assert [one for one in rest if " ".join(one.why.split()) not in told] == []
+    # The link does not contain these: one is about a message, one about the device.
+    elsewhere = {"unsolicited_log.configured_by", "boot"}
+    for assumption in link.assumptions:
+        if assumption.section not in elsewhere:
+            assert " ".join(assumption.why.split()) in text, assumption
 
 
-def test_the_reason_stands_above_the_value_that_is_assumed(shipped):
+def test_the_reason_is_above_the_assumed_value(shipped):
     lines = (
         (shipped.folder / "icdgen_messages" / "cubeacp" / "_link.py")
         .read_text("utf-8")

@@ -1,5 +1,6 @@
-"""Sessions over ports that fail, and over serial ports; requests that are given up or
-come too late.
+"""Sessions continue after errors of a port, cancelled requests and late responses.
+
+The simulated node responds through a test double, a serial port or a socket.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ def wire(shipped):
     return shipped.module("wire")
 
 
-class Failing(DevicePort):
-    """A port that fails when it is told to."""
+class FailingPort(DevicePort):
+    """Port whose method named by ``fails`` raises an error."""
 
     fails: str = ""
 
@@ -41,9 +42,9 @@ class Failing(DevicePort):
 
 @pytest.mark.parametrize("fails", ["read", "write"])
 @pytest.mark.parametrize("what", ["get", "send", "start", "run"])
-def test_a_session_goes_on_after_an_error_of_its_port(shipped, wire, fails, what):
+def test_a_session_continues_after_an_error_of_its_port(shipped, wire, fails, what):
     acp = shipped.module("cubeacp")
-    port = Failing(packages.shipped(), "cubeacp")
+    port = FailingPort(packages.shipped(), "cubeacp")
     talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
     calls = {
         "get": lambda: talking.get(acp.Identification),
@@ -61,7 +62,7 @@ def test_a_session_goes_on_after_an_error_of_its_port(shipped, wire, fails, what
     assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
 
 
-def test_a_session_goes_on_after_whoever_is_told_of_events_fails(shipped, wire):
+def test_a_session_continues_after_an_error_of_the_event_handler(shipped, wire):
     acp = shipped.module("cubeacp")
     port = DevicePort(packages.shipped(), "cubeacp")
 
@@ -77,18 +78,17 @@ def test_a_session_goes_on_after_whoever_is_told_of_events_fails(shipped, wire):
     assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
 
 
-def test_the_reply_to_a_cancelled_request_is_not_that_to_the_next(shipped, wire):
+def test_a_late_reply_to_a_cancelled_request_does_not_end_the_next_request(
+    shipped, wire
+):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "uart")
     client.request(0, acp.EstimatedAttitudeAngles)
     client.cancel()
-    assert (client.busy, client.deadline, client.output()) == (
-        False,
-        None,
-        b"",
-    )  # what was not taken is not sent
+    # The output was not taken before the request was cancelled, so it is not sent.
+    assert (client.busy, client.deadline, client.output()) == (False, None, b"")
     client.request(1, acp.EstimatedAttitudeAngles)
-    assert client.output()  # at once, since nothing responds to what was not sent
+    assert client.output()  # at once: no reply to the unsent request can come
     client.cancel()
     client.request(1, acp.EstimatedAttitudeAngles)
     assert client.output() == b""  # the same id waits: this one was sent
@@ -102,7 +102,7 @@ def test_the_reply_to_a_cancelled_request_is_not_that_to_the_next(shipped, wire)
     assert done.id == 147
 
 
-def test_a_transfer_that_was_not_taken_cannot_end(shipped, wire):
+def test_a_transfer_that_was_not_started_cannot_end(shipped, wire):
     acp = shipped.module("cubeacp")
     client = wire.Client(acp.LINK, "i2c")
     client.request(0, acp.EstimatedAttitudeAngles)
@@ -111,13 +111,13 @@ def test_a_transfer_that_was_not_taken_cannot_end(shipped, wire):
     client.send(1, acp.Reset())
     assert client.transferred(2, bytes(6)) == [
         wire.Late(146, bytes(6), acp.EstimatedAttitudeAngles)
-    ]  # of the frame: the reset is not written
+    ]  # the bytes of the telemetry: the reset is not written yet
     assert client.busy
     client.transfers()
     assert client.transferred(3, b"") == [wire.Sent(acp.Reset.ID)]
 
 
-def test_the_client_waits_with_a_transaction_while_eight_results_are_missing(
+def test_the_client_starts_no_transaction_while_eight_results_are_missing(
     shipped, wire
 ):
     acp = shipped.module("cubeacp")
@@ -138,7 +138,7 @@ def test_the_client_waits_with_a_transaction_while_eight_results_are_missing(
     assert client.transferred(18, b"\1") == [wire.Stray(b"\1")]
 
 
-def test_a_telecommand_without_acknowledge_is_sent_and_not_done(shipped, wire):
+def test_the_outcome_of_a_telecommand_without_acknowledge_is_sent(shipped, wire):
     acp = shipped.module("cubeacp")
     for bus in ("uart", "can"):
         client = wire.Client(acp.LINK, bus)
@@ -165,7 +165,7 @@ def test_a_damaged_frame_is_reported_whether_or_not_it_was_requested(shipped, wi
 
 @pytest.fixture
 def line():
-    """A serial port, and the descriptor of its other end."""
+    """Serial port, and the file descriptor of its other end."""
     far, near = pty.openpty()
     tty.setraw(near)
     port = serial.Serial(os.ttyname(near), 921600)
@@ -175,8 +175,8 @@ def line():
     os.close(near)
 
 
-class Device(threading.Thread):
-    """The simulated node at the far end of a line, as long as it is open."""
+class SerialNode(threading.Thread):
+    """Simulated node at the other end of a serial line; ends when the line closes."""
 
     def __init__(self, far: int) -> None:
         super().__init__(daemon=True)
@@ -193,10 +193,10 @@ class Device(threading.Thread):
 
 
 @pytest.mark.pty
-def test_a_serial_port_of_pyserial_will_do(shipped, wire, line):
+def test_serial_port_adapts_a_port_of_pyserial(shipped, wire, line):
     acp = shipped.module("cubeacp")
     port, far = line
-    Device(far)
+    SerialNode(far)
     talking = wire.Session(acp.LINK, *wire.serial_port(port))
     assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
     talking.send(acp.ClearErrors())
@@ -204,9 +204,7 @@ def test_a_serial_port_of_pyserial_will_do(shipped, wire, line):
 
 
 @pytest.mark.pty
-def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(
-    shipped, wire, line
-):
+def test_a_silent_serial_port_is_a_time_out(shipped, wire, line):
     acp = shipped.module("cubeacp")
     settings = wire.Settings(
         reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1
@@ -216,8 +214,8 @@ def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(
         talking.get(acp.Identification)
 
 
-class Served(threading.Thread):
-    """The simulated node at the far end of a connection, as long as it is open."""
+class SocketNode(threading.Thread):
+    """Simulated node at the other end of a socket; ends when the socket is closed."""
 
     def __init__(self, far: socket.socket) -> None:
         super().__init__(daemon=True)
@@ -233,18 +231,18 @@ class Served(threading.Thread):
             return
 
 
-def test_a_socket_will_do(shipped, wire):
+def test_socket_port_adapts_a_socket(shipped, wire):
     acp = shipped.module("cubeacp")
     near, far = socket.socketpair()
     with near, far:
-        Served(far)
+        SocketNode(far)
         talking = wire.Session(acp.LINK, *wire.socket_port(near))
         assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
         talking.send(acp.ClearErrors())
         near.shutdown(socket.SHUT_RDWR)
 
 
-def test_a_socket_on_which_nothing_comes_is_not_waited_for_any_longer_and_keeps_its_own_time_out(
+def test_a_silent_socket_is_a_time_out_and_its_own_time_out_stays_unchanged(
     shipped, wire
 ):
     acp = shipped.module("cubeacp")
@@ -263,7 +261,7 @@ def test_a_socket_on_which_nothing_comes_is_not_waited_for_any_longer_and_keeps_
         assert near.gettimeout() == 7
 
 
-def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
+def test_a_socket_closed_by_the_other_side_is_an_error_at_once(shipped, wire):
     acp = shipped.module("cubeacp")
     near, far = socket.socketpair()
     with near:
@@ -274,7 +272,7 @@ def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
 
 
 @pytest.mark.parametrize(
-    ("fault", "error", "said"),
+    ("fault", "error", "message_text"),
     [
         (
             "nack=100%",
@@ -288,10 +286,14 @@ def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
         ),
     ],
 )
-def test_an_error_names_the_message(shipped, wire, fault, error, said):
+def test_an_error_names_the_message(shipped, wire, fault, error, message_text):
     acp = shipped.module("cubeacp")
     port = DevicePort(packages.shipped(), "cubeacp", faults=[fault])
     talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
     with pytest.raises(getattr(wire, error)) as caught:
         talking.send(acp.ClearErrors())
-    assert str(caught.value) == str(pickle.loads(pickle.dumps(caught.value))) == said
+    assert (
+        str(caught.value)
+        == str(pickle.loads(pickle.dumps(caught.value)))
+        == message_text
+    )

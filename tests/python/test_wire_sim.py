@@ -1,4 +1,7 @@
-"""The client over a simulated device, in a time that passes as fast as it can."""
+"""Sessions with a simulated device work without and with faults on the line.
+
+The time is simulated too, so that time-outs take no real time.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ def session(shipped, node: str = "cubeacp", **options):
     )
 
 
-def test_the_node_is_the_one_that_the_package_was_made_for(shipped, wire):
+def test_the_package_identifies_its_node(shipped, wire):
     acp = shipped.module("cubeacp")
     talking, _ = session(shipped)
     assert wire.identify(acp.LINK, talking.get(acp.Identification).to_bytes()).matches
@@ -43,7 +46,7 @@ def test_all_telemetry_can_be_requested(shipped):
         assert isinstance(talking.get(message), message)
 
 
-def test_every_setting_reads_back_what_was_set(shipped):
+def test_every_setting_can_be_written_and_read_back(shipped):
     acp = shipped.module("cubeacp")
     talking, _ = session(shipped)
     settings = [
@@ -51,21 +54,21 @@ def test_every_setting_reads_back_what_was_set(shipped):
         for _, message in acp.TELECOMMANDS.items()
         if message.KIND == "configuration"
     ]
-    clock = {"Current Unix Time"}  # goes on
+    clock = {"Current Unix Time"}  # advances between the two requests
     assert len(settings) > 20
     for message in settings:
-        made = message.from_bytes(message().to_bytes())
+        setting = message.from_bytes(message().to_bytes())
         for info in message.FIELDS:
             if info.type in ("uint", "int") and info.const is None:
-                setattr(made, info.attribute, 1)
-        talking.send(made)
+                setattr(setting, info.attribute, 1)
+        talking.send(setting)
         if message.NAME not in clock:
-            assert talking.get(message) == made
+            assert talking.get(message) == setting
 
 
 def test_every_telecommand_has_an_outcome(shipped, wire):
     acp, icd = shipped.module("cubeacp"), packages.shipped()
-    # Only another program has the upload.
+    # Only the bootloader supports the upload.
     (upload,) = (
         p
         for p in facts.of(icd, icd.node("bootloader")).procedures
@@ -99,21 +102,21 @@ def test_a_refusal_and_a_silent_node_are_errors(shipped, wire):
     "faults",
     ["corrupt=10%", "late=10%", "cut=10%", "noise=20%", "duplicate=30%", "repeat=10%"],
 )
-def test_nothing_hangs_and_telemetry_gets_through_whatever_happens_to_the_bytes(
+def test_a_session_does_not_hang_and_receives_telemetry_over_a_faulty_line(
     shipped, wire, faults
 ):
     acp = shipped.module("cubeacp")
     talking, port = session(shipped, faults=[faults], seed=3, late=700)
-    got = 0
+    replies = 0
     for _ in range(100):
         try:
             talking.send(acp.ClearErrors(), repeat=True)
-            got += isinstance(
+            replies += isinstance(
                 talking.get(acp.EstimatedAttitudeAngles), acp.EstimatedAttitudeAngles
             )
         except (wire.RefusedError, wire.ReplyTimeoutError):
             continue
-    assert got >= 95
+    assert replies >= 95
     assert port.clock() < 600
 
 
@@ -139,7 +142,7 @@ def test_a_file_arrives_byte_for_byte(shipped, wire, file, loss):
     download = acp.procedures.Download(type=2, counter=5, size=entry.file_size)
     talking.run(download, lambda *now: shown.append(now))
     assert download.data == file.read_bytes()
-    assert [one for one, _ in shown] == [0, 20480, 40960, 61440, 61441]
+    assert [size for size, _ in shown] == [0, 20480, 40960, 61440, 61441]
 
 
 @pytest.mark.parametrize("loss", [0, 1, 10, 30])
@@ -164,15 +167,15 @@ def test_a_program_arrives_byte_for_byte(shipped, wire, file, tmp_path, loss):
     assert program.read_bytes()[:61_441] == file.read_bytes()
 
 
-def test_a_node_that_loses_every_packet_is_given_up(shipped, wire, file):
+def test_a_download_that_loses_every_packet_fails(shipped, wire, file):
     talking, _ = session(shipped, files=[f"2:5={file}"], faults=["drop=100%@packet"])
     with pytest.raises(wire.FailedError, match="rounds"):
         talking.run(shipped.module("cubeacp").procedures.Download(2, 5, 100))
 
 
 def refusing(shipped, name: str, times: int, code: int = 0x55):
-    """A session with a bootloader that refuses a telecommand; what it tells; and the
-    port.
+    """Return a session with a bootloader that refuses a telecommand, its events, and
+    the port.
     """
     heard, boot = [], shipped.module("bootloader")
     port = Refusing(
@@ -190,7 +193,7 @@ def refusing(shipped, name: str, times: int, code: int = 0x55):
 
 
 @pytest.mark.parametrize("times", [1, 3])
-def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(
+def test_a_refusal_with_an_unknown_code_is_reported_and_the_telecommand_repeated(
     shipped, wire, times
 ):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", times)
@@ -199,9 +202,7 @@ def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(
     assert port.acknowledged == times + 1
 
 
-def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_with_its_code(
-    shipped, wire
-):
+def test_repeated_refusals_with_an_unknown_code_are_a_time_out(shipped, wire):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", 100)
     with pytest.raises(wire.FailedError, match="timeout") as caught:
         talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
@@ -215,7 +216,7 @@ def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_wit
     )
 
 
-def test_a_refusal_that_the_icd_knows_is_not_asked_again(shipped, wire):
+def test_a_telecommand_refused_with_a_known_code_is_not_repeated(shipped, wire):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", 1, code=2)
     with pytest.raises(wire.FailedError) as caught:
         talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
@@ -227,7 +228,7 @@ def test_a_refusal_that_the_icd_knows_is_not_asked_again(shipped, wire):
     ) == (2, "Incorrect Length", [], 1)
 
 
-def test_logs_that_come_unasked_are_told(shipped, wire):
+def test_unsolicited_logs_are_reported(shipped, wire):
     heard = []
     talking, port = session(shipped)
     talking._on_event = heard.append

@@ -1,4 +1,4 @@
-"""Streams: noise and messages of any length cost neither memory nor time."""
+"""The UART decoder handles noise and messages of any length in bounded memory."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def wire(shipped):
 @pytest.mark.parametrize(
     "noise", ["random", "zeros", "starts", "escapes", "escaped data"]
 )
-def test_a_megabyte_of_noise_costs_nothing_but_that_noise(shipped, wire, noise):
-    size, like = 1_000_000, link(shipped)
-    made = {
+def test_a_megabyte_of_noise_does_not_hide_the_next_message(shipped, wire, noise):
+    size, uart_link = 1_000_000, link(shipped)
+    noise_bytes = {
         "random": bytes(
             index * index * 2654435761 >> 13 & 0xFF for index in range(size)
         ),
@@ -28,24 +28,27 @@ def test_a_megabyte_of_noise_costs_nothing_but_that_noise(shipped, wire, noise):
         "escapes": b"\x1f" * size,
         "escaped data": b"\x1f\x1f\x7f\x00" * (size // 4),
     }[noise]
-    made = made[:-1] + b"\0"  # an escape byte in front of the start would belong to it
-    line = wire.uart_encode(like, b"\x92" + bytes(6))
-    decoder = wire.UartDecoder(like)
+    noise_bytes = (
+        noise_bytes[:-1] + b"\0"
+    )  # a final escape byte would become part of the start
+    line = wire.uart_encode(uart_link, b"\x92" + bytes(6))
+    decoder = wire.UartDecoder(uart_link)
     start = time.process_time()
-    found = [event for event in decoder.feed(made + line) if event.event == "message"]
-    took = time.process_time() - start
-    # Noise may end within what looks like a message: then the start is unexpected, and
-    # the message is there all the same.
-    assert found[-1].message == b"\x92" + bytes(6)
+    messages = [
+        event for event in decoder.feed(noise_bytes + line) if event.event == "message"
+    ]
+    duration = time.process_time() - start
+    # The noise may end with the beginning of a message. The decoder then reports an
+    # unexpected start, and still returns the message.
+    assert messages[-1].message == b"\x92" + bytes(6)
     assert decoder.pending == 0
-    on_line = sum(len(wire.uart_encode(like, event.message)) for event in found)
-    assert decoder.discarded + on_line == len(made) + len(line)
-    assert (
-        took < 5
-    )  # it takes milliseconds to a second: what grew with the square would take hours
+    on_line = sum(len(wire.uart_encode(uart_link, event.message)) for event in messages)
+    assert decoder.discarded + on_line == len(noise_bytes) + len(line)
+    # The decoder takes a second at most. With quadratic time, it would take hours.
+    assert duration < 5
 
 
-def test_no_more_is_kept_than_the_longest_message(shipped, wire):
+def test_the_decoder_buffers_at_most_the_longest_message(shipped, wire):
     decoder = wire.UartDecoder(link(shipped))
     for _ in range(100):
         decoder.feed(b"\x1f\x7f" + bytes(10_000))
@@ -53,16 +56,19 @@ def test_no_more_is_kept_than_the_longest_message(shipped, wire):
     assert decoder.discarded + decoder.pending == 100 * 10_002
 
 
-def test_a_message_as_long_as_the_longest_fits_and_a_longer_one_is_an_overrun(
+def test_a_message_of_maximum_length_is_decoded_and_a_longer_one_is_an_overrun(
     shipped, wire
 ):
-    like = link(shipped)
-    for size, expected in ((like.longest, "message"), (like.longest + 1, "overrun")):
+    uart_link = link(shipped)
+    for size, expected in (
+        (uart_link.longest, "message"),
+        (uart_link.longest + 1, "overrun"),
+    ):
         for fill in (b"\0", b"\x1f"):
-            line = wire.uart_encode(like, fill * size)
-            assert [event.event for event in wire.UartDecoder(like).feed(line)] == [
-                expected
-            ]
+            line = wire.uart_encode(uart_link, fill * size)
+            assert [
+                event.event for event in wire.UartDecoder(uart_link).feed(line)
+            ] == [expected]
 
 
 def test_a_message_without_an_id_is_refused(shipped, wire):
@@ -71,8 +77,8 @@ def test_a_message_without_an_id_is_refused(shipped, wire):
 
 
 def test_a_node_without_a_uart_is_refused(shipped, wire):
-    like = link(shipped)._replace(framing=None)
+    uart_link = link(shipped)._replace(framing=None)
     with pytest.raises(wire.UnsupportedError, match="uart"):
-        wire.UartDecoder(like)
+        wire.UartDecoder(uart_link)
     with pytest.raises(wire.UnsupportedError, match="uart"):
-        wire.uart_encode(like, b"\x80")
+        wire.uart_encode(uart_link, b"\x80")

@@ -1,4 +1,4 @@
-"""What a user of the generated package may write. It is checked, and never run."""
+"""Program of a user of the package. Type checkers check it; no test runs it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def commands() -> list[bytes]:
     angles = EstimatedAttitudeAngles.from_bytes(memoryview(bytes(6)))
     angles.estimated_roll_angle_deg = 3
     angles.estimated_pitch_angle = 5
-    again = EstimatedAttitudeAngles.from_physical(estimated_roll_angle_deg=1.5)
+    level = EstimatedAttitudeAngles.from_physical(estimated_roll_angle_deg=1.5)
     state = CurrentAdcsState(control_mode=ConModeSelect(3), cubesense1_enabled=True)
     mode: OpenEnum = state.control_mode
     number: int = (
@@ -57,14 +57,14 @@ def commands() -> list[bytes]:
     )
     return [
         angles.to_bytes(),
-        again.to_bytes(),
+        level.to_bytes(),
         Reset().to_bytes(),
         decode_telecommand(1, b"\x5a").to_bytes(),
     ]
 
 
-def turned(data: bytes) -> float:
-    """The speed of a wheel, whose type came by a star."""
+def wheel_speed_of(data: bytes) -> float:
+    """Speed of a wheel. The class comes from a star import."""
     return WheelSpeed.from_bytes(data).wheel_speed  # noqa: F405
 
 
@@ -77,9 +77,11 @@ def columns(data: bytes) -> float:
     )
 
 
-def commanded(session: Session, any: type[Message]) -> Message:
-    """A session of some node takes all; that of a node what it speaks, with what it
-    includes, and what nobody knows.
+def send_any(session: Session, any: type[Message]) -> Message:
+    """Send and request messages in sessions with and without a known node.
+
+    A session of an unknown node accepts all messages. The session of a node accepts its
+    messages, those it includes, and messages whose class is not known to the checker.
     """
     session.send(Reset())
     own = Session(cubeacp.LINK, print, lambda seconds: b"")
@@ -89,21 +91,21 @@ def commanded(session: Session, any: type[Message]) -> Message:
 
 
 def talk(client: Client, now: float, data: bytes) -> list[str]:
-    """A request, and what came of it."""
+    """Send a request with a client, and handle its outcome."""
     client.request(now, EstimatedAttitudeAngles)
     print(client.output(), client.deadline)
     events: list[Event] = client.received(now, data)
-    found = []
+    results = []
     for event in events:
         if isinstance(event, Done) and (angles := event.of(EstimatedAttitudeAngles)):
-            found.append(f"{angles.estimated_roll_angle_deg}")
+            results.append(f"{angles.estimated_roll_angle_deg}")
         elif isinstance(event, Refused):
-            found.append(event.reason or "unknown")
-    return found
+            results.append(event.reason or "unknown")
+    return results
 
 
 def wait(session: Session) -> tuple[float, bytes]:
-    """A typed answer, and a file."""
+    """Request a message of a static type, and download a file."""
     session.send(Reset())
     decoder = UartDecoder(cubeacp.LINK)
     print([event.event for event in decoder.feed(b"")], cubeacp.LINK.assumptions[0].why)
@@ -117,7 +119,7 @@ def sizes(session: Session) -> list[int]:
 
 
 def ask(session: Session) -> float:
-    """What became of a request, without an exception."""
+    """Handle the outcome of a request without an exception."""
     outcome = session.ask(EstimatedAttitudeAngles)
     return (
         outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
@@ -125,22 +127,22 @@ def ask(session: Session) -> float:
 
 
 async def wait_async(session: AsyncSession) -> tuple[float, float, bytes]:
-    """The same while other tasks go on."""
+    """Request a message and download a file in an asyncio session."""
     await session.send(Reset())
     outcome = await session.ask(EstimatedAttitudeAngles)
-    asked = (
+    angle = (
         outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
     )
     download = await session.run(Download(FileType.TELEMETRY_LOG, 0, 100))
     return (
         (await session.get(EstimatedAttitudeAngles)).estimated_roll_angle_deg,
-        asked,
+        angle,
         download.data,
     )
 
 
-def made(text: str) -> EstimatedAttitudeAngles:
-    """Of physical values, and of JSON."""
+def from_json_or_physical(text: str) -> EstimatedAttitudeAngles:
+    """Create a message from physical values, or from JSON."""
     angles = EstimatedAttitudeAngles(
         estimated_roll_angle_deg=1.5, estimated_pitch_angle=3
     )

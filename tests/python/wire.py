@@ -1,4 +1,4 @@
-"""The link of a node in a generated package."""
+"""Link of a node in a generated package."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from tests.python.packages import Package
 
 
 def link(package: Package, node: str = "cubeacp") -> Any:
-    """Of the node that has all of the protocol, unless another one is named."""
+    """Return the link of a node; `cubeacp` uses all features of the protocol."""
     return package.module(node).LINK

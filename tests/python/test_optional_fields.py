@@ -1,5 +1,6 @@
-"""Optional fields in Python: equality, JSON and columns of messages that have them.
-`tests/every_language/optional_fields.py` has what all languages do with them.
+"""Messages with optional fields can be compared, and converted to JSON and columns.
+
+`tests/every_language/optional_fields.py` tests what all languages have in common.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ def messages(package):
     return package.module("mux")
 
 
-def test_a_message_of_another_alternative_is_equal_to_what_its_frame_is_decoded_to(
+def test_a_message_equals_the_one_decoded_from_its_frame(
     messages,
 ):
     message = messages.Multiplexed(mode=2, angle_deg=1.25, turned=3, flag=True)
@@ -37,7 +38,7 @@ def test_a_message_of_another_alternative_is_equal_to_what_its_frame_is_decoded_
     )
 
 
-def test_columns_are_masked_where_a_field_is_not_there(messages):
+def test_columns_are_masked_where_a_field_is_absent(messages):
     frames = b"".join(messages.Multiplexed(mode=mode).to_bytes() for mode in (0, 1, 7))
     columns = messages.Multiplexed.decode_many(frames, physical=True)
     assert columns["rate_deg_per_s"].tolist() == [0.0, None, None]

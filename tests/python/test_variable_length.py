@@ -1,7 +1,7 @@
-"""Messages of variable length in Python: texts, JSON, errors and columns.
+"""Messages of variable length work with texts, JSON, errors and columns.
 
-`tests/conformance` compares what they decode and encode with the reference codec;
-`tests/every_language/variable_length.py` has what all languages do with them.
+`tests/conformance` compares their frames with the reference codec, and
+`tests/every_language/variable_length.py` tests what all languages have in common.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def messages(package):
     return package.module("open")
 
 
-def test_a_field_that_counts_must_agree(package, messages):
+def test_a_count_field_must_match_the_number_of_elements(package, messages):
     errors = package.module("_errors")
     gauges = messages.Gauges(gauges=(300, 1))
     with pytest.raises(
@@ -38,7 +38,7 @@ def test_a_field_that_counts_must_agree(package, messages):
         messages.Gauges.from_bytes(bytes([3, 0, 0, 1]))
 
 
-def test_a_field_may_count_what_stands_before_the_bytes_too(package, messages):
+def test_a_count_may_include_the_bytes_before_the_data(package, messages):
     errors, sized = package.module("_errors"), messages.SizedWithItsHead
     assert sized().octets_count == 4 and sized().to_bytes() == bytes([0, 0, 4, 0])
     message = sized(number=-1, data=b"abc", octets_count=7)
@@ -56,7 +56,7 @@ def test_a_field_may_count_what_stands_before_the_bytes_too(package, messages):
             sized.from_bytes(bytes([0, 0, counted, 0]))
 
 
-def test_texts_may_be_an_array(package, messages):
+def test_texts_may_form_an_array(package, messages):
     rows = messages.Rows()
     rows.words_text = ("a", "", "four", "12345678")
     assert rows.words == (
@@ -66,8 +66,8 @@ def test_texts_may_be_an_array(package, messages):
         b"12345678",
     )
     rows.pairs = (b"ab", b"cd", b"ef")
-    again = messages.Rows.from_bytes(rows.to_bytes())
-    assert again == rows and again.words_text == ("a", "", "four", "12345678")
+    decoded = messages.Rows.from_bytes(rows.to_bytes())
+    assert decoded == rows and decoded.words_text == ("a", "", "four", "12345678")
     assert messages.Rows.from_json(rows.to_json()) == rows
     error = package.module("_errors").RangeError
     with pytest.raises(error, match=r"words_text\[1\] takes up to 8 ASCII"):
@@ -84,7 +84,7 @@ def test_texts_may_be_an_array(package, messages):
         messages.WideRows(extensions=(b"one",)).to_bytes()
 
 
-def test_columns_hold_arrays_of_texts(messages):
+def test_columns_store_arrays_of_texts(messages):
     rows, none = messages.Rows(pairs=(b"ab", b"cd", b"ef")), messages.Rows()
     rows.words_text = ("a", "", "four", "12345678")
     frames = rows.to_bytes() + none.to_bytes()
@@ -109,7 +109,7 @@ def test_columns_hold_arrays_of_texts(messages):
     assert raw == [[b"one".ljust(40, b"\0")], []]
 
 
-def test_more_elements_than_there_can_be_are_refused(package, messages):
+def test_elements_beyond_the_maximum_are_refused(package, messages):
     error = package.module("_errors").RangeError
     with pytest.raises(error, match="samples takes up to 5 values"):
         messages.Narrow(samples=(0,) * 6).to_bytes()
@@ -119,17 +119,17 @@ def test_more_elements_than_there_can_be_are_refused(package, messages):
         messages.Payload(data=bytes(256)).to_bytes()
 
 
-def test_zeros_that_a_frame_ends_with_may_be_left_out(package, messages):
-    whole = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80" + bytes(19))
+def test_trailing_zeros_of_a_frame_may_be_omitted(package, messages):
+    complete = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80" + bytes(19))
     cut = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80")
-    assert cut == whole and (cut.input, cut.value, cut.words_text) == (-2, 1.0, "")
+    assert cut == complete and (cut.input, cut.value, cut.words_text) == (-2, 1.0, "")
     assert (
         len(cut.to_bytes()) == 23 and messages.Two.from_bytes(b"\0") == messages.Two()
     )
-    for size, known in ((0, 1), (24, 23)):
+    for size, expected in ((0, 1), (24, 23)):
         with pytest.raises(
             package.module("_errors").LengthError,
-            match=f"has {known} byte.*, {size} given",
+            match=f"has {expected} byte.*, {size} given",
         ):
             messages.CutOff.from_bytes(bytes(size))
     frames = [b"\0\5\x3f\x80", bytes(23)]
@@ -137,12 +137,12 @@ def test_zeros_that_a_frame_ends_with_may_be_left_out(package, messages):
     assert messages.CutOff.decode_many(bytes(46))["value"].tolist() == [0.0, 0.0]
 
 
-def test_columns_hold_what_is_there(package, messages):
+def test_columns_store_the_elements_of_each_frame(package, messages):
     frames = [
         messages.Narrow(samples=values).to_bytes() for values in ((), (1, -1), (7,))
     ]
     column = messages.Narrow.decode_many(frames)["samples"]
-    assert [one.tolist() for one in column] == [[], [1, -1], [7]]
+    assert [row.tolist() for row in column] == [[], [1, -1], [7]]
     assert messages.Narrow.decode_table(frames, physical=False)[
         "samples"
     ].to_pylist() == [[], [1, -1], [7]]
@@ -166,7 +166,9 @@ def test_columns_of_fields_behind_a_variable_length_part_are_numbers(tmp_path):
     assert list(columns["payload"]) == [bytes(3), b"", bytes(2)]
 
 
-def test_an_open_end_of_structs_is_as_long_as_the_frame(package, messages):
+def test_a_variable_length_array_of_structs_extends_to_the_end_of_the_frame(
+    package, messages
+):
     inner = messages.Inner(type=-2, gauge=300, text_text="x")
     message = messages.TurnedStructs(inners=(inner, messages.Inner()))
     frame = message.to_bytes()
@@ -187,7 +189,7 @@ def test_an_open_end_of_structs_is_as_long_as_the_frame(package, messages):
         messages.TurnedStructs.from_bytes(bytes(7))
 
 
-def test_columns_of_an_open_end_of_structs_are_lists(messages):
+def test_columns_of_a_variable_length_array_of_structs_are_lists(messages):
     frames = [
         messages.TurnedStructs(
             inners=tuple(messages.Inner(type=n) for n in range(count))

@@ -1,4 +1,4 @@
-"""Overlay fields in Python: read-only attributes, dictionaries and columns."""
+"""Overlay fields are read-only attributes, and values in dictionaries and columns."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ def views(odd):
     return odd.module("odd").Views
 
 
-def test_a_view_is_not_set(views):
+def test_an_overlay_field_cannot_be_set(views):
     message = views()
     with pytest.raises(AttributeError):
         message.across = 1
@@ -20,9 +20,9 @@ def test_a_view_is_not_set(views):
         views(across=1)
 
 
-def test_views_stand_behind_the_fields_of_a_message(views):
+def test_overlay_fields_follow_the_fields_of_a_message(views):
     message = views(narrow=31)
-    own, seen = (
+    fields, overlays = (
         ["narrow", "rest", "word", "octets"],
         [
             "across",
@@ -32,9 +32,9 @@ def test_views_stand_behind_the_fields_of_a_message(views):
             "within",
         ],
     )
-    assert [info.attribute for info in views.FIELDS] == own
-    assert [info.attribute for info in views.VIEWS] == seen
-    assert list(message.as_dict()) == own + seen
+    assert [info.attribute for info in views.FIELDS] == fields
+    assert [info.attribute for info in views.VIEWS] == overlays
+    assert list(message.as_dict()) == fields + overlays
     assert list(message.as_dict(physical=True))[4] == "across_v"
     assert (
         views.from_dict(message.as_dict())
@@ -47,7 +47,9 @@ def test_views_stand_behind_the_fields_of_a_message(views):
     )
 
 
-def test_a_message_that_makes_no_frame_has_no_views_and_can_be_shown(odd, views):
+def test_a_message_with_a_value_out_of_range_has_no_overlay_values_but_can_be_printed(
+    odd, views
+):
     message = views(narrow=32)
     with pytest.raises(odd.module().RangeError) as caught:
         message.across  # noqa: B018
@@ -55,7 +57,7 @@ def test_a_message_that_makes_no_frame_has_no_views_and_can_be_shown(odd, views)
     assert "narrow=32" in repr(message) and message != views()
 
 
-def test_tables_have_views_as_columns(views):
+def test_tables_have_overlay_fields_as_columns(views):
     frames = [bytes(range(start, start + 12)) for start in range(0, 240, 7)]
     columns = views.decode_many(b"".join(frames))
     for name, column in columns.items():
