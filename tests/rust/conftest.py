@@ -1,6 +1,4 @@
-"""The crate of the shipped ICDs and that of odd ones, each generated and built once a
-run.
-"""
+"""Fixtures: generated crates, each generated once in a run of the tests."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ from tests.rust import harness, odd
 
 
 class Subject(NamedTuple):
-    """ICDs, and the crate's main file."""
+    """ICDs, and the main file of the crate generated from them."""
 
     icd: Icd
     crate: Path
@@ -32,14 +30,14 @@ def shipped(tmp_path_factory) -> Subject:
 
 @pytest.fixture(scope="session")
 def strange(tmp_path_factory) -> Subject:
-    """ICDs unlike ours."""
+    """Crate of ICDs with features that the ICDs of the project do not use."""
     icd = harness.read(*odd.write(tmp_path_factory.mktemp("icd")))
     return Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("strange")))
 
 
 @pytest.fixture(scope="session")
 def stories(tmp_path_factory) -> Subject:
-    """The ICDs of `tests.every_language`: arrays, structs, optional fields and more."""
+    """Crate of the ICDs of `tests.every_language`: arrays, structs and more."""
     folder = tmp_path_factory.mktemp("stories")
     icd = write_icds(STORIES, folder / "icd")
     return Subject(icd, harness.generate(icd, folder))
@@ -47,5 +45,5 @@ def stories(tmp_path_factory) -> Subject:
 
 @pytest.fixture(scope="session", params=["shipped", "strange"])
 def subject(request) -> Subject:
-    """One after the other."""
+    """Run the test with each of the two crates."""
     return request.getfixturevalue(request.param)

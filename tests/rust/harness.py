@@ -1,5 +1,7 @@
-"""Generates the crate and its testee, builds them, and asks the testee what the
-reference codec is asked.
+"""Generate a crate and its testee, build them, and compare them with the reference.
+
+The testee is a program that answers requests about the crate. `differences` sends the
+same requests to the testee and to the reference codec.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ def _renderer(name: str) -> Renderer:
 
 
 def texts(icd: Icd, backend: str = "rust") -> dict[str, str]:
-    """Every file of the backend."""
+    """Return the text of every file of the backend by its path."""
     return {
         str(path): text
         for path, text in backends.get(backend).files(icd, _renderer(backend))
@@ -43,7 +45,7 @@ def texts(icd: Icd, backend: str = "rust") -> dict[str, str]:
 
 
 def generate(icd: Icd, folder: Path) -> Path:
-    """Writes the crate and its testee below the folder; the crate's main file."""
+    """Write the crate and its testee to ``folder``; return the crate's main file."""
     for backend in BACKENDS:
         for path, text in texts(icd, backend).items():
             target = folder / backend / path
@@ -53,19 +55,20 @@ def generate(icd: Icd, folder: Path) -> Path:
 
 
 def main_of_testee(crate: Path) -> Path:
-    """The main file of the testee that lies beside the crate."""
+    """Main file of the testee that `generate` wrote with a crate."""
     return crate.parent.parent.parent / "rust-testee" / "src" / "main.rs"
 
 
 def build_testee(icd: Icd) -> list[str]:
-    """The command that starts the testee, with the checks of a debug build; shared with
-    the conformance run.
+    """Build the testee with debug checks and return the command that starts it.
+
+    The conformance tests share the build.
     """
     return build(all_languages()["rust-debug"], icd)
 
 
 def ask(program: list[str], lines: Iterable[bytes]) -> list[dict]:
-    """The testee's answers."""
+    """Send requests to the testee, one on each line, and return its answers."""
     done = subprocess.run(
         program, input=b"".join(line + b"\n" for line in lines), capture_output=True
     )
@@ -76,8 +79,9 @@ def ask(program: list[str], lines: Iterable[bytes]) -> list[dict]:
 def differences(
     icd: Icd, program: list[str], requests: list[dict]
 ) -> list[tuple[dict, dict, dict]]:
-    """Requests that the reference codec answers otherwise: request, its answer, the
-    testee's.
+    """Return requests to which the testee and the reference codec answer differently.
+
+    Each item has the request, the answer of the reference codec and that of the testee.
     """
     reference = Reference(icd)
     lines = [json.dumps(request).encode() for request in requests]
@@ -85,9 +89,9 @@ def differences(
         requests, map(reference.answer, lines), ask(program, lines), strict=True
     )
     return [
-        (request, good, given)
-        for request, good, given in pairs
-        if _bare(good) != _bare(given)
+        (request, expected, answer)
+        for request, expected, answer in pairs
+        if _bare(expected) != _bare(answer)
     ]
 
 
@@ -96,7 +100,7 @@ def _bare(answer: dict) -> dict:
 
 
 def routes(icd: Icd) -> Iterator[tuple[Node, Message, str, int]]:
-    """Every way to every message: node, message, kind, id."""
+    """Yield node, message, kind and id of every message under each of its ids."""
     for node in icd.nodes:
         for message in icd.messages_of(node):
             for kind, id in (
@@ -108,11 +112,12 @@ def routes(icd: Icd) -> Iterator[tuple[Node, Message, str, int]]:
 
 
 def frame_requests(icd: Icd, count: int, seed: int = 1) -> list[dict]:
-    """Decoding of zeros, ones, one-hot bytes and random frames, and of frames that are
-    too short or too long.
+    """Make requests to decode zeros, ones, single bits and random frames.
+
+    Some frames are too short or too long.
     """
-    source = random.Random(seed)
-    found = []
+    generator = random.Random(seed)
+    requests = []
     for node, message, kind, id in routes(icd):
         size = message.length
         frames = [
@@ -123,46 +128,62 @@ def frame_requests(icd: Icd, count: int, seed: int = 1) -> list[dict]:
             b"",
         ]
         frames += [
-            bytes(1 << (at + n) % 8 if n == at else 0 for n in range(size))
-            for at in range(min(size, 40))
+            bytes(
+                1 << (index + position) % 8 if position == index else 0
+                for position in range(size)
+            )
+            for index in range(min(size, 40))
         ]
-        frames += [source.randbytes(size) for _ in range(count)]
-        to = {"op": "decode", "node": node.name, "kind": kind, "id": id, "names": True}
-        found += [{**to, "bytes": frame.hex()} for frame in frames]
-    return found
+        frames += [generator.randbytes(size) for _ in range(count)]
+        keys = {
+            "op": "decode",
+            "node": node.name,
+            "kind": kind,
+            "id": id,
+            "names": True,
+        }
+        requests += [{**keys, "bytes": frame.hex()} for frame in frames]
+    return requests
 
 
 def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
-    """Encoding with values at and beyond the ends of each field, and with physical
-    values near and at ties, of one field for each scale, width and sign.
+    """Make requests to encode raw values at and beyond the limits of each field.
 
-    Messages of more than ``largest`` fields are left out: every request holds all of
-    them.
+    Further requests encode physical values at and near ties, for one field of each
+    scale, width and sign. Messages of more than ``largest`` fields are skipped, since
+    every request contains all fields.
     """
-    source = random.Random(seed)
+    generator = random.Random(seed)
     reference = Reference(icd)
-    found, scaled = [], set()
+    requests, scaled = [], set()
     for node, message, kind, id in routes(icd):
-        to = {"node": node.name, "kind": kind, "id": id}
-        found.append({"op": "constants", **to})
+        keys = {"node": node.name, "kind": kind, "id": id}
+        requests.append({"op": "constants", **keys})
         if len(message.fields) > largest:
             continue
-        fresh = reference.answer(json.dumps(found[-1]).encode())["default"]
+        defaults = reference.answer(json.dumps(requests[-1]).encode())["default"]
         for field in message.fields:
-            rest = {name: value for name, value in fresh.items() if name != field.name}
-            found += [
-                {"op": "encode", **to, "raw": {**fresh, field.name: value}}
+            other_values = {
+                name: value for name, value in defaults.items() if name != field.name
+            }
+            requests += [
+                {"op": "encode", **keys, "raw": {**defaults, field.name: value}}
                 for value in _raw_values(field)
             ]
             kind = (field.scale, field.bits, field.type)
             if not field.scale or kind in scaled:
                 continue
             scaled.add(kind)
-            for value in _doubles(field, source):
-                found.append(
-                    {"op": "encode", **to, "raw": rest, "physical": {field.name: value}}
+            for value in _doubles(field, generator):
+                requests.append(
+                    {
+                        "op": "encode",
+                        **keys,
+                        "raw": other_values,
+                        "physical": {field.name: value},
+                    }
                 )
-    return found
+    return requests
 
 
 def _raw_values(field: NodePlace) -> list[object]:
@@ -176,9 +197,9 @@ def _raw_values(field: NodePlace) -> list[object]:
     return [low, high, low - 1, high + 1, high // 3, low // 3]
 
 
-def _doubles(field: NodePlace, source: random.Random) -> list[str]:
+def _doubles(field: NodePlace, generator: random.Random) -> list[str]:
     low, high = field.raw_min, field.raw_max
-    found = [
+    values = [
         math.nan,
         math.inf,
         -math.inf,
@@ -192,13 +213,19 @@ def _doubles(field: NodePlace, source: random.Random) -> list[str]:
         2.0**97,
         -(2.0**126),
     ]
-    for raw in (low, high, 0, source.randint(low, high), source.randint(low, high)):
+    for raw in (
+        low,
+        high,
+        0,
+        generator.randint(low, high),
+        generator.randint(low, high),
+    ):
         for doubled in (2 * raw - 1, 2 * raw, 2 * raw + 1):  # a tie, the value, a tie
             middle = field.scale.factor * doubled / 2 + field.scale.offset
-            value = middle.numerator / middle.denominator
-            found += [
-                math.nextafter(value, -math.inf),
-                value,
-                math.nextafter(value, math.inf),
+            double = middle.numerator / middle.denominator
+            values += [
+                math.nextafter(double, -math.inf),
+                double,
+                math.nextafter(double, math.inf),
             ]
-    return [struct.pack(">d", value).hex() for value in found]
+    return [struct.pack(">d", double).hex() for double in values]

@@ -1,5 +1,7 @@
-"""ICDs unlike ours for Rust: names of every length, ids beyond a byte, enumerations of
-every kind, and what C's tests found odd.
+"""Write ICDs with features that the ICDs of the project do not use, for Rust.
+
+They have names of every length, ids beyond a byte, enumerations of every kind, and the
+features of `tests.c.odd`.
 """
 
 from __future__ import annotations
@@ -7,19 +9,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from tests.c import odd as of_c
+from tests.c import odd as odd_for_c
 
-LENGTHS = (
-    1,
-    2,
-    9,
-    *range(17, 41),
-    44,
-    48,
-    *range(50, 57),
-    60,
-)  # where lines begin to be broken
-FEW = (1, 9, 60)  # of them, for what does not depend on where
+# Lengths of names at which rustfmt begins to break lines of the generated code.
+LENGTHS = (1, 2, 9, *range(17, 41), 44, 48, *range(50, 57), 60)
+# Some of them, for tests that do not depend on line breaks.
+FEW_LENGTHS = (1, 9, 60)
 BORROWED = (
     "Core",
     "Alloc",
@@ -39,12 +34,12 @@ BORROWED = (
 
 
 def write(folder: Path) -> list[Path]:
-    """The files, those that are included first."""
-    return [*write_names(folder, FEW), *of_c.write(folder)]
+    """Write all ICDs and return their files; included files come first."""
+    return [*write_names(folder, FEW_LENGTHS), *odd_for_c.write(folder)]
 
 
 def write_names(folder: Path, lengths: tuple[int, ...]) -> list[Path]:
-    """Names of these lengths for everything that has a name."""
+    """Write ICDs in which every kind of name has each of these lengths."""
     base = _write(folder / "base.yaml", _base())
     return [base, _write(folder / "lengths.yaml", _lengths(lengths))]
 
@@ -55,12 +50,10 @@ def _write(path: Path, tree: dict) -> Path:
 
 
 def word(letter: str, length: int) -> str:
-    """A name whose identifier has that many characters."""
-    return (
-        (letter * 9 + " ") * (length // 10) + letter * (length % 10)
-        if length % 10
-        else word(letter, length - 1) + letter
-    )
+    """Return a name whose identifier has ``length`` characters."""
+    if length % 10:
+        return (letter * 9 + " ") * (length // 10) + letter * (length % 10)
+    return word(letter, length - 1) + letter
 
 
 def _base() -> dict:
@@ -72,11 +65,11 @@ def _base() -> dict:
         "node_type": 300,
         "interface_version": 1,
     }
-    every = {
+    dense = {
         "name": "Every Byte",
         "members": [{"value": n, "name": f"Value {n}"} for n in range(256)],
     }
-    one = {
+    few = {
         "name": "One Value",
         "members": [{"value": 3, "name": "Unknown"}, {"value": 4, "name": "Unlisted"}],
     }
@@ -104,7 +97,7 @@ def _base() -> dict:
     return {
         "icdgen": 1,
         "node": head,
-        "enums": [every, one, gaps],
+        "enums": [dense, few, gaps],
         "messages": messages,
     }
 

@@ -1,6 +1,6 @@
-"""Makes and builds the client of `tests.sim.harness` from what is generated.
+"""Build the client of `tests.sim.harness` from the generated Rust crate.
 
-python -m tests.rust.sim_client FOLDER     builds it there and prints its path
+``python -m tests.rust.sim_client FOLDER`` builds it in a folder and prints its path.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ NODE = "cubeacp"
 
 
 class Row(NamedTuple):
-    """A message: its type, and the data that are sent, as a literal."""
+    """Type of a message, and the data to send, as text of Rust."""
 
     type: str
     data: str
@@ -40,29 +40,27 @@ class Place(NamedTuple):
 
 
 def source(icd: Icd, node_name: str = NODE) -> str:
-    """The client's main file."""
-    node, known = icd.node(node_name), facts.of(icd, icd.node(node_name))
-    rows = {one.model.name: one for one in describe(icd).node(node).all_messages}
+    """Return the text of the client's main file."""
+    node = icd.node(node_name)
+    protocol = facts.of(icd, node)
+    descriptions = describe(icd).node(node).all_messages
+    rows = {message.model.name: message for message in descriptions}
 
     def of(messages, values) -> list[Row]:
         return [
             _row(icd, rows[message.name], values(icd, message)) for message in messages
         ]
 
-    commands = [m for m in known.telecommands.values() if m.kind != CONFIGURATION]
+    commands = [m for m in protocol.telecommands.values() if m.kind != CONFIGURATION]
     starters = [
-        one.name
-        for one in icd.nodes
-        if one.protocol.get("program_start", {}).get("application") == node.name
+        other.name
+        for other in icd.nodes
+        if other.protocol.get("program_start", {}).get("application") == node.name
     ]
     boot = icd.node(starters[0])
-    last, log = (
-        known.polled,
-        icd.protocol_of(node)
-        .get("unsolicited_log", {})
-        .get("configured_by", {})
-        .get("message"),
-    )
+    last = protocol.polled
+    unsolicited_log = icd.protocol_of(node).get("unsolicited_log", {})
+    log = unsolicited_log.get("configured_by", {}).get("message")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
         trim_blocks=True,
@@ -71,10 +69,10 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     )
     return environment.get_template("sim_client.rs.j2").render(
         node=node.name,
-        telemetry=of(known.telemetry.values(), allowed_values),
+        telemetry=of(protocol.telemetry.values(), allowed_values),
         settings=of(
-            (m for m in known.telecommands.values() if m.kind == CONFIGURATION),
-            numbered,
+            (m for m in protocol.telecommands.values() if m.kind == CONFIGURATION),
+            distinct_values,
         ),
         acknowledged=of(
             (m for m in commands if m.acknowledge and not m.expects_reset),
@@ -86,7 +84,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         ),
         resets=of((m for m in commands if m.expects_reset), allowed_values),
         last=Place(_type(rows[last.name]), _field(rows[last.name], "Last TC ID")),
-        identification=_type(rows[known.identification.message.name]),
+        identification=_type(rows[protocol.identification.message.name]),
         log=log and _type(rows[log]),
         restarted=starters[0],
         start=_start(icd, boot),
@@ -95,38 +93,39 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 
 
 def _start(icd: Icd, boot: Node) -> str:
-    """The type of the telecommand that starts the application."""
+    """Return the type of the telecommand that starts the application."""
     name = boot.protocol["program_start"]["message"]
-    return _type(
-        next(one for one in describe(icd).node(boot).messages if one.model.name == name)
-    )
+    messages = describe(icd).node(boot).messages
+    return _type(next(message for message in messages if message.model.name == name))
 
 
 def build(folder: Path) -> list[str]:
-    """The command that starts the client, built in that folder."""
+    """Build the client in ``folder`` and return the command that starts it."""
     icd, tools = harness.shipped(), Toolchain("default")
-    shutil.rmtree(folder / "rust", ignore_errors=True)  # of an earlier build
-    library = tools.library(
-        harness.generate(icd, folder), *USED
-    )  # with checks of arithmetic
+    shutil.rmtree(folder / "rust", ignore_errors=True)  # remove an earlier build
+    # The options include checks of arithmetic.
+    library = tools.library(harness.generate(icd, folder), *USED)
     main = folder / "sim_client.rs"
     main.write_text(source(icd), encoding="utf-8")
     shutil.copy(HERE / "sim_device.rs", folder)
     return [str(tools.program(main, library, folder / "sim_client"))]
 
 
-def numbered(icd: Icd, message: Message) -> dict[str, int | bytes]:
-    """A message in which hardly two fields have the same value, so that none can be
-    taken for another.
+def distinct_values(icd: Icd, message: Message) -> dict[str, int | bytes]:
+    """Return raw values of a message in which nearly all fields differ.
+
+    A node that mixes up two fields then returns another message.
     """
     raw = allowed_values(icd, message)
     for number, field in enumerate(message.fields, 1):
         if field.const is None:
-            raw[field.name] = _numbered(field, number, raw[field.name])
+            raw[field.name] = _distinct_value(field, number, raw[field.name])
     return raw
 
 
-def _numbered(field: NodePlace, number: int, otherwise: int | bytes) -> int | bytes:
+def _distinct_value(
+    field: NodePlace, number: int, otherwise: int | bytes
+) -> int | bytes:
     if field.is_bytes:
         return bytes((number + at) % 256 for at in range(field.bits // 8))
     if field.type == "float":
@@ -145,7 +144,7 @@ def _type(row: MessageDescription) -> str:
 
 
 def _field(row: MessageDescription, name: str) -> str:
-    return next(one.name for one in row.fields if one.model.name == name)
+    return next(field.name for field in row.fields if field.model.name == name)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""Every message of a crate of odd ICDs does what the reference codec does, to the last
-bit: ids beyond a byte, enumerations of every kind, integers of every width and place.
+"""The crate of odd ICDs decodes and encodes exactly as the reference codec does.
 
-`tests/conformance` does the same with the shipped ICDs and golden vectors.
+The ICDs have ids beyond a byte, enumerations of every kind, and integers of every width
+and position. `tests/conformance` tests the shipped ICDs and golden vectors.
 """
 
 from __future__ import annotations
@@ -20,24 +20,25 @@ from tests.rust import harness
 
 @pytest.fixture(scope="module")
 def testee(strange) -> list[str]:
-    """The command that answers requests about the crate."""
+    """Command that starts the testee of the crate."""
     return harness.build_testee(strange.icd)
 
 
-def test_decoding_and_encoding_again(strange, testee):
+def test_frames_are_decoded_and_encoded_like_the_reference_codec(strange, testee):
     requests = harness.frame_requests(strange.icd, count=10)
     assert harness.differences(strange.icd, testee, requests)[:3] == []
 
 
-def test_constants_and_encoding_of_raw_and_physical_values(strange, testee):
+def test_constants_and_values_are_those_of_the_reference_codec(strange, testee):
     requests = harness.value_requests(strange.icd, largest=30)
     assert len(requests) > 5000
     assert harness.differences(strange.icd, testee, requests)[:3] == []
 
 
-def test_every_physical_value_of_every_scale(strange, testee):
-    """All raw values of each scaled field of up to 12 bits, one field for each scale,
-    width and sign.
+def test_every_physical_value_of_every_scale_is_exact(strange, testee):
+    """The test covers all raw values of one field of each scale, width and sign.
+
+    It skips fields of more than 12 bits.
     """
     fields = {}
     for node, message, kind, id in harness.routes(strange.icd):
@@ -60,22 +61,26 @@ def test_every_physical_value_of_every_scale(strange, testee):
     for (scale, _, _), (*_, field), answer in zip(
         fields, fields.values(), answers, strict=True
     ):
-        assert answer["failures"] == (_lost(field) if answer["failures"] else 0), (
-            field.name
-        )
+        assert answer["failures"] == (
+            _count_of_changed_values(field) if answer["failures"] else 0
+        ), field.name
         assert answer["physical"] == _all_doubles(scale, field), field.name
 
 
-def _lost(field: NodePlace) -> int:
-    """How many raw values do not come back from their double: none but for scales of
-    more digits than a double has.
+def _count_of_changed_values(field: NodePlace) -> int:
+    """Count the raw values that a round trip through a double changes.
+
+    This happens only for scales with more digits than a double has.
     """
     assert abs(field.scale.offset) > 1 << 53
     raws = range(field.raw_min, field.raw_max + 1)
-    return sum(_back(field, codec.physical_double(field, raw)) != raw for raw in raws)
+    return sum(
+        _raw_from_physical(field, codec.physical_double(field, raw)) != raw
+        for raw in raws
+    )
 
 
-def _back(field: NodePlace, value: float) -> int | None:
+def _raw_from_physical(field: NodePlace, value: float) -> int | None:
     try:
         return codec.raw_from_physical(field, value)
     except codec.CodecError:

@@ -1,4 +1,7 @@
-"""The examples in the documentation of generated code do what they say."""
+"""The examples in the documentation of a generated crate compile and pass.
+
+The tests run them with `rustdoc --test`.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +19,15 @@ PASSED = re.compile(r"test result: ok. (\d+) passed; 0 failed; 0 ignored")
 
 
 def examples(crate: Path, only: str = "") -> int:
-    """How many there are, in files whose path holds that."""
+    """Count the examples in files whose path contains ``only``."""
     files = (file for file in crate.parent.rglob("*.rs") if only in file.as_posix())
     return sum(len(EXAMPLE.findall(file.read_text())) for file in files) // 2
 
 
-def test_each_of_them_runs(subject):
-    """All; where each is a program of its own, those of the node with the fewest
-    messages.
+def test_all_examples_pass(subject):
+    """An old rustdoc compiles each example as a program of its own, which is slow.
+
+    With it, the test runs only the examples of the node with the fewest messages.
     """
     library, tools = (
         Toolchain("default").library(subject.crate, *USED),
@@ -31,11 +35,11 @@ def test_each_of_them_runs(subject):
     )
     least = min(subject.icd.nodes, key=lambda node: len(node.messages))
     only = "" if tools.merges else f"/{least.name}/"
-    said = tools.tested(subject.crate, library, only)
-    assert sum(map(int, PASSED.findall(said))) == examples(subject.crate, only) > 0
+    output = tools.tested(subject.crate, library, only)
+    assert sum(map(int, PASSED.findall(output))) == examples(subject.crate, only) > 0
 
 
-def test_every_message_enumeration_and_direction_has_one(subject):
+def test_every_message_enumeration_and_direction_has_an_example(subject):
     for node in subject.icd.nodes:
         for file in (subject.crate.parent / node.name).glob("*.rs"):
             parts = DECLARED.split(file.read_text())
@@ -46,7 +50,7 @@ def test_every_message_enumeration_and_direction_has_one(subject):
                 )
 
 
-def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
+def test_every_node_with_a_client_has_an_example_of_it(shipped):
     for node in shipped.icd.nodes:
         text = (shipped.crate.parent / node.name / "mod.rs").read_text()
         assert ("//! ```" in text) == (
@@ -54,7 +58,7 @@ def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
         ), node.name
 
 
-def test_one_that_says_otherwise_fails(shipped, tmp_path):
+def test_an_example_with_a_wrong_value_fails(shipped, tmp_path):
     library = Toolchain("default").library(shipped.crate, *USED)
     text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
     start = text.index("/// ```")

@@ -1,4 +1,4 @@
-"""The unit test of a driver in the guide to Rust: it runs as a user's own."""
+"""The unit test of a driver that the guide to Rust shows compiles and passes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.rust.tools import USED, Toolchain, run
 TEST = "limits_are_written_refused_and_read"
 
 
-def test_the_guide_plays_a_device_that_acknowledges_and_refuses(tmp_path):
+def test_the_unit_test_of_the_guide_passes(tmp_path):
     page = documents.text("guides/rust")
     (code,) = documents.blocks(
         page.split("## Play the device in your tests")[1], "rust"

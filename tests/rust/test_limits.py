@@ -1,5 +1,6 @@
-"""A field tells whether a value is within its limits, the limits themselves included or
-excluded as the ICD declares them.
+"""`allows` reports whether a value is within the limits of a field.
+
+The ICD declares whether the limits themselves are included (`min`) or not (`above`).
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ fn main() {
         ("At Most", [true, true, false]),
         ("Below", [true, false, false]),
     ] {
-        let told = [1.5, 2.0, 2.5].map(|value| allowed(name, value));
-        assert_eq!(told, values, "{name} 2: whether 1.5, 2 and 2.5 are allowed");
+        let results = [1.5, 2.0, 2.5].map(|value| allowed(name, value));
+        assert_eq!(results, values, "{name} 2: whether 1.5, 2 and 2.5 are allowed");
         assert!(!allowed(name, f64::NAN), "{name}: NaN");
     }
 }

@@ -1,4 +1,8 @@
-"""What the generated files are like, whatever the tools say of them."""
+"""The text of the generated crate has properties that the Rust tools do not check.
+
+The files are reproducible, name their generator, and contain hostile text only in
+comments and strings.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +29,11 @@ def strange_texts(strange) -> dict[str, str]:
     return harness.texts(strange.icd)
 
 
-def test_two_runs_give_the_same(shipped):
+def test_two_runs_generate_the_same_files(shipped):
     assert harness.texts(shipped.icd) == harness.texts(harness.read(harness.SHIPPED))
 
 
-def test_one_field_less_changes_only_what_mentions_it(tmp_path):
+def test_removing_a_field_changes_only_the_files_that_mention_it(tmp_path):
     line = "      - {at: 16, bits: 4,  name: Mode,       type: enum, enum: Mode}\n"
     before = harness.texts(demo(tmp_path))
     after = harness.texts(demo(tmp_path, DEMO.replace(line, "")))
@@ -38,14 +42,14 @@ def test_one_field_less_changes_only_what_mentions_it(tmp_path):
         for name in before.keys() | after.keys()
         if before.get(name) != after.get(name)
     }
-    named = {
+    assert changed == {
         "src/demo/estimated_roll.rs",
-        "src/demo/enums.rs",
-    }  # the enumeration says which fields hold it
-    assert changed == {*named, "src/demo/mod.rs"}  # which holds the digest
+        "src/demo/enums.rs",  # the documentation of an enumeration lists its fields
+        "src/demo/mod.rs",  # contains the digest of the ICD
+    }
 
 
-def test_the_digest_stands_in_one_file_of_its_node(shipped):
+def test_the_digest_is_in_one_file_of_its_node(shipped):
     texts = harness.texts(shipped.icd)
     for node in shipped.icd.nodes:
         assert [name for name, text in texts.items() if node.digest[:16] in text] == [
@@ -53,7 +57,7 @@ def test_the_digest_stands_in_one_file_of_its_node(shipped):
         ]
 
 
-def test_every_file_says_where_it_comes_from_and_no_more(shipped):
+def test_every_file_names_its_generator_without_time_path_or_licence(shipped):
     for name, text in harness.texts(shipped.icd).items():
         first = text.splitlines()[0]
         assert re.match(
@@ -65,7 +69,7 @@ def test_every_file_says_where_it_comes_from_and_no_more(shipped):
         ), name
 
 
-def test_comments_tell_unit_range_table_and_errata(shipped):
+def test_comments_show_unit_range_table_and_errata(shipped):
     text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
     assert "telemetry 146, 6 bytes. Table 102." in text
     assert (
@@ -78,7 +82,7 @@ def test_comments_tell_unit_range_table_and_errata(shipped):
         assert f"{erratum.label} {erratum.id}{erratum.sureness}: " in text
 
 
-def test_no_unsafe_code_no_std_no_dependency(shipped):
+def test_the_crate_has_no_unsafe_code_no_std_and_no_dependency(shipped):
     texts = harness.texts(shipped.icd)
     assert "#![no_std]\n#![forbid(unsafe_code)]\n" in texts["src/lib.rs"]
     assert not [
@@ -93,8 +97,9 @@ def test_no_unsafe_code_no_std_no_dependency(shipped):
 
 
 def test_hostile_text_stays_in_comments_and_strings(strange_texts):
-    """It compiles, which `test_tidy` shows; here: what it would need to break out is
-    not there.
+    """Text of the ICD contains no characters that would end a comment or a string.
+
+    `test_tidy` checks that the crate compiles.
     """
     for name, text in strange_texts.items():
         assert all(char.isprintable() or char == "\n" for char in text), name
@@ -108,14 +113,14 @@ def test_hostile_text_stays_in_comments_and_strings(strange_texts):
                 ), line
 
 
-def test_what_clashes_in_rust_is_announced_in_one_scope(tmp_path):
+def test_clashing_names_are_identifiers_of_one_scope(tmp_path):
     path = odd.write_clashing(tmp_path)
-    seen: dict[tuple[str, str], str] = {}
+    owners: dict[tuple[str, str], str] = {}
     clashes = set()
-    for one in backends.get("rust").identifiers(harness.read(path)):
-        if (one.scope, one.text) in seen:
-            clashes.add((seen[one.scope, one.text], one.owner))
-        seen.setdefault((one.scope, one.text), one.owner)
+    for identifier in backends.get("rust").identifiers(harness.read(path)):
+        if (identifier.scope, identifier.text) in owners:
+            clashes.add((owners[identifier.scope, identifier.text], identifier.owner))
+        owners.setdefault((identifier.scope, identifier.text), identifier.owner)
     assert clashes == {
         ("a name of the generated code", "message `Result`"),
         ("a name of the generated code", "message `Enums`"),
@@ -124,8 +129,8 @@ def test_what_clashes_in_rust_is_announced_in_one_scope(tmp_path):
         ("a name of the generated code", "node `support`"),
     }
     words = {
-        one.owner
-        for one in backends.get("rust").identifiers(harness.read(path))
-        if one.text in backends.get("rust").reserved
+        identifier.owner
+        for identifier in backends.get("rust").identifiers(harness.read(path))
+        if identifier.text in backends.get("rust").reserved
     }
     assert words == {"member `Self` of `Words`"}

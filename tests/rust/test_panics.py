@@ -1,5 +1,7 @@
-"""Nothing in the crate can panic, and nothing allocates: an optimised program of all of
-it holds no code that does.
+"""No function of the crate can panic or allocate memory.
+
+The tests build an optimised program that uses every function, and search its symbols
+for panics and allocators.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from tests.rust import harness, odd
 from tests.rust.conftest import Subject
 from tests.rust.tools import Toolchain, run, toolchains
 
-FAST, SMALL = "3", "z"  # what users build for
+FAST, SMALL = "3", "z"  # levels of optimisation that users choose
 HEAD = """\
 #![no_std]
 #![allow(non_snake_case)]
@@ -58,7 +60,7 @@ WIRE = Path(__file__).parent / "wire.rs"
 
 
 def everything(icd: Icd) -> Iterator[str]:
-    """A function for each function of the crate that a user can call."""
+    """Yield Rust code that exports each function of the crate that users can call."""
     described = describe(icd)
     for node in described.nodes:
         for message in node.messages:
@@ -70,17 +72,17 @@ def everything(icd: Icd) -> Iterator[str]:
             for field in (
                 field for field in message.declared_members if field.is_scaled
             ):
-                one, templates = (
-                    field.physical_name,
-                    ((ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)),
-                )
-                template = templates[not field.is_settable]
+                getter = field.physical_name
+                if field.count:
+                    template = ELEMENT if field.is_settable else READ_ELEMENT
+                else:
+                    template = SCALED if field.is_settable else READ
                 value = "Option<f64>" if field.model.conditions else "f64"
                 yield template.format(
-                    name=f"{name}_{one}",
+                    name=f"{name}_{getter}",
                     type=type_,
-                    getter=one,
-                    setter=f"set_{one}",
+                    getter=getter,
+                    setter=f"set_{getter}",
                     value=value,
                 )
         for way, messages in (
@@ -107,9 +109,9 @@ def everything(icd: Icd) -> Iterator[str]:
 def symbols(
     subject, toolchain: str, level: str, folder: Path, more: str = ""
 ) -> set[str]:
-    """What the linker sees of the program."""
+    """Build the program for ``subject`` and return the symbols in its archive."""
     tools = Toolchain(toolchain)
-    # Machine code is made once, of all of it, at the end.
+    # The linker plugin generates machine code once, for the complete program.
     library = tools.library(subject.crate, level, "-C", "linker-plugin-lto")
     source = folder / "everything.rs"
     source.write_text(HEAD + "".join(everything(subject.icd)) + more)
@@ -132,59 +134,57 @@ ALLOCATORS = {
 }
 
 
-def suspicious(found: set[str]) -> list[str]:
-    return sorted(
-        one for one in found if "panic" in one or "_fail" in one or "unwrap" in one
-    )
+def suspicious(names: set[str]) -> list[str]:
+    """Return the symbols of functions that may panic."""
+    parts = ("panic", "_fail", "unwrap")
+    return sorted(name for name in names if any(part in name for part in parts))
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_no_way_to_a_panic_is_left(shipped, toolchain, tmp_path):
-    found = symbols(shipped, toolchain, FAST, tmp_path, WIRE.read_text())
-    assert {"wire_uart_feed", "wire_client_received", "wire_download_next"} <= found
-    assert sum(one.startswith("decode_") for one in found) == sum(
+def test_shipped_messages_cannot_panic(shipped, toolchain, tmp_path):
+    names = symbols(shipped, toolchain, FAST, tmp_path, WIRE.read_text())
+    assert {"wire_uart_feed", "wire_client_received", "wire_download_next"} <= names
+    assert sum(name.startswith("decode_") for name in names) == sum(
         len(node.messages) for node in shipped.icd.nodes
     )
-    assert suspicious(found) == []
+    assert suspicious(names) == []
 
 
-def test_no_way_to_a_panic_is_left_in_odd_messages(strange, tmp_path):
+def test_odd_messages_cannot_panic(strange, tmp_path):
     assert suspicious(symbols(strange, "default", SMALL, tmp_path)) == []
 
 
 @pytest.mark.parametrize("level", [FAST, SMALL])
-def test_no_way_to_a_panic_is_left_in_arrays_structs_and_parts(
-    stories, level, tmp_path
-):
+def test_arrays_structs_and_parts_cannot_panic(stories, level, tmp_path):
     assert suspicious(symbols(stories, "default", level, tmp_path)) == []
 
 
-def test_messages_of_variable_length_neither_panic_nor_allocate(
+def test_messages_of_variable_length_cannot_panic_or_allocate(
     tmp_path_factory, tmp_path
 ):
     icd = harness.read(*variable_length.variable(tmp_path))
     variable = Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("variable")))
-    found = symbols(variable, "default", FAST, tmp_path)
+    names = symbols(variable, "default", FAST, tmp_path)
     assert {
         "decode_ublox_nav_sat",
         "dispatch_open_telemetry",
         "dispatch_mux_telemetry",
-    } <= found
-    assert suspicious(found) == []
-    assert {one.split("::")[-1] for one in found} & ALLOCATORS == set()
+    } <= names
+    assert suspicious(names) == []
+    assert {name.split("::")[-1] for name in names} & ALLOCATORS == set()
 
 
 def test_a_program_without_an_allocator_cannot_allocate(tmp_path):
-    """So that all of it could be compiled says that nothing of it does."""
+    """So a program that can be compiled without an allocator does not allocate."""
     (tmp_path / "badly.rs").write_text(f"{HEAD}extern crate alloc;\n{BOXED}")
     with pytest.raises(AssertionError, match="no global memory allocator found"):
         Toolchain("default").alone(tmp_path / "badly.rs", tmp_path / "libbadly.a")
 
 
-def test_a_panic_would_be_seen(tmp_path):
+def test_the_test_finds_a_panic(tmp_path):
     icd = harness.read(odd.write_least(tmp_path))
     least = Subject(icd, harness.generate(icd, tmp_path))
     more = "#[no_mangle] pub fn decode_badly(bytes: &[u8]) -> u8 { bytes[0] }\n"
     assert suspicious(symbols(least, "default", SMALL, tmp_path)) == []
-    found = symbols(least, "default", SMALL, tmp_path, more)
-    assert "this_can_panic" in found and suspicious(found)
+    names = symbols(least, "default", SMALL, tmp_path, more)
+    assert "this_can_panic" in names and suspicious(names)

@@ -1,5 +1,6 @@
-"""A procedure over a session of a link with header and trailer, with the simulator as
-the device.
+"""A Rust program runs a procedure over a link with header and trailer.
+
+The simulator is the device. The program `upload.rs` prints the outcome.
 """
 
 from __future__ import annotations
@@ -28,9 +29,9 @@ def client(tmp_path_factory) -> Path:
     return tools.program(main, library, folder / "upload")
 
 
-def told(client: Path, *options: str) -> str:
-    with simulator("--icd", str(LOADER), *options, "--tcp", "0") as (place, _):
-        where = urlsplit(place)
+def upload_outcome(client: Path, *options: str) -> str:
+    with simulator("--icd", str(LOADER), *options, "--tcp", "0") as (address, _):
+        where = urlsplit(address)
         words = [client, str(where.hostname), str(where.port), str(SIZE)]
         done = subprocess.run(words, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
@@ -38,10 +39,10 @@ def told(client: Path, *options: str) -> str:
 
 
 @pytest.mark.parametrize("faults", [(), ("--fault", "drop=10%")], ids=str)
-def test_a_program_arrives_although_messages_are_lost(client, faults):
+def test_a_program_is_uploaded_over_a_line_that_loses_messages(client, faults):
     image = bytes(number % 251 for number in range(SIZE))
-    assert told(client, *faults) == str(crc32(image))
+    assert upload_outcome(client, *faults) == str(crc32(image))
 
 
 def test_a_refused_telecommand_ends_the_procedure(client):
-    assert told(client, "--fault", "nak=1:Locked") == "Refused"
+    assert upload_outcome(client, "--fault", "nak=1:Locked") == "Refused"

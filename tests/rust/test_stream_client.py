@@ -1,5 +1,6 @@
-"""Clients over framed links in Rust: each event is read as the message that it brings, and
-as no other.
+"""Events of clients over framed links contain the message that was received.
+
+The tests compile and run Rust programs that feed bytes to a client.
 """
 
 from __future__ import annotations
@@ -24,17 +25,17 @@ fn seen(data: &[u8]) -> (Option<u8>, Option<u32>, bool) {
     let values = stream::Values::default();
     let size = stream::encode(&LINK, Direction::Telemetry, ShortLevel::ID, data, &values, &mut line).unwrap();
     let mut client = Client::new(&LINK).unwrap();
-    let mut found = None;
+    let mut read = None;
     client.received(1, &line[..size], |event| {
         let first = event.message::<LevelOfTheFirst>();
         let short = event.message::<ShortLevel>();
-        found = Some((
+        read = Some((
             short.map(|one| one.level.into()),
             first.map(|one| one.level.into()),
             event.message::<LevelOfAnother>().is_some(),
         ));
     });
-    found.unwrap()
+    read.unwrap()
 }
 
 fn main() {
@@ -62,8 +63,8 @@ fn sent(client: &mut Client) -> Option<u8> {
     client.output(&mut line).unwrap().map(|line| line[3])
 }
 
-/// What is to be known of an event: its kind, and what is read from it.
-fn told(event: &NodeEvent<'_, Node>) -> String {
+/// Describe an event: its kind and contents.
+fn describe(event: &NodeEvent<'_, Node>) -> String {
     let command = event.message::<Ack>().map(|ack| ack.command);
     let command = command.or_else(|| event.message::<Nak>().map(|nak| nak.command));
     let command = command.or_else(|| event.message::<Busy>().map(|busy| busy.command));
@@ -85,15 +86,15 @@ fn told(event: &NodeEvent<'_, Node>) -> String {
 }
 
 fn come<M: TelemetryOf<Node>>(client: &mut Client, now: u32, message: M) -> String {
-    let mut found = String::new();
-    client.received(now, &encoded(message), |event| found = told(&event));
-    found
+    let mut description = String::new();
+    client.received(now, &encoded(message), |event| description = describe(&event));
+    description
 }
 
 fn pass(client: &mut Client, now: u32) -> String {
-    let mut found = String::new();
-    client.tick(now, |event| found = told(&event));
-    found
+    let mut description = String::new();
+    client.tick(now, |event| description = describe(&event));
+    description
 }
 
 fn main() {
@@ -140,8 +141,8 @@ fn main() {
             client.send(4000, &speed).unwrap();
         }
         assert_eq!(sent(&mut client), Some(2));
-        let told = come(&mut client, 4000 + 100 * attempt, Busy { command: 2 });
-        assert_eq!(told, if attempt < 2 { "progress 2 Some(2)" } else { "busy 2 3 Some(2)" });
+        let description = come(&mut client, 4000 + 100 * attempt, Busy { command: 2 });
+        assert_eq!(description, if attempt < 2 { "progress 2 Some(2)" } else { "busy 2 3 Some(2)" });
         assert_eq!(pass(&mut client, 4100 + 100 * attempt), "");
     }
     assert_eq!((sent(&mut client), client.deadline()), (None, None));
@@ -164,10 +165,10 @@ fn sent(client: &mut Client) -> Vec<u8> {
 }
 
 fn received(client: &mut Client, bytes: &[u8]) -> String {
-    let mut told = String::new();
+    let mut description = String::new();
     client.received(1, bytes, |event| {
         let cells = event.message::<CellVoltages>().map(|cells| cells.voltages[0]);
-        told += &match *event {
+        description += &match *event {
             Event::Done { id, packet, .. } => format!("done {id} {packet:?} {cells:?}"),
             Event::Refused { id, code, .. } => {
                 assert_eq!(event.reason(), Some(Status::Error));
@@ -177,7 +178,7 @@ fn received(client: &mut Client, bytes: &[u8]) -> String {
             other => panic!("{other:?}"),
         };
     });
-    told
+    description
 }
 
 fn main() {
@@ -218,7 +219,7 @@ LINK_ICDS = (
 
 @pytest.fixture(scope="module")
 def crate(tmp_path_factory) -> Path:
-    """One crate of all links."""
+    """Crate of the ICDs of all framed links."""
     icd = harness.read(*LINK_ICDS)
     return harness.generate(icd, tmp_path_factory.mktemp("links"))
 
@@ -232,9 +233,7 @@ def crate(tmp_path_factory) -> Path:
         pytest.param(PACKETS, id="packets request telemetry and refuse it"),
     ],
 )
-def test_a_program_gets_the_events_that_its_link_brings(
-    crate, toolchain, source, tmp_path
-):
+def test_a_program_gets_the_events_of_its_link(crate, toolchain, source, tmp_path):
     tools = Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(source)
     library = tools.library(crate, *USED)

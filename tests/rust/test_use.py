@@ -1,5 +1,6 @@
-"""The crate in a user's hands: by cargo and by the oldest compiler, with and without
-its features.
+"""Users can add the crate to a project with cargo, with and without its features.
+
+The tests build and run small programs that depend on the crate.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from tests.rust.tools import Toolchain, run, toolchains
 
 USER = Path(__file__).parent / "user.rs"
 PORTS = Path(__file__).parent / "ports.rs"
-NEWEST_FEATURES = (1, 85)  # the current serde and defmt want no older Rust
+NEWEST_FEATURES = (1, 85)  # oldest Rust that the current serde and defmt support
 
 MANIFEST = """\
 [package]
@@ -33,8 +34,8 @@ fn main() {
     let frame: Vec<u8> = (0..504_u32).map(|n| (n % 63) as u8).collect();
     let configuration = AdcsConfiguration::from_bytes(&frame).unwrap();
     let text = serde_json::to_string(&configuration).unwrap();
-    let again: AdcsConfiguration = serde_json::from_str(&text).unwrap();
-    assert_eq!(again, configuration);
+    let decoded: AdcsConfiguration = serde_json::from_str(&text).unwrap();
+    assert_eq!(decoded, configuration);
     let state = CurrentAdcsState::from_bytes(&[0xe2, 0, 0, 0, 0, 0]).unwrap();
     let value = serde_json::to_value(state).unwrap();
     assert_eq!(value["control_mode"], 14);
@@ -49,7 +50,7 @@ fn main() {
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
-def test_a_program_gets_it_with_cargo_add_and_no_registry(shipped, name, tmp_path):
+def test_cargo_add_adds_the_crate_without_a_registry(shipped, name, tmp_path):
     cargo = (*Toolchain(name).start, "cargo")
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "main.rs").write_text(USER.read_text())
@@ -71,8 +72,8 @@ def test_a_program_gets_it_with_cargo_add_and_no_registry(shipped, name, tmp_pat
     run(*cargo, "run", "--quiet", cwd=tmp_path, **own)
 
 
-def test_its_features(shipped, tmp_path):
-    """`std`, `serde` and `defmt`; they come from a registry."""
+def test_the_features_std_serde_and_defmt_work(shipped, tmp_path):
+    """The crates of `serde` and `defmt` come from a registry."""
     version = Toolchain("default").version
     if version < NEWEST_FEATURES:
         pytest.skip(
@@ -101,7 +102,7 @@ def test_its_features(shipped, tmp_path):
     run(*command, "-D", "warnings", "-W", "clippy::pedantic", cwd=crate)
 
 
-def test_its_clients_over_the_ports_of_embedded_programs(shipped, tmp_path):
+def test_clients_work_over_embedded_io_and_embedded_hal(shipped, tmp_path):
     """`embedded-io` and `embedded-hal` come from a registry."""
     receiver = harness.generate(
         harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path

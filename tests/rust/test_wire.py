@@ -1,5 +1,6 @@
-"""The wire layer of a crate that has only a part of it, or none.
-`tests/conformance/test_wire.py` has what the whole of it answers.
+"""The wire layer of a crate contains only the parts that its ICDs describe.
+
+`tests/conformance/test_wire.py` tests the complete wire layer.
 """
 
 from __future__ import annotations
@@ -23,16 +24,17 @@ messages:
 """
 
 
-def test_a_node_of_which_the_icd_says_little(tmp_path):
-    """Another framing, numbers most significant byte first; what is not described is
-    refused.
+def test_a_node_with_few_features_works_like_the_reference_codec(tmp_path):
+    """The testee and the reference codec agree, also on unsupported requests.
+
+    The ICD has another framing and big-endian numbers.
     """
     (tmp_path / "small.yaml").write_text(SMALL)
     icd = harness.read(tmp_path / "small.yaml")
-    link, source = links.link(icd, "small"), random.Random(3)
-    asked = [wire_random.stream(link, source) for _ in range(500)]
-    asked += [
-        {"op": "uart_encode", "bytes": "10" + source.randbytes(9).hex()}
+    link, generator = links.link(icd, "small"), random.Random(3)
+    requests = [wire_random.stream(link, generator) for _ in range(500)]
+    requests += [
+        {"op": "uart_encode", "bytes": "10" + generator.randbytes(9).hex()}
         for _ in range(50)
     ]
     script = [
@@ -40,15 +42,15 @@ def test_a_node_of_which_the_icd_says_little(tmp_path):
         {"at": 4, "receive": "10021001"},
         {"at": 1 << 31},
     ]
-    asked += [
+    requests += [
         {"op": "client", "bus": bus, "script": script} for bus in ("uart", "can", "i2c")
     ]
-    asked += [
+    requests += [
         {"op": "checksum", "name": "crc8", "bytes": ""},
         {"op": "procedure", "name": "list", "script": []},
         {"op": "dos_time", "value": 3},
     ]
-    assert harness.differences(icd, harness.build_testee(icd), asked) == []
+    assert harness.differences(icd, harness.build_testee(icd), requests) == []
 
 
 def test_a_node_without_a_protocol_has_no_link(shipped):
@@ -59,7 +61,7 @@ def test_a_node_without_a_protocol_has_no_link(shipped):
     )
 
 
-def test_without_any_protocol_there_is_no_wire_layer(strange):
+def test_a_crate_without_a_protocol_has_no_wire_layer(strange):
     assert not [
         name
         for name, text in harness.texts(strange.icd).items()

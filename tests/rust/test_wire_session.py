@@ -1,5 +1,7 @@
-"""Sessions of the crate over ports that fail, requests that are given up; and messages
-of other nodes, which do not compile.
+"""Sessions of the crate survive errors of their port and cancelled requests.
+
+Messages of other nodes do not compile. The programs that the tests run are files of
+this folder.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from tests.rust import harness
 from tests.rust.tools import USED, Toolchain, run, toolchains
 
 PROGRAM = Path(__file__).with_name("session.rs")
-WHOLE = """\
+PROGRAM_OF_STATEMENT = """\
 use icd::cubeacp::{Node, LINK, LONGEST};
 
 fn main() {
@@ -29,22 +31,24 @@ STATEMENTS = {
     "send": "client.send(0, &icd::%s::default()).unwrap()",
     "message": "client.tick(0, |event| assert!(event.message::<icd::%s::State>().is_none()))",
 }
-OWN = {"request": "cubeacp", "send": "cubeacp::ClearErrors", "message": "cubeacp"}
-OTHERS = {
+OWN_NODE = {"request": "cubeacp", "send": "cubeacp::ClearErrors", "message": "cubeacp"}
+OTHER_NODE = {
     "request": "bootloader",
     "send": "bootloader::SetBootIndex",
     "message": "bootloader",
 }
 
 
-def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path):
+def test_sessions_survive_errors_of_their_port_and_cancelled_requests(
+    shipped, tmp_path
+):
     tools = Toolchain("default")
     library = Toolchain("default").library(shipped.crate, *USED)
     run(tools.program(PROGRAM, library, tmp_path / "program"))
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
-def test_sessions_over_framed_links_ask_again_listen_and_outlive_their_port(
+def test_sessions_over_framed_links_repeat_requests_receive_and_survive_errors(
     name, tmp_path
 ):
     tools = Toolchain(name)
@@ -109,15 +113,16 @@ def test_sessions_return_the_outcome_of_each_telecommand_with_its_reason(
 
 @pytest.mark.parametrize("name", list(toolchains()))
 def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
-    """Telemetry 132 is `State` on both nodes; it is refused where it is requested, and
-    where it is taken from an event.
+    """Telemetry 132 is `State` on both nodes.
+
+    The compiler refuses a request for it, and access to it in an event.
     """
     tools = Toolchain(name)
     library = Toolchain(name).library(shipped.crate, *USED)
 
-    def compiled(text: str) -> str:
+    def compiler_errors(text: str) -> str:
         source = tmp_path / "main.rs"
-        source.write_text(WHOLE % text)
+        source.write_text(PROGRAM_OF_STATEMENT % text)
         command = (
             *tools.start,
             "rustc",
@@ -134,10 +139,10 @@ def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
         ).stderr
 
     for use, statement in STATEMENTS.items():
-        assert "error" not in compiled(statement % OWN[use]), use
-        said = compiled(statement % OTHERS[use])
+        assert "error" not in compiler_errors(statement % OWN_NODE[use]), use
+        diagnostics = compiler_errors(statement % OTHER_NODE[use])
         assert (
-            "error[E0277]" in said
+            "error[E0277]" in diagnostics
             and "Of<icd::cubeacp::Node>` is not satisfied"
-            in said.replace("Of<Node>", "Of<icd::cubeacp::Node>")
-        ), (use, said)
+            in diagnostics.replace("Of<Node>", "Of<icd::cubeacp::Node>")
+        ), (use, diagnostics)

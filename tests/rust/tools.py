@@ -1,5 +1,6 @@
-"""The Rust tools of this machine, without a registry: rustc, rustfmt, clippy and
-rustdoc are called themselves.
+"""Run the Rust tools of this machine: rustc, rustfmt, clippy and rustdoc.
+
+The functions call the tools directly, without cargo, so no registry is needed.
 """
 
 from __future__ import annotations
@@ -14,18 +15,20 @@ from pathlib import Path
 from tests.conformance.build import cache_folder, locked_folder
 
 OLDEST = "1.63"
+# The edition with which rustdoc compiles all examples together, and the oldest Rust
+# that supports it.
 MERGING = "2024"
-MERGES = (1, 85)  # the oldest that knows that edition
-STD = ("--cfg", 'feature="std"')  # the crate with the feature
-# How a crate is compiled for programs of tests, the same for all, so that it is
-# compiled once. Examples in documentation need a crate that can unwind.
+MERGES = (1, 85)
+STD = ("--cfg", 'feature="std"')  # compiles the crate with its feature `std`
+# Options of the crate for programs of tests. All tests use the same options, so that
+# the crate is compiled once. Examples in documentation need a crate that can unwind.
 USED = ("0", "-C", "panic=unwind", *STD)
 
 
 def run(
     *command: str | Path, cwd: Path | None = None, **environment: str | Path
 ) -> str:
-    """Runs a tool; its output. Fails with what it says."""
+    """Run a tool and return its output; fail with its messages if it fails."""
     words = [str(word) for word in command]
     done = subprocess.run(
         words,
@@ -42,13 +45,15 @@ def run(
 
 @cache
 def toolchains() -> dict[str, tuple[str, ...]]:
-    """What to put before a tool's name: for the machine's own toolchain, and for the
-    oldest supported one if it is there.
+    """Return the words before a tool's name, by toolchain.
+
+    The toolchains are the default one of the machine, and the oldest supported one if
+    it is installed.
     """
-    found: dict[str, tuple[str, ...]] = {"default": ()}
+    commands: dict[str, tuple[str, ...]] = {"default": ()}
     if shutil.which("rustup") and _works("rustup", "run", OLDEST, "rustc", "--version"):
-        found[OLDEST] = ("rustup", "run", OLDEST)
-    return found
+        commands[OLDEST] = ("rustup", "run", OLDEST)
+    return commands
 
 
 def _works(*command: str) -> bool:
@@ -56,17 +61,17 @@ def _works(*command: str) -> bool:
 
 
 class Toolchain:
-    """The tools of one toolchain."""
+    """Tools of one toolchain."""
 
     def __init__(self, name: str) -> None:
         self.start = toolchains()[name]
 
     def formatted(self, file: Path) -> None:
-        """Fails unless rustfmt would leave the crate of ``file`` as it is."""
+        """Fail if rustfmt would change the crate of ``file``."""
         run(*self.start, "rustfmt", "--edition", "2021", "--check", file)
 
     def linted(self, file: Path, out: Path, *options: str) -> None:
-        """Fails if clippy has anything to say, pedantic lints included."""
+        """Fail if clippy reports a warning; pedantic lints are enabled."""
         lints = ("-D", "warnings", "-W", "clippy::pedantic")
         command = (
             *self.start,
@@ -83,7 +88,7 @@ class Toolchain:
         run(*command, file, CARGO_PKG_RUST_VERSION=OLDEST)
 
     def documented(self, file: Path, out: Path, *options: str) -> None:
-        """Fails if rustdoc has anything to say."""
+        """Fail if rustdoc reports a warning."""
         command = (
             *self.start,
             "rustdoc",
@@ -98,25 +103,21 @@ class Toolchain:
 
     @property
     def version(self) -> tuple[int, int]:
-        """Of the compiler: major and minor."""
+        """Major and minor version of the compiler."""
         major, minor = run(*self.start, "rustc", "--version").split()[1].split(".")[:2]
         return int(major), int(minor)
 
     @property
     def merges(self) -> bool:
-        """Whether rustdoc compiles all examples in one go, which it does as of the
-        edition 2024 of theirs.
-        """
+        """Report whether rustdoc can compile all examples together (edition 2024)."""
         return self.version >= MERGES
 
     def tested(self, file: Path, library: Path, only: str = "") -> str:
-        """Runs the examples in the documentation of a crate that was compiled with
-        `STD`; what rustdoc says.
+        """Run the examples in the documentation of a crate; fail if an example fails.
 
-        Fails if one does.
-
-        ``only`` is a part of the paths of the files that are looked at. The edition is
-        the examples', not the crate's.
+        Returns the output of rustdoc. ``library`` must be compiled with `STD`. ``only``
+        selects files whose path contains it. The edition is that of the examples, not
+        that of the crate.
         """
         edition = MERGING if self.merges else "2021"
         command = (
@@ -133,9 +134,9 @@ class Toolchain:
         return run(*command, *STD, "--extern", f"icd={library}", file)
 
     def library(self, file: Path, level: str, *more: str) -> Path:
-        """Compiles the crate, optimised to that level; its file.
+        """Compile the crate with a level of optimisation and return the library.
 
-        What was compiled before is taken from the cache.
+        The library comes from the cache if the crate was compiled before.
         """
         options = (
             "--crate-type",
@@ -155,19 +156,19 @@ class Toolchain:
             cache_folder() / f"library-{digest.hexdigest()[:16]}"
         ) as out:
             if not (out / "libicd.rlib").exists():
-                made = out / "made"
-                run(*command, "--out-dir", made, file)
-                (made / "libicd.rlib").rename(out / "libicd.rlib")
+                new = out / "made"
+                run(*command, "--out-dir", new, file)
+                (new / "libicd.rlib").rename(out / "libicd.rlib")
         return out / "libicd.rlib"
 
     def program(self, file: Path, library: Path, out: Path) -> Path:
-        """Compiles a program that uses the library; its file."""
+        """Compile a program that uses the library and return its path."""
         options = ("-C", "panic=abort", "--extern", f"icd={library}")
         run(*self._rustc("program"), *options, "-o", out, file)
         return out
 
     def freestanding(self, file: Path, library: Path, out: Path, level: str) -> Path:
-        """Compiles a library that stands alone, optimised as a whole; its archive."""
+        """Compile a static library with link-time optimisation; return the archive."""
         options = (
             "--crate-type",
             "staticlib",
@@ -193,7 +194,7 @@ class Toolchain:
         return out
 
     def alone(self, file: Path, out: Path) -> Path:
-        """Compiles a library of one file that stands alone; its archive."""
+        """Compile a static library of one file and return the archive."""
         run(
             *self._rustc("alone"),
             "--crate-type",
