@@ -1,4 +1,7 @@
-"""Generates C from ICDs, compiles it, and builds the test programs around it."""
+"""Generate C from ICDs, compile it, and build test programs that use it.
+
+`frames_source` writes a program that decodes and encodes frames of all messages.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,7 @@ def _renderer() -> Renderer:
 
 
 def generate(icd: Icd, folder: Path) -> Path:
-    """Writes the headers; the folder."""
+    """Write the generated files to ``folder`` and return it."""
     for path, text in CBackend().files(icd, _renderer()):
         target = folder / path
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -65,7 +68,7 @@ def compile(
     compiler: str = "gcc",
     output: str | Path = "/dev/null",
 ) -> Path:
-    """Compiles and links; fails with what the compiler says."""
+    """Compile and link a source; fail with the messages of the compiler."""
     command = [compiler, *map(str, options), str(source), "-o", str(output)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stderr[:4000]}"
@@ -75,7 +78,7 @@ def compile(
 def compile_all(
     icd: Icd, folder: Path, compiler: str, standard: str, *options: str
 ) -> None:
-    """Compiles a program that includes every header of the folder, under all warnings."""
+    """Compile a program that includes every header of the folder, with all warnings."""
     cpp = standard.startswith("c++")
     source = folder / ("all.cpp" if cpp else "all.c")
     headers = [
@@ -103,9 +106,7 @@ def compile_all(
 
 
 def wrappers(icd: Icd) -> str:
-    """A source that calls every decode and encode function, each from a function of its
-    own.
-    """
+    """Return a source in which every decode and encode function has its own caller."""
     text = "".join(f'#include "{node.name}.h"\n' for node in icd.nodes)
     for name in (stem(target.message) for target in targets(icd)):
         for head, call in (
@@ -124,8 +125,10 @@ def wrappers(icd: Icd) -> str:
 
 @dataclass(frozen=True)
 class Target:
-    """A message with where each raw value stands in the record that the test program
-    reads and writes.
+    """A message, and the layout of the record that the test program reads and writes.
+
+    ``places`` are the offsets of the raw values in the record, in bytes. ``size`` is
+    the size of the record.
     """
 
     message: MessageDescription
@@ -134,20 +137,20 @@ class Target:
 
 
 def targets(icd: Icd) -> list[Target]:
-    """All messages, in the order of the test program."""
-    found = []
+    """Return all messages in the order of the test program."""
+    result = []
     for node in describe(icd).nodes:
         for message in node.messages:
             places, at = [], 0
             for field in message.model.fields:
                 places.append(at)
                 at += field.bits // 8 if field.is_bytes else 8
-            found.append(Target(message, tuple(places), at))
-    return found
+            result.append(Target(message, tuple(places), at))
+    return result
 
 
 def frames_source(icd: Icd) -> str:
-    """The test program of ``frames.c.j2``."""
+    """Return the test program, rendered from ``frames.c.j2``."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True
     )
@@ -160,8 +163,8 @@ def frames_source(icd: Icd) -> str:
 def _row(target: Target) -> dict[str, object]:
     message = target.message
     collect, assign, fields = [], [], []
-    for one, place in zip(message.fields, target.places, strict=True):
-        field, name = one.model, one.name
+    for description, place in zip(message.fields, target.places, strict=True):
+        field, name = description.model, description.name
         fields.append(
             {
                 "at": field.at,
@@ -187,7 +190,7 @@ def _row(target: Target) -> dict[str, object]:
         else:
             collect.append(f"record_put(record, {place}, (uint64_t)message.{name});")
             assign.append(
-                f"message.{name} = ({type_of(one)})record_get(record, {place});"
+                f"message.{name} = ({type_of(description)})record_get(record, {place});"
             )
     return {
         "stem": stem(message),

@@ -1,8 +1,8 @@
-"""What cppcheck's addon finds of MISRA C:2012 in the runtime and in C made from the
-shipped ICDs, held against the record.
+"""Compare violations of MISRA C:2012 in the C runtime and generated C with a record.
 
-``python -m tests.c.misra`` writes the places found into the record; what a rule is
-deviated from for, you write. The tests look at a sample of the messages.
+cppcheck's addon finds them. ``python -m tests.c.misra`` writes the current places to
+the record, `runtime/c/misra.yaml`; the reasons for deviations are written by hand. The
+tests check a sample of the messages.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tests.conftest import ROOT
 
 RUNTIME = ROOT / "runtime" / "c"
 RECORD = RUNTIME / "misra.yaml"
-# The checks of cppcheck itself, of which nothing is used here, stay off.
+# The checks of cppcheck itself stay off, since only those of the addon are used.
 COMMAND = (
     "cppcheck",
     "--addon=misra",
@@ -40,19 +40,21 @@ GNUC = (
     "-D__ORDER_LITTLE_ENDIAN__=1",
     "-DUINTPTR_MAX=0xFFFFFFFFFFFFFFFFu",
 )
-"""What the faster ways through the support header ask for: words in the byte order of
-the machine.
+"""Macros of gcc that select the fast code of the support header, which needs words in
+the byte order of the machine.
 """
 
 _FINDING = re.compile(r"misra-c2012-(?P<rule>[\d.]+) (?P<file>\S+) (?P<at>\d+:\d+)")
 _ORDER = ("rule", "category", "verdict", "reason", "runtime", "generated")
 
 Places = dict[str, dict[str, Any]]
-"""Of each rule: how often each file of the runtime breaks it, and what templates do."""
+"""By rule: the number of violations in each file of the runtime, and the templates
+whose output violates the rule.
+"""
 
 
 def findings(*arguments: str | Path) -> set[tuple[str, str, str]]:
-    """Rule, file and place of each finding in a source."""
+    """Run cppcheck and return rule, file and position of each finding in a source."""
     done = subprocess.run(
         [
             *COMMAND,
@@ -69,19 +71,23 @@ def findings(*arguments: str | Path) -> set[tuple[str, str, str]]:
     }
 
 
-def found(whole: bool = True) -> Places:
-    """What there is now; if not ``whole``, in fewer messages, see `_sample`."""
+def current_places(is_complete: bool = True) -> Places:
+    """Find the violations in all messages, or only in those of `_sample`."""
     with tempfile.TemporaryDirectory() as folder:
-        return places(_all(Path(folder), whole), Path(folder))
+        return places(_all(Path(folder), is_complete), Path(folder))
 
 
 def _sample(icd: Icd) -> Iterator[str]:
-    """Headers of the smallest messages that have each kind of field and all types that
-    share a byte, once or more often, and of the nodes with few messages.
+    """Yield headers of a sample of messages, and of the nodes with few messages.
+
+    The sample has the smallest messages that together cover each kind of field, and
+    each combination of types that share a byte.
     """
     seen: set[object] = set()
     for node in describe(icd).nodes:
-        for message in sorted(node.messages, key=lambda one: len(one.model.fields)):
+        for message in sorted(
+            node.messages, key=lambda message: len(message.model.fields)
+        ):
             new = _kinds(message.model.fields) - seen
             if new:
                 seen |= new
@@ -93,23 +99,25 @@ def _sample(icd: Icd) -> Iterator[str]:
 def _kinds(fields: Iterable[NodePlace]) -> set[object]:
     kinds: set[object] = set()
     sharing: dict[int, Counter[str]] = defaultdict(Counter)
-    for one in fields:
-        kinds.add((one.type, one.bits, one.has_formula, one.at % 8 != 0))
-        for byte in range(one.at // 8, (one.at + one.bits - 1) // 8 + 1):
-            sharing[byte][one.type] += 1
+    for field in fields:
+        kinds.add((field.type, field.bits, field.has_formula, field.at % 8 != 0))
+        for byte in range(field.at // 8, (field.at + field.bits - 1) // 8 + 1):
+            sharing[byte][field.type] += 1
     return kinds | {
         frozenset((type_, number > 1) for type_, number in types.items())
         for types in sharing.values()
     }
 
 
-def _all(folder: Path, whole: bool) -> set[tuple[str, str, str]]:
+def _all(folder: Path, is_complete: bool) -> set[tuple[str, str, str]]:
     icd = harness.shipped()
-    made = harness.generate(icd, folder / "made")
+    generated = harness.generate(icd, folder / "generated")
     wide, nodes = folder / "wide.c", folder / "nodes.c"
     wide.write_text(f'#include "{RUNTIME / "icdgen_wide.h"}"\n')
-    headers = (f"{node.name}.h" for node in icd.nodes) if whole else _sample(icd)
-    nodes.write_text("".join(f'#include "{made / header}"\n' for header in headers))
+    headers = (f"{node.name}.h" for node in icd.nodes) if is_complete else _sample(icd)
+    nodes.write_text(
+        "".join(f'#include "{generated / header}"\n' for header in headers)
+    )
     shared = "-DICDGEN_SHARED=1"
     rows = (
         findings(shared, wide)
@@ -117,21 +125,23 @@ def _all(folder: Path, whole: bool) -> set[tuple[str, str, str]]:
         | findings(shared, RUNTIME / "icdgen_wire.c")
     )
     rows |= findings(shared, nodes)
-    for link in sorted(made.glob("*/link.c")):
+    for link in sorted(generated.glob("*/link.c")):
         rows |= findings(shared, link)
     return rows
 
 
 def places(rows: set[tuple[str, str, str]], folder: Path) -> Places:
-    """The findings by rule; those in C that is made by the template that made it."""
+    """Group findings by rule, and findings in generated C by template."""
     runtime: dict[str, Counter[str]] = defaultdict(Counter)
     generated: dict[str, set[str]] = defaultdict(set)
     for rule, file, _ in rows:
         path = Path(file)
         if path.is_relative_to(RUNTIME):
             runtime[rule][path.relative_to(RUNTIME).as_posix()] += 1
-        elif not path.name.startswith("icdgen"):  # those are the runtime once more
-            generated[rule].add(template(path.relative_to(folder / "made")))
+        elif not path.name.startswith(
+            "icdgen"
+        ):  # the support headers are copies of the runtime
+            generated[rule].add(template(path.relative_to(folder / "generated")))
     return {
         rule: {
             "runtime": dict(sorted(runtime[rule].items())),
@@ -142,29 +152,24 @@ def places(rows: set[tuple[str, str, str]], folder: Path) -> Places:
 
 
 def template(path: Path) -> str:
-    """What made a file."""
-    name = (
-        path.name
-        if path.name in ("enums.h", "link.h", "link.c", "client.h", "procedures.h")
-        else "message.h"
-        if len(path.parts) > 1
-        else "node.h"
-    )
-    return f"{name}.j2"
+    """Return the name of the template of a generated file."""
+    if path.name in ("enums.h", "link.h", "link.c", "client.h", "procedures.h"):
+        return f"{path.name}.j2"
+    return "message.h.j2" if len(path.parts) > 1 else "node.h.j2"
 
 
 def record() -> list[dict[str, Any]]:
-    """The deviations as they are recorded."""
+    """Return the entries of the record, one for each rule."""
     return list(yaml.safe_load(RECORD.read_text("utf-8"))["findings"])
 
 
 def differences(recorded: list[dict[str, Any]], now: Places) -> list[str]:
-    """What is found and not recorded, and the other way round."""
+    """Describe findings that are not recorded, and entries that are not found."""
     lines = []
-    known = {one["rule"]: one for one in recorded}
-    for rule in sorted(known.keys() | now.keys(), key=_number):
+    entries = {entry["rule"]: entry for entry in recorded}
+    for rule in sorted(entries.keys() | now.keys(), key=_number):
         nothing: dict[str, Any] = {"runtime": {}, "generated": []}
-        old, new = known.get(rule, nothing), now.get(rule, nothing)
+        old, new = entries.get(rule, nothing), now.get(rule, nothing)
         for file in sorted(old["runtime"].keys() | new["runtime"].keys()):
             before, after = old["runtime"].get(file, 0), new["runtime"].get(file, 0)
             if before != after:
@@ -183,20 +188,21 @@ def differences(recorded: list[dict[str, Any]], now: Places) -> list[str]:
 
 
 def update() -> None:
-    """Writes the places found into the record."""
-    now, known = found(), {one["rule"]: one for one in record()}
+    """Write the current places to the record; keep verdicts and reasons."""
+    now = current_places()
+    entries = {entry["rule"]: entry for entry in record()}
     text = RECORD.read_text("utf-8").partition("findings:")[0] + "findings:\n"
     for rule in sorted(now, key=_number):
-        one = {
+        entry = {
             "rule": rule,
             "category": "",
             "verdict": "",
             "reason": "",
-            **known.get(rule, {}),
+            **entries.get(rule, {}),
             **now[rule],
         }
         text += yaml.safe_dump(
-            [{key: one[key] for key in _ORDER}],
+            [{key: entry[key] for key in _ORDER}],
             sort_keys=False,
             width=140,
             allow_unicode=True,

@@ -1,5 +1,7 @@
-"""ICDs unlike ours: every bit and byte order, every width at every place, names that
-try to break out.
+"""Write ICDs with features that the ICDs of the project do not use.
+
+They have every bit and byte order, random widths and positions, and texts that would
+end a comment or string if they were not escaped.
 """
 
 from __future__ import annotations
@@ -22,24 +24,24 @@ HOSTILE = [
 
 
 def write(folder: Path) -> list[Path]:
-    """One file a combination of orders, and one of hostile text."""
-    found = []
+    """Write a file for each combination of orders, and one with hostile text."""
+    paths = []
     for byte_order, bit_order in ORDERS:
         name = f"odd_{byte_order}_{bit_order}"
-        found.append(
+        paths.append(
             _write(
                 folder / f"{name}.yaml",
                 _node(name, byte_order, bit_order, _messages(name)),
             )
         )
-    found.append(
+    paths.append(
         _write(
             folder / "hostile.yaml",
             {**_node("hostile", "little", "lsb0", _hostile()), **_hostile_enums()},
         )
     )
-    found.append(_write(folder / "silent.yaml", _node("silent", "little", "lsb0", [])))
-    return found
+    paths.append(_write(folder / "silent.yaml", _node("silent", "little", "lsb0", [])))
+    return paths
 
 
 def _write(path: Path, tree: dict) -> Path:
@@ -69,13 +71,13 @@ _WIDE_ENUM["members"][2]["identifier"] = "Seven"
 
 
 def _messages(seed: str) -> list[dict]:
-    source = random.Random(seed)
-    messages = [_random_message(source, number) for number in range(8)]
+    generator = random.Random(seed)
+    messages = [_random_message(generator, number) for number in range(8)]
     messages.append(_flags("Flags Up", range(40), 100))
     messages.append(
         _flags("Flags Down", [8 * (n // 8) + 7 - n % 8 for n in range(40)], 101)
     )
-    messages.append(_flags("Flags Mixed", source.sample(range(40), 40), 102))
+    messages.append(_flags("Flags Mixed", generator.sample(range(40), 40), 102))
     messages.append(_rows(103))
     messages.append({"name": "Nothing", "kind": "telecommand", "id": 104, "length": 0})
     messages.append(
@@ -125,30 +127,30 @@ def _rows(number: int) -> dict:
     }
 
 
-def _random_message(source: random.Random, number: int) -> dict:
+def _random_message(generator: random.Random, number: int) -> dict:
     fields, at = [], 0
     for index in range(14):
-        at += source.choice([0, 0, 0, 1, 3, 9])
-        kind = source.choice(
+        at += generator.choice([0, 0, 0, 1, 3, 9])
+        kind = generator.choice(
             ["uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text"]
         )
         bits = {
             "bool": 1,
-            "float": source.choice([32, 64]),
-            "bytes": 8 * source.randint(1, 5),
-            "text": 8 * source.randint(1, 9),
+            "float": generator.choice([32, 64]),
+            "bytes": 8 * generator.randint(1, 5),
+            "text": 8 * generator.randint(1, 9),
         }.get(kind)
-        bits = bits or source.choice([*range(1, 65), 8, 16, 24, 32, 40, 48, 56, 64])
-        if kind in ("bytes", "text") or (bits % 8 == 0 and source.random() < 0.5):
+        bits = bits or generator.choice([*range(1, 65), 8, 16, 24, 32, 40, 48, 56, 64])
+        if kind in ("bytes", "text") or (bits % 8 == 0 and generator.random() < 0.5):
             at = -(-at // 8) * 8
         field = {"at": at, "bits": bits, "name": f"Field {index}", "type": kind}
         if kind == "enum":
             field["enum"] = "Wide Mode"
-        if kind in ("uint", "int") and source.random() < 0.6:
-            field["formula"] = source.choice(FORMULAS)
+        if kind in ("uint", "int") and generator.random() < 0.6:
+            field["formula"] = generator.choice(FORMULAS)
         fields.append(field)
         at += bits
-    length = -(-at // 8) + source.choice([0, 0, 2])
+    length = -(-at // 8) + generator.choice([0, 0, 2])
     return {"name": f"Odd {number}", "kind": "configuration", "set_id": number, "get_id": number, "length": length,
             "fields": fields}  # fmt: skip
 

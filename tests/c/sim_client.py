@@ -1,6 +1,6 @@
-"""Makes and builds the C client of `tests.sim.harness` from what is generated.
+"""Build the client of `tests.sim.harness` from the generated C.
 
-python -m tests.c.sim_client FOLDER     builds it there and prints its path
+``python -m tests.c.sim_client FOLDER`` builds it in a folder and prints its path.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ NODE = "cubeacp"
 
 
 def source(icd: Icd, node_name: str = NODE) -> str:
-    """The client's source."""
+    """Return the source of the client."""
     node = icd.node(node_name)
-    known = facts.of(icd, node)
-    plans = {one.model.name: one for one in describe(icd).node(node).all_messages}
-    telecommands = [plans[m.name] for m in known.telecommands.values()]
+    protocol = facts.of(icd, node)
+    descriptions = describe(icd).node(node).all_messages
+    plans = {message.model.name: message for message in descriptions}
+    telecommands = [plans[m.name] for m in protocol.telecommands.values()]
     starters = [
-        one.name
-        for one in icd.nodes
-        if one.protocol.get("program_start", {}).get("application") == node.name
+        other.name
+        for other in icd.nodes
+        if other.protocol.get("program_start", {}).get("application") == node.name
     ]
     boot = icd.node(starters[0])
     name = boot.protocol["program_start"]["message"]
-    start = next(
-        one for one in describe(icd).node(boot).all_messages if one.model.name == name
-    )
+    boot_messages = describe(icd).node(boot).all_messages
+    start = next(message for message in boot_messages if message.model.name == name)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(harness.HERE),
         trim_blocks=True,
@@ -45,7 +45,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     environment.globals["stem"] = stem
     return environment.get_template("sim_client.c.j2").render(
         node=node.name,
-        telemetry=[plans[m.name] for m in known.telemetry.values()],
+        telemetry=[plans[m.name] for m in protocol.telemetry.values()],
         settings=[
             (plan, _ones(plan))
             for plan in telecommands
@@ -56,13 +56,13 @@ def source(icd: Icd, node_name: str = NODE) -> str:
             key=lambda plan: plan.model.expects_reset,
         ),
         log=plans[icd.protocol_of(node)["unsolicited_log"]["configured_by"]["message"]],
-        last=plans[known.polled.name],
+        last=plans[protocol.polled.name],
         last_id=next(
             m.name
-            for m in plans[known.polled.name].fields
+            for m in plans[protocol.polled.name].fields
             if m.model.name == "Last TC ID"
         ),
-        identification=plans[known.identification.message.name],
+        identification=plans[protocol.identification.message.name],
         restarted=starters[0],
         start=stem(start).upper(),
         running=icd.protocol_of(boot)["procedures"]["program_copy"]["effect"]["to"][0],
@@ -70,7 +70,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 
 
 def _ones(plan: MessageDescription) -> list[str]:
-    """Members that are set to 1, which any of them can hold."""
+    """Return the members that the client sets to 1; all of them can store it."""
     return [
         m.name
         for m in plan.fields
@@ -79,7 +79,7 @@ def _ones(plan: MessageDescription) -> list[str]:
 
 
 def build(folder: Path) -> Path:
-    """The program, under all warnings and with sanitizers."""
+    """Build the program with all warnings and with sanitizers."""
     headers = harness.generate(harness.shipped(), folder)
     main = folder / "sim_client.c"
     main.write_text(source(harness.shipped()), encoding="utf-8")

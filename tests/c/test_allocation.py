@@ -1,5 +1,7 @@
-"""Nothing in the generated C allocates: compiled whole, it asks for nothing but what
-copies and compares bytes.
+"""The generated C does not allocate memory.
+
+The tests compile all functions, and check that the object refers only to functions that
+copy and compare bytes.
 """
 
 from __future__ import annotations
@@ -11,12 +13,13 @@ from tests.c import harness
 from tests.c.test_units import undefined
 from tests.conformance import odd
 
-ASKED_FOR = {"memcpy", "memset", "memmove", "memcmp", "strlen"}
+ALLOWED_SYMBOLS = {"memcpy", "memset", "memmove", "memcmp", "strlen"}
 
 
-def asked_for(text: str, folder: Path) -> set[str]:
-    """The symbols that a source, compiled with all its inline functions, has from
-    elsewhere; it has no array of variable length.
+def undefined_symbols(text: str, folder: Path) -> set[str]:
+    """Compile a source with all its inline functions and return its undefined symbols.
+
+    Fails if the source has an array of variable length or calls ``alloca``.
     """
     (folder / "unit.c").write_text(text)
     options = (
@@ -40,7 +43,7 @@ def test_no_function_of_messages_of_variable_length_allocates(tmp_path):
     icd = harness.read(*odd.variable(tmp_path))
     folder = harness.generate(icd, tmp_path / "c")
     text = "".join(f'#include "{node.name}.h"\n' for node in icd.nodes)
-    assert asked_for(text, folder) <= ASKED_FOR
+    assert undefined_symbols(text, folder) <= ALLOWED_SYMBOLS
     defined = subprocess.run(
         ["nm", folder / "unit.o"], capture_output=True, text=True, check=True
     ).stdout
@@ -49,7 +52,7 @@ def test_no_function_of_messages_of_variable_length_allocates(tmp_path):
     )
 
 
-def test_an_allocation_would_be_seen(tmp_path):
-    assert asked_for(
+def test_the_test_finds_an_allocation(tmp_path):
+    assert undefined_symbols(
         "#include <stdlib.h>\nvoid *f(void) { return malloc(1); }\n", tmp_path
     ) == {"malloc"}

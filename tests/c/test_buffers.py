@@ -1,5 +1,6 @@
-"""Whoever lends a buffer says how large it is, and is refused where it is too small:
-nothing is written past its end.
+"""Procedures in C refuse a buffer that is too small, so they never write past its end.
+
+The program passes the size of each buffer to the functions that start procedures.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ int main(void)
     assert(download(0, all - 1u, bits) == ICD_ERROR_LENGTH && download(0, all, bits - 1u) == ICD_ERROR_LENGTH);
     assert(download(three, 3u * packet, 1) == ICD_OK);
     assert(download(three, 3u * packet - 1u, 1) == ICD_ERROR_LENGTH && download(three, all, 0) == ICD_ERROR_LENGTH);
-    assert(download(CUBEACP_DOWNLOAD_BLOCK_BYTES + 1u, all, bits) == ICD_OK); /* no block is larger than those of the ICD */
+    assert(download(CUBEACP_DOWNLOAD_BLOCK_BYTES + 1u, all, bits) == ICD_OK); /* blocks of the ICD are no larger */
     assert(upload(0, BOOTLOADER_UPLOAD_BITMAP_BYTES) == ICD_OK);
     assert(upload(0, BOOTLOADER_UPLOAD_BITMAP_BYTES - 1u) == ICD_ERROR_LENGTH && upload(three, 0) == ICD_ERROR_LENGTH);
     return 0;

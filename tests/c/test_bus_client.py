@@ -1,4 +1,7 @@
-"""Several requests at a time on UART and I2C, and output in pieces of any size."""
+"""Clients in C support several requests at a time, and output in pieces of any size.
+
+The programs run a client on UART and on I2C.
+"""
 
 from __future__ import annotations
 
@@ -133,7 +136,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("bus", PROGRAMS)
-def test_requests_share_a_bus_and_output_is_taken_in_pieces(bus, tmp_path):
+def test_several_requests_share_a_bus_and_output_is_taken_in_pieces(bus, tmp_path):
     text, events = PROGRAMS[bus]
     headers = harness.generate(harness.shipped(), tmp_path / "made")
     source = tmp_path / "program.c"

@@ -1,4 +1,4 @@
-"""CRCs of the C runtime with and without tables, of all widths and bit orders."""
+"""The C runtime computes CRCs of all widths and bit orders, with and without tables."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ CASE = """\
 DATA = bytes(range(0, 256, 3)) + b"123456789"
 
 
-def parameters(source: random.Random) -> list[Crc]:
+def parameters(generator: random.Random) -> list[Crc]:
     """Return a CRC of each width and bit order."""
     return [
-        Crc(width, *(source.getrandbits(width) for _ in range(2)), into, out,
-            source.getrandbits(width))
+        Crc(width, *(generator.getrandbits(width) for _ in range(2)), into, out,
+            generator.getrandbits(width))
         for width in range(1, 33)
         for into in (False, True)
         for out in (False, True)

@@ -1,6 +1,4 @@
-"""The CMake module: `examples/cmake` builds, and builds again what a changed ICD
-concerns.
-"""
+"""The CMake module builds `examples/cmake`, and rebuilds what a changed ICD affects."""
 
 from __future__ import annotations
 
@@ -85,8 +83,8 @@ messages:
 """
 
 
-def test_the_command_line_says_where_the_module_is(tmp_path):
-    """As the README has it: a project of somebody who installed icdgen."""
+def test_the_option_cmake_dir_prints_the_folder_of_the_module(tmp_path):
+    """A project of a user who installed icdgen is configured as the README shows."""
     folder = run(sys.executable, "-m", "icdgen", "--cmake-dir").strip()
     (tmp_path / "wheel.yaml").write_text(
         NODE.format(name="wheel", include="", message="Speed", id=1)
@@ -109,7 +107,7 @@ def test_the_command_line_says_where_the_module_is(tmp_path):
 
 
 @pytest.mark.parametrize("generator", GENERATORS)
-def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
+def test_a_changed_icd_rebuilds_only_the_affected_sources(tmp_path, generator):
     icds = tmp_path / "my icd"
     icds.mkdir()
     (tmp_path / "CMakeLists.txt").write_text(
@@ -127,8 +125,8 @@ def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
     configure(tmp_path, build, generator)
     first = run("cmake", "--build", build)
     assert "Generating messages" in first and "one.c" in first and "two.c" in first
-    again = run("cmake", "--build", build)
-    assert "one.c" not in again and "two.c" not in again
+    second = run("cmake", "--build", build)
+    assert "one.c" not in second and "two.c" not in second
 
     time.sleep(1.1)  # Make compares times in whole seconds on some file systems
     shared = icds / "shared.yaml"
@@ -143,7 +141,7 @@ def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
     assert "Generating" not in same and "one.c" not in same and "two.c" not in same
 
 
-def test_a_wrong_icd_stops_the_build_and_says_why(tmp_path):
+def test_an_invalid_icd_stops_the_build_with_the_error_of_icdgen(tmp_path):
     icds = tmp_path / "my icd"
     icds.mkdir()
     (tmp_path / "CMakeLists.txt").write_text(

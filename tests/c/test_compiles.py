@@ -1,5 +1,6 @@
-"""All headers compile without a warning: as C and C++, with gcc and clang, for hosts
-and microcontrollers.
+"""All generated headers compile without warnings.
+
+The tests compile them as C and C++, with gcc and clang, for hosts and microcontrollers.
 """
 
 from __future__ import annotations
@@ -13,13 +14,15 @@ from tests.c import harness
 from tests.conftest import ROOT
 
 INHERENT = {
-    "padded": "members stand in the order of the manual",
-    "declaration-after-statement": "C99 has them, and values are constant from where they are known",
-    "covered-switch-default": "what comes over a wire is in no enumeration; -Wswitch-default and MISRA 16.4 want the default",
-    "unused-macros": "of a source that other sources include",
-    "unreachable-code": "for kinds of parts that no link of the program has; a compiler drops it",
+    "padded": "members have the order of the manual",
+    "declaration-after-statement": "C99 allows it, and values are constant from their declaration on",
+    "covered-switch-default": "received values may be unknown; -Wswitch-default and MISRA 16.4 require a default",
+    "unused-macros": "other sources include this source and use them",
+    "unreachable-code": "handles kinds of parts that no link of the program uses; a compiler removes it",
 }
-"""Warnings of clang that no C99 of this kind can be without, or that contradict others."""
+"""Warnings of clang that C99 of this kind cannot avoid, or that contradict others, and
+the reason for each.
+"""
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +31,7 @@ def headers(tmp_path_factory):
 
 
 @pytest.mark.parametrize(("compiler", "standard"), harness.LANGUAGES)
-def test_without_a_warning(headers, compiler, standard):
+def test_all_headers_compile_without_a_warning(headers, compiler, standard):
     harness.compile_all(harness.shipped(), headers, compiler, standard)
 
 
@@ -38,13 +41,15 @@ def test_without_a_warning(headers, compiler, standard):
 @pytest.mark.parametrize(
     "option", ["-DICDGEN_PORTABLE", "-O2", "-Os", "-fsanitize=address,undefined"]
 )
-def test_without_a_warning_in_other_settings(headers, compiler, standard, option):
+def test_all_headers_compile_without_a_warning_in_other_settings(
+    headers, compiler, standard, option
+):
     harness.compile_all(harness.shipped(), headers, compiler, standard, option, "-c")
 
 
 @pytest.mark.parametrize("option", ["-O1", "-O2", "-O3", "-Os"])
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_without_a_warning_of_the_optimiser_where_functions_are_used(
+def test_calls_of_all_functions_compile_without_a_warning_of_the_optimiser(
     headers, tmp_path, compiler, option
 ):
     source = tmp_path / "used.c"
@@ -62,13 +67,13 @@ def test_without_a_warning_of_the_optimiser_where_functions_are_used(
     harness.compile(source, *options, compiler=compiler)
 
 
-def test_every_header_stands_alone(headers):
+def test_every_header_can_be_included_alone(headers):
     for header in sorted(headers.rglob("*.h")):
         harness.compile(header, "-std=c99", "-fsyntax-only", "-Werror", "-xc")
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_no_double_needs_no_floating_point_registers(headers, compiler):
+def test_the_option_no_double_avoids_floating_point_registers(headers, compiler):
     harness.compile_all(
         harness.shipped(),
         headers,
@@ -81,7 +86,7 @@ def test_no_double_needs_no_floating_point_registers(headers, compiler):
     )
 
 
-def test_no_double_leaves_no_arithmetic_behind(headers, tmp_path):
+def test_the_option_no_double_removes_all_floating_point_arithmetic(headers, tmp_path):
     source = tmp_path / "all.c"
     source.write_text(
         "".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes)
@@ -107,14 +112,12 @@ def test_no_double_leaves_no_arithmetic_behind(headers, tmp_path):
 @pytest.mark.parametrize(
     "shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"]
 )
-def test_clang_has_nothing_to_say_with_every_warning_there_is(
-    headers, tmp_path, shared
-):
+def test_clang_reports_nothing_with_all_of_its_warnings(headers, tmp_path, shared):
     source = tmp_path / "everything.c"
     source.write_text(
         "".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes)
     )
-    wide = tmp_path / "wide.c"  # no formula of the shipped ICDs needs it
+    wide = tmp_path / "wide.c"  # no formula of the shipped ICDs uses this header
     wide.write_text(f'#include "{ROOT / "runtime" / "c" / "icdgen_wide.h"}"\n')
     flags = (
         "-std=c99",
@@ -123,10 +126,10 @@ def test_clang_has_nothing_to_say_with_every_warning_there_is(
         "-Wno-unknown-warning-option",
         "-Werror",
     )
-    for one in (source, wide, *(headers.rglob("*.c") if shared else ())):
-        if one.name != "all.c":
+    for path in (source, wide, *(headers.rglob("*.c") if shared else ())):
+        if path.name != "all.c":
             harness.compile(
-                one, *flags, *shared, "-fsyntax-only", f"-I{headers}", compiler="clang"
+                path, *flags, *shared, "-fsyntax-only", f"-I{headers}", compiler="clang"
             )
 
 
@@ -134,8 +137,8 @@ def test_clang_has_nothing_to_say_with_every_warning_there_is(
 @pytest.mark.parametrize(
     "option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE", "-DICDGEN_SHARED"]
 )
-def test_without_a_warning_where_int_has_16_bits(headers, option):
-    """AVR: double may have 32 bits there, of which -Wdouble-promotion knows nothing."""
+def test_all_headers_compile_without_a_warning_if_int_has_16_bits(headers, option):
+    """On AVR, double may have 32 bits, which -Wdouble-promotion does not consider."""
     harness.compile_all(
         harness.shipped(),
         headers,
@@ -151,7 +154,7 @@ def test_without_a_warning_where_int_has_16_bits(headers, option):
 @pytest.mark.needs("arm-none-eabi-gcc")
 @pytest.mark.parametrize("cpu", ["cortex-m0", "cortex-m4", "cortex-m7"])
 @pytest.mark.parametrize("option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE"])
-def test_cortex_m(headers, cpu, option):
+def test_all_headers_compile_without_a_warning_for_cortex_m(headers, cpu, option):
     cpu_options = (f"-mcpu={cpu}", "-mthumb", "-Os", "-c", "-ffreestanding", option)
     harness.compile_all(
         harness.shipped(), headers, "arm-none-eabi-gcc", "c99", *cpu_options

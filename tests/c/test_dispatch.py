@@ -1,5 +1,6 @@
-"""From an id to the message, for every node and direction, and what is said to ids that
-no message has.
+"""Dispatch functions in C find the message of an id, and refuse unknown ids.
+
+The program checks all ids of every node in both directions.
 """
 
 from __future__ import annotations
@@ -126,15 +127,15 @@ def test_every_id_of_every_node_leads_to_its_message(tmp_path):
 def test_ids_that_fill_more_than_a_byte_get_the_wider_type():
     icd = harness.shipped()
     node = icd.node("cubeacp")
-    first, *others = (message for message in node.messages if message.id is not None)
+    first, *following = (message for message in node.messages if message.id is not None)
     wide = dataclasses.replace(
-        node, messages=(dataclasses.replace(first, id=300), *others)
+        node, messages=(dataclasses.replace(first, id=300), *following)
     )
-    wider = Icd(tuple(wide if one is node else one for one in icd.nodes))
-    for known, bits in ((icd, 8), (wider, 16)):
+    wider = Icd(tuple(wide if other is node else other for other in icd.nodes))
+    for candidate, bits in ((icd, 8), (wider, 16)):
         files = {
             str(path): text
-            for path, text in CBackend().files(known, harness._renderer())
+            for path, text in CBackend().files(candidate, harness._renderer())
         }
         types = set(re.findall(r"uint\d+_t (?=id[;,)])", files["cubeacp.h"]))
         assert types == {f"uint{bits}_t "}

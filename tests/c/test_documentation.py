@@ -1,4 +1,8 @@
-"""The words of an ICD are words in documentation comments too, whatever they look like."""
+"""Text of an ICD appears literally in documentation comments of C.
+
+This includes text that looks like markup. clang and Doxygen check the comments of the
+generated C.
+"""
 
 from __future__ import annotations
 
@@ -22,11 +26,11 @@ CHECK = (
 )
 
 
-@pytest.mark.parametrize("which", ["shipped", "hostile"])
-def test_clang_has_nothing_to_say_about_the_documentation(which, tmp_path):
+@pytest.mark.parametrize("name", ["shipped", "hostile"])
+def test_clang_reports_nothing_about_the_documentation(name, tmp_path):
     icd = (
         harness.shipped()
-        if which == "shipped"
+        if name == "shipped"
         else harness.read(hostile_words.write(tmp_path))
     )
     folder = harness.generate(icd, tmp_path / "c")
@@ -38,7 +42,7 @@ def test_clang_has_nothing_to_say_about_the_documentation(which, tmp_path):
     assert done.returncode == 0, done.stderr[:4000]
 
 
-def test_clang_would_complain(tmp_path):
+def test_clang_reports_faults_of_the_documentation(tmp_path):
     source = tmp_path / "bad.c"
     source.write_text("/** <img src=x> \\param y */\nint bad(void);\n")
     done = subprocess.run([*CHECK, str(source)], capture_output=True, text=True)
@@ -60,7 +64,7 @@ WARN_IF_UNDOCUMENTED = NO
 
 
 def doxygen(folder):
-    """What Doxygen has to say about a folder; its pages lie in ``doxygen/html``."""
+    """Run Doxygen and return its warnings; the pages are in ``doxygen/html``."""
     configuration = folder / "Doxyfile"
     configuration.write_text(DOXYGEN.format(folder=folder))
     return subprocess.run(
@@ -68,20 +72,20 @@ def doxygen(folder):
     ).stderr
 
 
-@pytest.mark.parametrize("which", ["shipped", "hostile"])
-def test_doxygen_builds_a_site_without_a_warning(which, tmp_path):
+@pytest.mark.parametrize("name", ["shipped", "hostile"])
+def test_doxygen_builds_a_site_without_a_warning(name, tmp_path):
     icd = (
         harness.shipped()
-        if which == "shipped"
+        if name == "shipped"
         else harness.read(hostile_words.write(tmp_path))
     )
     folder = harness.generate(icd, tmp_path / "c")
     assert doxygen(folder) == ""
-    page = "estimated__attitude__angles_8h.html" if which == "shipped" else "index.html"
+    page = "estimated__attitude__angles_8h.html" if name == "shipped" else "index.html"
     assert (folder / "doxygen" / "html" / page).exists()
 
 
-def test_doxygen_would_complain(tmp_path):
+def test_doxygen_reports_faults_of_the_documentation(tmp_path):
     (tmp_path / "bad.h").write_text(
         "/** @file */\n/** @param other what there is not */\nint bad(int one);\n"
     )
@@ -89,10 +93,10 @@ def test_doxygen_would_complain(tmp_path):
 
 
 @pytest.mark.parametrize("word", hostile_words.WORDS)
-def test_without_its_backslashes_a_comment_says_what_the_icd_says(word):
+def test_a_comment_without_its_backslashes_is_the_text_of_the_icd(word):
     text = comment([words(word)]).removeprefix("/** ").removesuffix(" */")
-    said = re.sub(r"\\(.)", r"\1", text)
-    assert said.replace(" ", "") == words(word).replace(
+    content = re.sub(r"\\(.)", r"\1", text)
+    assert content.replace(" ", "") == words(word).replace(
         " ", ""
-    )  # comment delimiters and trigraphs are taken apart
+    )  # spaces split comment delimiters and trigraphs
     assert not re.search(r"(?<!\\)(\\\\)*[@]|(?<!\\)<[A-Za-z/!]", text)

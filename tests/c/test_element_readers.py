@@ -1,5 +1,6 @@
-"""Elements of a variable-length array of structs, read one by one from a frame: for
-programs that have no room for the whole message.
+"""C programs can read structs of a variable-length array one by one from a frame.
+
+This is for programs whose memory is too small for the complete message.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ int main(void)
 """
 
 
-def test_structs_of_a_frame_are_read_one_by_one_where_its_message_is_too_large(
+def test_structs_are_read_one_by_one_from_a_frame_whose_message_is_too_large(
     tmp_path,
 ):
     (tmp_path / "demo.yaml").write_text(ICD, encoding="utf-8")

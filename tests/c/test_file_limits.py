@@ -1,4 +1,4 @@
-"""Limits of procedures in C: inputs, numbers of packets, and offsets near 4 GiB."""
+"""Procedures in C respect limits of inputs, packet numbers and offsets near 4 GiB."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
-"""The guide to drivers in C: its first lines compile, and its main loop runs on a UART
-driver of the test.
+"""The examples of the guide to drivers in C compile and run.
+
+The main loop runs on a UART driver that the test provides.
 """
 
 from __future__ import annotations
@@ -71,9 +72,9 @@ def program(tmp_path_factory):
 def test_the_loop_requests_an_angle_each_second(program):
     angle = ("--set", "Estimated Attitude Angles", "roll=12.5")
     with (
-        simulator("--node", "cubeacp", "--tcp", "0", *angle) as (place, _),
+        simulator("--node", "cubeacp", "--tcp", "0", *angle) as (address, _),
         subprocess.Popen(
-            [program, str(urlsplit(place).port)], stdout=subprocess.PIPE, text=True
+            [program, str(urlsplit(address).port)], stdout=subprocess.PIPE, text=True
         ) as process,
     ):
         lines = [process.stdout.readline() for _ in range(2)]
@@ -113,7 +114,7 @@ def test_the_first_lines_of_the_guide_decode_and_encode(tmp_path):
     )
 
 
-def test_the_guide_plays_a_device_that_acknowledges_and_refuses(tmp_path):
+def test_the_unit_test_of_the_guide_passes(tmp_path):
     section = documents.text("guides/driver-in-c").split(
         "## Play the device in your tests"
     )[1]

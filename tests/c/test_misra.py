@@ -1,5 +1,6 @@
-"""Every violation of MISRA C:2012 that cppcheck finds is in the record, with a reason,
-and nothing else is.
+"""The record lists exactly the violations of MISRA C:2012 that cppcheck finds.
+
+Each entry has a reason. `tests.c.misra` finds the violations and compares them.
 """
 
 from __future__ import annotations
@@ -11,12 +12,15 @@ import pytest
 from tests.c import misra
 
 VERDICTS = {"deviation", "false positive"}
-CATEGORIES = {"required", "advisory"}  # nobody may deviate from what is mandatory
+CATEGORIES = {
+    "required",
+    "advisory",
+}  # the standard allows no deviation from mandatory rules
 
 
 @pytest.fixture(scope="module")
 def now():
-    return misra.found(whole=False)
+    return misra.current_places(is_complete=False)
 
 
 def test_the_record_is_what_cppcheck_finds(now):
@@ -26,7 +30,7 @@ def test_the_record_is_what_cppcheck_finds(now):
     )
 
 
-def test_the_runtime_and_every_template_were_looked_at(now):
+def test_the_runtime_and_every_template_are_checked(now):
     assert now["15.5"]["runtime"].keys() >= {
         "wire/client.c",
         "wire/procedure.c",
@@ -37,36 +41,38 @@ def test_the_runtime_and_every_template_were_looked_at(now):
     }  # fmt: skip
 
 
-def test_every_entry_says_why_it_stays():
-    for one in misra.record():
-        assert one["verdict"] in VERDICTS and one["category"] in CATEGORIES, one["rule"]
-        assert len(one["reason"].split()) > 4 and one["reason"].endswith("."), one[
+def test_every_entry_has_a_verdict_and_a_reason():
+    for entry in misra.record():
+        assert entry["verdict"] in VERDICTS and entry["category"] in CATEGORIES, entry[
             "rule"
         ]
+        assert len(entry["reason"].split()) > 4 and entry["reason"].endswith("."), (
+            entry["rule"]
+        )
 
 
-def test_a_violation_that_is_new_is_noticed(tmp_path):
-    source = tmp_path / "made" / "demo" / "state.h"
+def test_a_new_violation_is_reported(tmp_path):
+    source = tmp_path / "generated" / "demo" / "state.h"
     source.parent.mkdir(parents=True)
     source.write_text(
         "static int f(int n);\nstatic int f(int n)\n{\n    int r = n;\n    r = f(n - 1);\n    return r;\n}\n"
     )
     program = tmp_path / "nodes.c"
     program.write_text(f'#include "{source}"\n')
-    found = misra.places(misra.findings(program), tmp_path)
-    assert found["17.2"] == {"runtime": {}, "generated": ["message.h.j2"]}
+    places = misra.places(misra.findings(program), tmp_path)
+    assert places["17.2"] == {"runtime": {}, "generated": ["message.h.j2"]}
     assert "17.2: message.h.j2 is not in the record" in misra.differences(
-        misra.record(), found
+        misra.record(), places
     )
 
 
-def test_an_entry_that_nothing_breaks_any_more_is_noticed():
+def test_an_entry_without_a_violation_is_reported():
     recorded = misra.record()
-    found = {one["rule"]: copy.deepcopy(one) for one in recorded}
-    assert misra.differences(recorded, found) == []
-    del found["19.2"]
-    found["15.5"]["runtime"]["wire/uart.c"] -= 1
-    assert [line.split(":")[0] for line in misra.differences(recorded, found)] == [
+    places = {entry["rule"]: copy.deepcopy(entry) for entry in recorded}
+    assert misra.differences(recorded, places) == []
+    del places["19.2"]
+    places["15.5"]["runtime"]["wire/uart.c"] -= 1
+    assert [line.split(":")[0] for line in misra.differences(recorded, places)] == [
         "15.5",
         "19.2",
     ]

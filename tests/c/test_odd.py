@@ -1,5 +1,6 @@
-"""Any bit and byte order, width, place and text works in C, with nothing for the
-sanitizers to find.
+"""C code for any bit and byte order, width, position and text works without errors.
+
+The sanitizers check the programs while they run.
 
 A bit-by-bit interpreter in C checks the generated code on random frames. The reference
 codec checks the interpreter and the generated code on zeros, ones and extremes.
@@ -25,18 +26,18 @@ def icd(tmp_path_factory):
     return harness.read(*odd.write(tmp_path_factory.mktemp("icd")))
 
 
-def test_any_order_width_and_place_agrees_with_the_reference_codec(icd, tmp_path):
+def test_any_order_width_and_position_agrees_with_the_reference_codec(icd, tmp_path):
     program = build(icd, tmp_path)
     assert_no_differences([program])
     assert_agrees(program, icd)
 
 
-def test_portable_code_agrees_too(icd, tmp_path):
+def test_portable_code_agrees_with_the_interpreter(icd, tmp_path):
     assert_no_differences([build(icd, tmp_path, "-DICDGEN_PORTABLE")])
 
 
 @pytest.mark.needs("qemu-s390x", "s390x-linux-gnu-gcc")
-def test_big_endian_machines_agree_too(icd, tmp_path):
+def test_big_endian_machines_agree_with_the_interpreter(icd, tmp_path):
     harness.generate(icd, tmp_path)
     source = tmp_path / "frames.c"
     source.write_text(harness.frames_source(icd))
@@ -55,12 +56,14 @@ def assert_no_differences(program: list[str | Path]) -> None:
 
 
 @pytest.mark.parametrize(("compiler", "standard"), harness.LANGUAGES)
-def test_text_from_the_icd_breaks_out_of_nothing(icd, tmp_path, compiler, standard):
+def test_text_of_the_icd_does_not_end_comments_or_strings(
+    icd, tmp_path, compiler, standard
+):
     harness.generate(icd, tmp_path)
     harness.compile_all(icd, tmp_path, compiler, standard, "-Wtrigraphs", "-Wcomment")
 
 
-def test_names_of_the_manual_come_back_to_the_letter(icd, tmp_path):
+def test_name_functions_return_the_exact_names_of_the_manual(icd, tmp_path):
     harness.generate(icd, tmp_path)
     calls = "".join(
         f"    puts(hostile_telemetry_name({n})); putchar(1);\n"
@@ -98,32 +101,35 @@ def build(icd: Icd, folder: Path, *options: str) -> Path:
 
 
 def assert_agrees(program: Path, icd: Icd) -> None:
-    """Zeros, ones, a code for each bit position, extremes of each field, some random
-    frames: same values, same bytes.
+    """Compare the program with the reference codec: same values, same bytes.
+
+    The frames are zeros, ones, a code for each bit position, extremes of each field and
+    some random frames.
     """
     targets = harness.targets(icd)
     frames = [list(samples(t.message.node, t.message.model)) for t in targets]
     data = b"".join(
-        struct.pack("<HI", index, len(of_message)) + b"".join(of_message)
-        for index, of_message in enumerate(frames)
+        struct.pack("<HI", index, len(samples_of_message))
+        + b"".join(samples_of_message)
+        for index, samples_of_message in enumerate(frames)
     )
     done = subprocess.run([program, "sample"], input=data, capture_output=True)
     assert done.returncode == 0, (done.stdout[-1000:] + done.stderr)[-4000:]
-    out, at = done.stdout, 0
-    for target, of_message in zip(targets, frames, strict=True):
+    results, offset = done.stdout, 0
+    for target, samples_of_message in zip(targets, frames, strict=True):
         node, message = target.message.node, target.message.model
-        for frame in of_message:
+        for frame in samples_of_message:
             raw = codec.decode(node, message, frame)
             expected = record(message, raw) + codec.encode(node, message, raw)
-            for who in ("generated code", "interpreter"):
-                found = out[at : at + len(expected)]
-                assert found == expected, f"{who}, {message.name}, {frame.hex()}"
-                at += len(expected)
-    assert at == len(out)
+            for origin in ("generated code", "interpreter"):
+                output = results[offset : offset + len(expected)]
+                assert output == expected, f"{origin}, {message.name}, {frame.hex()}"
+                offset += len(expected)
+    assert offset == len(results)
 
 
 def record(message: Message, raw: dict[str, int | bytes]) -> bytes:
-    """The raw values as the test program writes them."""
+    """Return the raw values in the format that the test program writes."""
     out = b""
     for field in message.fields:
         value = raw[field.name]
@@ -140,15 +146,17 @@ def samples(node: Node, message: Message):
     yield bytes(length)
     yield b"\xff" * length
     for bit in range((length * 8).bit_length()):
-        code = sum(((at >> bit) & 1) << at for at in range(length * 8))
+        code = sum(
+            ((position >> bit) & 1) << position for position in range(length * 8)
+        )
         yield code.to_bytes(length, "little")
     zeros = codec.decode(node, message, bytes(length))
     for field in message.fields:
         for value in extremes(field):
             yield codec.encode(node, message, {**zeros, field.name: value})
-    source = random.Random(message.name)
+    generator = random.Random(message.name)
     for _ in range(3):
-        yield source.randbytes(length)
+        yield generator.randbytes(length)
 
 
 def extremes(field: NodePlace):

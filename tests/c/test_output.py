@@ -1,5 +1,6 @@
-"""Layout of the generated files in C, which of them change, and texts in comments and
-literals.
+"""The generated C files have a fixed layout, and change only where the ICD changes.
+
+Texts of the ICD are harmless in comments and string literals.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ def without_a_field(
     icd: Icd, node_name: str, message_name: str, field_name: str
 ) -> Icd:
     def fewer(message):
-        fixed = tuple(one for one in message.layout.fixed if one.name != field_name)
+        fixed = tuple(
+            field for field in message.layout.fixed if field.name != field_name
+        )
         layout = dataclasses.replace(message.layout, fixed=fixed)
         return dataclasses.replace(message, layout=layout)
 
@@ -76,7 +79,7 @@ def test_deleting_a_field_changes_only_its_message_and_the_digest_of_its_node(sh
     )
 
 
-def test_output_is_the_same_every_time_and_says_nothing_of_the_machine(shipped):
+def test_output_is_reproducible_and_contains_no_path_of_the_machine(shipped):
     assert files(harness.shipped()) == shipped
     for path, text in shipped.items():
         assert text.endswith("\n") and not text.endswith("\n\n"), path
@@ -89,7 +92,7 @@ def test_output_is_the_same_every_time_and_says_nothing_of_the_machine(shipped):
         )
 
 
-def test_lines_keep_to_the_width_where_names_allow_it(shipped):
+def test_lines_have_at_most_120_characters_unless_a_name_is_longer(shipped):
     for path, text in shipped.items():
         for line in text.splitlines():
             assert len(line) <= 120 or re.fullmatch(
@@ -98,7 +101,7 @@ def test_lines_keep_to_the_width_where_names_allow_it(shipped):
 
 
 @pytest.mark.needs("clang-format")
-def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
+def test_clang_format_leaves_all_files_unchanged(shipped, tmp_path):
     for path, text in shipped.items():
         target = tmp_path / path
         target.parent.mkdir(exist_ok=True)
@@ -118,11 +121,11 @@ def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
     assert done.returncode == 0, done.stderr[:4000]
 
 
-def test_no_two_names_of_the_shipped_icds_are_the_same_in_the_63_characters_that_c_guarantees():
+def test_names_of_the_shipped_icds_differ_in_the_63_characters_that_c_guarantees():
     names = {
-        one.text
-        for one in CBackend().identifiers(harness.shipped())
-        if one.scope == FILE
+        identifier.text
+        for identifier in CBackend().identifiers(harness.shipped())
+        if identifier.scope == FILE
     }
     assert len(names) > 3000 and len({name[:63] for name in names}) == len(names)
 
@@ -152,7 +155,7 @@ def test_long_comments_are_wrapped():
 @pytest.mark.parametrize(
     "text", [*odd.HOSTILE, "", "?", "???", '"', "\\", "\\\\n", "\0001", "\u20acuro"]
 )
-def test_string_literals_hold_the_text(tmp_path, text):
+def test_string_literals_represent_the_exact_text(tmp_path, text):
     source = tmp_path / "text.c"
     source.write_text(
         f"#include <stdio.h>\nint main(void)\n{{\n    static const char text[] = {literal(text)};\n"
@@ -169,15 +172,15 @@ def test_string_literals_hold_the_text(tmp_path, text):
     assert subprocess.run([program], capture_output=True).stdout.decode() == text
 
 
-def test_reserved_bits_are_spoken_of_where_there_are_some(shipped):
-    found = set()
+def test_comments_mention_reserved_bits_if_a_message_has_some(shipped):
+    results = set()
     for node in harness.shipped().nodes:
         for message in describe(harness.shipped()).node(node).messages:
-            has_some = bool(frame_bits.reserved_bits(message.model, node))
+            has_reserved_bits = bool(frame_bits.reserved_bits(message.model, node))
             text = shipped[f"{node.name}/{message.name}.h"]
-            assert ("reserved bits 0" in text) == has_some, message.model.name
-            found.add(has_some)
-    assert found == {True, False}
+            assert ("reserved bits 0" in text) == has_reserved_bits, message.model.name
+            results.add(has_reserved_bits)
+    assert results == {True, False}
 
 
 STUTTER = """\
@@ -192,7 +195,7 @@ messages:
 """
 
 
-def test_the_name_of_the_node_stands_once(tmp_path):
+def test_identifiers_contain_the_name_of_the_node_once(tmp_path):
     (tmp_path / "pump.yaml").write_text(STUTTER, encoding="utf-8")
     icd = harness.read(tmp_path / "pump.yaml")
     texts = files(icd)

@@ -1,8 +1,7 @@
-"""Physical values are the correctly rounded doubles of the exact ones, and setting them
-finds the nearest raw value.
+"""C functions return correctly rounded physical values, and set the nearest raw value.
 
-Exhaustive for fields of up to 16 bits; extremes and random values for wider ones. The
-reference codec judges.
+The tests cover all values of fields of up to 16 bits, and extremes and random values of
+wider ones. The reference codec computes the expected values.
 """
 
 from __future__ import annotations
@@ -32,13 +31,13 @@ from tests.c import harness, odd
 REFUSED = 0x5245465553454421
 
 
-def test_every_scaled_field_of_the_shipped_icds(tmp_path):
+def test_scaled_fields_of_the_shipped_icds_are_exact(tmp_path):
     compared = compare(harness.shipped(), tmp_path)
     assert compared > 30_000_000
 
 
 @pytest.mark.parametrize("option", ["-O2", "-ffast-math", "-mfpmath=387"])
-def test_odd_scales_with_any_arithmetic_of_the_compiler(tmp_path, option):
+def test_odd_scales_are_exact_with_any_arithmetic_of_the_compiler(tmp_path, option):
     folder = tmp_path / "icd"
     folder.mkdir()
     assert (
@@ -47,7 +46,10 @@ def test_odd_scales_with_any_arithmetic_of_the_compiler(tmp_path, option):
 
 
 def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
-    """The number of comparisons; fails on any difference."""
+    """Compare C with the reference codec; fail on any difference.
+
+    Returns the number of comparisons.
+    """
     scaled = [
         f
         for node in describe(icd).nodes
@@ -72,8 +74,10 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
         f"-I{folder}", output=folder / "physical",
     )  # fmt: skip
     alike = defaultdict(list)
-    for number, one in enumerate(scaled):
-        alike[one.steps, one.model.bits, one.storage].append(number)
+    for number, description in enumerate(scaled):
+        alike[description.steps, description.model.bits, description.storage].append(
+            number
+        )
     with subprocess.Popen(
         [program], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as process:
@@ -91,7 +95,7 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
 
 def row(field: FieldDescription) -> dict[str, object]:
     name = stem(field.message)
-    found = {
+    keys = {
         "type": f"{name}_t",
         "name": field.name,
         "storage": type_of(field),
@@ -101,15 +105,16 @@ def row(field: FieldDescription) -> dict[str, object]:
         "get_whole": None,
     }
     for accessor in accessors_of(field, "integer"):
-        found["get_whole"] = f"{name}_{accessor.name}"
-        found["set_whole"] = f"{name}_set_{accessor.name}"
-        found["whole"] = f"int{accessor.integers.bits}_t"
-    return found
+        keys["get_whole"] = f"{name}_{accessor.name}"
+        keys["set_whole"] = f"{name}_set_{accessor.name}"
+        keys["whole"] = f"int{accessor.integers.bits}_t"
+    return keys
 
 
 def _survives(field: NodePlace) -> bool:
-    """Whether doubles tell all physical values apart, so that the way back leads to the
-    same raw value.
+    """Report whether each raw value survives a round trip through its double.
+
+    It does if all physical values of the field have different doubles.
     """
     ends = (
         field.scale.physical(raw) / field.scale.factor
@@ -119,31 +124,44 @@ def _survives(field: NodePlace) -> bool:
 
 
 def tables(field: NodePlace, wide: int):
-    """What the test program compares with, as bytes; ``wide`` values of a field of more
-    than 16 bits.
+    """Yield tables of expected values for the test program, as bytes.
+
+    A field of more than 16 bits has ``wide`` values.
     """
-    source = random.Random(f"{field.scale}{field.bits}")
-    raws = raw_values(field, wide, source)
-    q = lcm(field.scale.factor.denominator, field.scale.offset.denominator)
-    p, c = int(field.scale.factor * q), int(field.scale.offset * q)
-    doubles = array("d", [(raw * p + c) / q for raw in raws])
-    for raw in source.sample(raws, min(300, len(raws))):
-        assert codec.physical_double(field, raw) == (raw * p + c) / q
+    generator = random.Random(f"{field.scale}{field.bits}")
+    raws = raw_values(field, wide, generator)
+    denominator = lcm(field.scale.factor.denominator, field.scale.offset.denominator)
+    factor, offset = (
+        int(field.scale.factor * denominator),
+        int(field.scale.offset * denominator),
+    )
+    doubles = array("d", [(raw * factor + offset) / denominator for raw in raws])
+    for raw in generator.sample(raws, min(300, len(raws))):
+        assert (
+            codec.physical_double(field, raw) == (raw * factor + offset) / denominator
+        )
     yield table(words(raws), doubles.tobytes())
-    values = physical_values(field, wide // 10, source)
+    values = physical_values(field, wide // 10, generator)
     yield table(
         array("d", values).tobytes(),
         words([set_by_codec(field, value) for value in values]),
     )
     per = next(
-        (per for per in (1000, 10**6) if (per * p) % q == (per * c) % q == 0), None
+        (
+            per
+            for per in (1000, 10**6)
+            if (per * factor) % denominator == (per * offset) % denominator == 0
+        ),
+        None,
     )
-    whole = [(raw * p + c) * per // q for raw in raws] if per else []
-    if not per or not all(-(2**63) <= value < 2**63 for value in whole):
+    integers = (
+        [(raw * factor + offset) * per // denominator for raw in raws] if per else []
+    )
+    if not per or not all(-(2**63) <= value < 2**63 for value in integers):
         yield table(b"", b"")
         yield table(b"", b"")
         return
-    yield table(words(raws), words(whole))
+    yield table(words(raws), words(integers))
     small = all(
         -(2**31) <= field.scale.physical(end) * per < 2**31
         for end in storage_ends(field)
@@ -151,7 +169,7 @@ def tables(field: NodePlace, wide: int):
     low, high = (-(2**31), 2**31 - 1) if small else (-(2**63), 2**63 - 1)
     numbers = [
         value
-        for value in whole_values(field, per, wide // 10, source)
+        for value in integer_values(field, per, wide // 10, generator)
         if low <= value <= high
     ]
     yield table(
@@ -209,7 +227,7 @@ def raw_values(field: NodePlace, wide: int, source: random.Random) -> list[int]:
 
 
 def physical_values(field: NodePlace, count: int, source: random.Random) -> list[float]:
-    """Doubles at and beside ties, at and beyond the limits, and the strangest ones."""
+    """Return doubles at and near ties, at and beyond the limits, and special values."""
     values = [
         math.nan,
         -math.nan,
@@ -246,7 +264,7 @@ def physical_values(field: NodePlace, count: int, source: random.Random) -> list
     return values
 
 
-def whole_values(
+def integer_values(
     field: NodePlace, per: int, count: int, source: random.Random
 ) -> list[int]:
     values = [0, 1, -1, 2**31 - 1, -(2**31), 2**63 - 1, -(2**63)]

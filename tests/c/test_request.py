@@ -1,4 +1,4 @@
-"""The example in C that talks to a node over TCP: nodes that do not answer at once."""
+"""The example in C that requests telemetry over TCP repeats unanswered requests."""
 
 from __future__ import annotations
 
@@ -31,13 +31,14 @@ def program(tmp_path_factory):
 
 
 class Node(threading.Thread):
-    """Serves one connection: answers every request for telemetry but the first
-    ``silent`` ones.
+    """Node for one connection that ignores the first ``silent`` requests.
+
+    It responds to every later request for telemetry.
     """
 
     def __init__(self, silent: int) -> None:
         super().__init__(daemon=True)
-        self.silent, self.asked = silent, []
+        self.silent, self.requests = silent, []
         self.server = socket.create_server(("127.0.0.1", 0))
         self.port = self.server.getsockname()[1]
         self.start()
@@ -49,33 +50,29 @@ class Node(threading.Thread):
         with connection:
             while data := connection.recv(4096):
                 for event in decoder.feed(data):
-                    self.asked.append(event.message)
-                    if len(self.asked) > self.silent:
+                    self.requests.append(event.message)
+                    if len(self.requests) > self.silent:
                         line = b"noise\x1f" + uart_encode(link, event.message + FRAME)
                         for byte in line:  # a byte at a time
                             connection.sendall(bytes((byte,)))
 
 
-def run(program, node: Node) -> subprocess.CompletedProcess:
-    return ask(program, node.port)
-
-
-def ask(program, port: int | str) -> subprocess.CompletedProcess:
+def run(program, port: int | str) -> subprocess.CompletedProcess:
     return subprocess.run(
         [program, str(port)], capture_output=True, text=True, timeout=60
     )
 
 
 @pytest.mark.parametrize("silent", [0, 1])
-def test_the_example_asks_until_it_is_answered(program, silent):
+def test_the_example_repeats_its_request_until_a_response_arrives(program, silent):
     node = Node(silent)
-    done = run(program, node)
+    done = run(program, node.port)
     assert (done.returncode, done.stdout, done.stderr) == (0, "roll 79.67 deg\n", "")
-    assert node.asked == [bytes((146,))] * (silent + 1)
+    assert node.requests == [bytes((146,))] * (silent + 1)
 
 
-def test_the_example_gives_up_when_nobody_answers(program):
-    done = run(program, Node(99))
+def test_the_example_fails_without_a_response(program):
+    done = run(program, Node(99).port)
     assert (done.returncode, done.stdout, done.stderr) == (
         1,
         "",
@@ -83,10 +80,10 @@ def test_the_example_gives_up_when_nobody_answers(program):
     )
 
 
-def test_the_example_says_that_nobody_listens(program):
+def test_the_example_reports_a_refused_connection(program):
     with socket.create_server(("127.0.0.1", 0)) as server:
         unused = server.getsockname()[1]
-    done = ask(program, unused)
+    done = run(program, unused)
     assert (done.returncode, done.stdout, done.stderr) == (
         1,
         "",

@@ -1,5 +1,6 @@
-"""Names that C99 does not tell apart are shortened in C, so that strict compilers and
-linkers take them; others stay.
+"""Names with the same first 63 characters are shortened to unique names in C.
+
+C99 does not distinguish them. Other names stay unchanged.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ messages:
 """
 
 
-def test_only_names_that_begin_alike_are_shortened_each_to_one_of_its_own():
+def test_only_names_with_the_same_beginning_are_shortened_to_unique_names():
     texts = [
         "a" * 70 + "_x",
         "a" * 70 + "_y",
@@ -44,11 +45,11 @@ def test_only_names_that_begin_alike_are_shortened_each_to_one_of_its_own():
         len({text[:SIGNIFICANT] for text in short.values()}) == 4
         and max(map(len, short.values())) <= SIGNIFICANT
     )
-    assert all(one.isupper() == text.isupper() for text, one in short.items())
+    assert all(name.isupper() == text.isupper() for text, name in short.items())
 
 
 @pytest.mark.needs("gcc")
-def test_generated_c_with_long_names_has_no_two_names_that_begin_alike_and_passes_its_self_test(
+def test_generated_c_with_long_names_has_unique_names_and_passes_its_self_test(
     tmp_path,
 ):
     import sys

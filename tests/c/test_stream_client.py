@@ -1,5 +1,6 @@
-"""Typed client of a framed link: the C of docs/reference/wire-framing.md is compiled
-and run, and each event is read.
+"""Typed clients of framed links in C return each event as the message received.
+
+The tests compile and run the examples of docs/reference/wire-framing.md.
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ from tests.c import harness
 from tests.conformance.icds import LINKS, read_unchecked
 from tests.conftest import ROOT
 
-SHOWN = documents.text("reference/wire-framing")
+PAGE = documents.text("reference/wire-framing")
 EXAMPLES = ROOT / "examples" / "links"
 
 
 def shown(begin: str) -> list[str]:
-    """The lines of the example in C that begins so."""
-    _, rest = SHOWN.split(f"```c\n{begin}")
-    return (begin + rest.split("```")[0]).splitlines()
+    """Return the lines of the documented example in C that begins with ``begin``."""
+    _, following = PAGE.split(f"```c\n{begin}")
+    return (begin + following.split("```")[0]).splitlines()
 
 
 def run(folder, text, *icds):
@@ -81,7 +82,7 @@ int main(void)
 """
 
 
-def test_the_documented_client_asks_sends_and_reads_what_comes(tmp_path):
+def test_the_documented_client_requests_sends_and_receives_messages(tmp_path):
     lines = shown("receiver_client_t receiver;")
     in_event = [line.replace("...", "++clocks;") for line in lines if "{ ... }" in line]
     in_main = [line for line in lines if "{ ... }" not in line]
@@ -249,7 +250,7 @@ int main(void)
 """
 
 
-def test_responses_before_and_after_their_time_are_told_apart(tmp_path):
+def test_responses_before_and_after_the_time_out_are_distinguished(tmp_path):
     run(tmp_path, ARM, LINKS / "outcomes.yaml")
 
 
@@ -274,7 +275,7 @@ int main(void)
 """
 
 
-def test_the_documented_sender_counts_what_it_sends(tmp_path):
+def test_the_documented_sender_numbers_its_packets(tmp_path):
     run(
         tmp_path,
         SENDING % "\n    ".join(shown("autopilot_sender_t sender;")),
@@ -357,7 +358,7 @@ int main(void)
 """
 
 
-def test_an_event_is_read_as_the_message_that_it_brings_and_as_no_other(tmp_path):
+def test_an_event_is_read_only_as_the_message_that_was_received(tmp_path):
     run(tmp_path, SHARED, LINKS / "packets.yaml")
 
 
@@ -389,17 +390,17 @@ CALLS = {
 
 
 @pytest.fixture(scope="module")
-def both(tmp_path_factory):
+def two_links(tmp_path_factory):
     icd = read_unchecked(LINKS / "packets.yaml", EXAMPLES / "ubx.yaml")
-    return harness.generate(icd, tmp_path_factory.mktemp("both"))
+    return harness.generate(icd, tmp_path_factory.mktemp("two_links"))
 
 
 @pytest.mark.parametrize("call", CALLS)
-def test_only_what_the_node_takes_and_can_be_asked_compiles(both, tmp_path, call):
+def test_only_calls_for_messages_of_the_node_compile(two_links, tmp_path, call):
     source = tmp_path / "call.c"
     source.write_text(CALL % call)
     done = subprocess.run(
-        ["gcc", "-std=c99", "-Werror", "-fsyntax-only", f"-I{both}", source],
+        ["gcc", "-std=c99", "-Werror", "-fsyntax-only", f"-I{two_links}", source],
         capture_output=True,
     )
     assert done.returncode == CALLS[call], done.stderr
@@ -489,5 +490,5 @@ OF_BATTERY = [
 ]
 
 
-def test_a_battery_is_read_and_refuses_with_packets_of_other_formats(tmp_path):
+def test_a_battery_responds_with_packets_of_several_formats(tmp_path):
     assert run(tmp_path, BATTERY, EXAMPLES / "jbd.yaml").splitlines() == OF_BATTERY

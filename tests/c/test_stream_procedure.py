@@ -1,5 +1,7 @@
-"""A procedure above the client of a framed link: an upload to the bootloader of
-examples/links, which loses every fifth telecommand.
+"""Procedures in C run over the client of a framed link.
+
+The test uploads a program to the bootloader of `examples/links`, over a line that loses
+every fifth telecommand.
 """
 
 from __future__ import annotations
@@ -120,5 +122,5 @@ int main(void)
 """
 
 
-def test_an_upload_runs_above_the_client_of_a_framed_link(tmp_path):
+def test_an_upload_runs_over_the_client_of_a_framed_link(tmp_path):
     run(tmp_path, PROGRAM, EXAMPLES / "bootloader.yaml")

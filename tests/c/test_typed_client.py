@@ -1,5 +1,6 @@
-"""A client of a node takes the messages of that node: those of another do not compile,
-or are refused at once.
+"""A client in C accepts only messages of its node.
+
+Calls with messages of another node do not compile, or return an error at once.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ icd_status_t call(cubeacp_client_t *acp, const icd_event_t *event)
     %s
 }
 """
-OWN = """\
+CALL_OF_OWN_NODE = """\
     cubeacp_set_adcs_run_mode_t mode;
     cubeacp_state_t state;
     common_identification_t identity;
@@ -40,7 +41,7 @@ OWN = """\
         return ICD_ERROR_LENGTH;
     }
     return cubeacp_send_set_adcs_run_mode(acp, 0, &mode);"""
-OTHERS = {
+CALLS_OF_OTHER_NODES = {
     "telemetry of another node": "(void)event; return bootloader_request_state(acp, 0);",
     "the frame of another node": "(void)acp; bootloader_state_t state; return cubeacp_receive_state(&state, event);",
     "a telecommand of another node": "(void)event; return bootloader_send_run_selected_program(acp, 0);",
@@ -52,7 +53,7 @@ OTHERS = {
 }  # fmt: skip
 
 
-def compiled(headers, folder, body, compiler, standard):
+def compile_call(headers, folder, body, compiler, standard):
     source = folder / "call.c"
     source.write_text(CALL % body)
     flags = [
@@ -66,18 +67,25 @@ def compiled(headers, folder, body, compiler, standard):
 
 
 @pytest.mark.parametrize(("compiler", "standard"), COMPILERS)
-def test_messages_of_the_node_and_of_those_that_it_includes_compile(
+def test_messages_of_the_node_and_of_included_nodes_compile(
     headers, tmp_path, compiler, standard
 ):
-    assert compiled(headers, tmp_path, OWN.strip(), compiler, standard).stderr == ""
+    assert (
+        compile_call(
+            headers, tmp_path, CALL_OF_OWN_NODE.strip(), compiler, standard
+        ).stderr
+        == ""
+    )
 
 
 @pytest.mark.parametrize(("compiler", "standard"), COMPILERS)
-@pytest.mark.parametrize("what", OTHERS)
+@pytest.mark.parametrize("what", CALLS_OF_OTHER_NODES)
 def test_a_message_of_another_node_does_not_compile(
     headers, tmp_path, what, compiler, standard
 ):
-    done = compiled(headers, tmp_path, OTHERS[what], compiler, standard)
+    done = compile_call(
+        headers, tmp_path, CALLS_OF_OTHER_NODES[what], compiler, standard
+    )
     assert done.returncode != 0
     assert re.search(
         "incompatible|cannot convert|no matching function|implicit|undeclared|not declared",
@@ -152,7 +160,7 @@ int main(void)
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_a_frame_is_received_as_the_message_of_the_node_that_sent_it_only(
+def test_a_frame_is_received_only_as_the_message_of_its_sender(
     headers, tmp_path, compiler
 ):
     run(headers, tmp_path, RECEIVE, compiler)
@@ -178,9 +186,7 @@ int main(void)
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_a_client_on_can_is_told_its_address_when_it_begins(
-    headers, tmp_path, compiler
-):
+def test_a_client_on_can_gets_its_address_at_the_start(headers, tmp_path, compiler):
     run(headers, tmp_path, CAN, compiler)
 
 

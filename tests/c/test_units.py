@@ -1,5 +1,7 @@
-"""Programs of several translation units: the wire layer and the links are there once,
-or in each unit for itself.
+"""Programs of several translation units can share one wire layer.
+
+Without `ICDGEN_SHARED`, each unit has its own copy. The tests link programs and inspect
+their symbols.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from icdgen.describe import describe
 from icdgen.describe.links import links_of
 from tests.c import harness
 
-BOTH = """\
+UNIT = """\
 #include "cubeacp.h"
 #include "bootloader.h"
 int {name}(void);
@@ -46,24 +48,24 @@ SHARED = ["icdgen_wire.c", "cubeacp/link.c", "bootloader/link.c"]
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    made = harness.generate(harness.shipped(), tmp_path_factory.mktemp("units"))
-    (made / "first.c").write_text(BOTH.format(name="first", node="cubeacp"))
-    (made / "second.c").write_text(BOTH.format(name="second", node="bootloader"))
-    (made / "main.c").write_text(MAIN)
-    return made
+    generated = harness.generate(harness.shipped(), tmp_path_factory.mktemp("units"))
+    (generated / "first.c").write_text(UNIT.format(name="first", node="cubeacp"))
+    (generated / "second.c").write_text(UNIT.format(name="second", node="bootloader"))
+    (generated / "main.c").write_text(MAIN)
+    return generated
 
 
 def objects(folder, sources, compiler, standard, *options):
-    made = []
+    paths = []
     for source in sources:
         target = folder / f"{source.replace('/', '_')}.o"
         command = [*options, *harness.WARNINGS, f"-std={standard}", "-c", f"-I{folder}"]
         if compiler.endswith("++"):
             command += ["-xc++"]
-        made.append(
+        paths.append(
             harness.compile(folder / source, *command, compiler=compiler, output=target)
         )
-    return made
+    return paths
 
 
 def symbols(path, kinds):
@@ -73,7 +75,7 @@ def symbols(path, kinds):
 
 
 def undefined(path):
-    """The symbols that an object has from elsewhere."""
+    """Return the undefined symbols of an object."""
     done = subprocess.run(
         ["nm", "-u", path], capture_output=True, text=True, check=True
     )
@@ -83,7 +85,7 @@ def undefined(path):
 @pytest.mark.parametrize(
     ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
 )
-def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(
+def test_units_that_share_the_wire_layer_do_not_define_its_symbols(
     folder, compiler, standard
 ):
     units = objects(
@@ -94,9 +96,8 @@ def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(
         "-O1",
         "-DICDGEN_SHARED",
     )
-    layer = objects(
-        folder, SHARED, "gcc", "c99", "-O1", "-Wmissing-prototypes"
-    )  # as C, whoever uses it
+    # The layer is compiled as C, also for programs in C++.
+    layer = objects(folder, SHARED, "gcc", "c99", "-O1", "-Wmissing-prototypes")
     linker = {"g++": "g++"}.get(compiler, compiler)
     subprocess.run([linker, *units, *layer, "-o", folder / "shared"], check=True)
     subprocess.run([folder / "shared"], check=True)
@@ -117,9 +118,7 @@ def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(
 @pytest.mark.parametrize(
     ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
 )
-def test_units_that_have_all_for_themselves_need_no_other_source(
-    folder, compiler, standard
-):
+def test_units_with_their_own_copy_need_no_other_source(folder, compiler, standard):
     units = objects(
         folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1"
     )
@@ -128,7 +127,7 @@ def test_units_that_have_all_for_themselves_need_no_other_source(
     assert symbols(units[0], "U") == set()
 
 
-def test_external_names_differ_in_the_31_characters_that_c_warrants(folder):
+def test_external_names_differ_in_the_31_characters_that_c_guarantees(folder):
     layer = objects(folder, SHARED, "gcc", "c99", "-O1")
     names = [name for path in layer for name in symbols(path, "T")]
     assert len(names) > 50 and len({name[:31] for name in names}) == len(names)
@@ -151,8 +150,9 @@ int main(void)
 
 
 def linked(folder, bus, *options):
-    """The symbols of a program that begins a client on one bus, as the linker leaves
-    them.
+    """Link a program with a client on one bus, run it, and return its symbols.
+
+    The linker removes unused sections.
     """
     (folder / "client.c").write_text(
         CLIENT.format(bus=bus, address="1, " if bus == "can" else "")
@@ -165,7 +165,7 @@ def linked(folder, bus, *options):
         "-DICDGEN_SHARED",
         *options,
     ]
-    made = [
+    object_files = [
         harness.compile(
             folder / name,
             *flags,
@@ -177,7 +177,7 @@ def linked(folder, bus, *options):
         for place, name in enumerate(("client.c", "icdgen_wire.c", "cubeacp/link.c"))
     ]
     subprocess.run(
-        ["gcc", *made, "-Wl,--gc-sections", "-o", folder / "client"], check=True
+        ["gcc", *object_files, "-Wl,--gc-sections", "-o", folder / "client"], check=True
     )
     subprocess.run([folder / "client"], check=True)
     lines = subprocess.run(
@@ -186,7 +186,7 @@ def linked(folder, bus, *options):
     return {line.split()[-1] for line in lines}
 
 
-def test_a_program_has_nothing_of_the_buses_that_it_does_not_begin(folder):
+def test_a_program_contains_no_code_of_unused_buses(folder):
     uart, can = linked(folder, "uart"), linked(folder, "can")
     assert (
         "icd_uart_decoder_init" in uart
@@ -196,8 +196,8 @@ def test_a_program_has_nothing_of_the_buses_that_it_does_not_begin(folder):
     assert "icd_can_split" in can and "icd_uart_decoder_init" not in can
     for bus in BUSES:
         tables = tables_of(linked(folder, bus))
-        others = {f"{other}_exchanges" for other in BUSES if other != bus}
-        assert f"{bus}_exchanges" in tables and not tables & others
+        unused = {f"{other}_exchanges" for other in BUSES if other != bus}
+        assert f"{bus}_exchanges" in tables and not tables & unused
         assert not tables & {"checksum_crc16", "log_bits", "packed_time", "index_entry"}
 
 
@@ -205,13 +205,13 @@ BUSES = ("uart", "i2c", "can")
 
 
 def tables_of(names):
-    """Of the names, those of tables of CubeACP, without its name."""
+    """Return the names of tables of CubeACP, without its prefix."""
     prefix = "icdgen_node_cubeacp_"
     return {name.removeprefix(prefix) for name in names if name.startswith(prefix)}
 
 
-def test_a_program_without_tables_of_checksums_has_none(folder):
-    """A program that is optimized for size has them if it asks for them."""
+def test_a_program_optimized_for_size_has_no_tables_of_checksums(folder):
+    """A program that is optimized for size has tables only with `ICDGEN_TABLES`."""
     with_tables = tables_of(linked(folder, "uart", "-DICDGEN_TABLES"))
     without = tables_of(linked(folder, "uart"))
     at_all = tables_of(linked(folder, "uart", "-O1", "-DICDGEN_NO_TABLES"))
@@ -223,9 +223,10 @@ def test_a_program_without_tables_of_checksums_has_none(folder):
 CHOSEN = ("-DCUBEACP_CHOSEN", "-DCUBEACP_WITH_IDENTIFICATION")
 
 
-def test_a_program_may_choose_the_messages_of_its_tables(folder):
-    """Others do not compile; those that the wire layer asks for itself are there
-    nevertheless.
+def test_a_program_can_select_the_messages_of_its_tables(folder):
+    """Calls for other messages do not compile.
+
+    The tables always include messages that the wire layer needs.
     """
     rows = []
     for options in (
@@ -247,10 +248,10 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
         ends = (
             sizes["telecommands"] // 4 - 1,
             sizes["telemetry"] // 4 - 1,
-        )  # the last one is none
+        )  # the last entry of a table marks its end
         rows.append((*ends, "log_message" in sizes))
     link = links_of(describe(harness.shipped()))["cubeacp"]
-    needed = [one.name for one in (*link.always_needed, *link.in_procedures)]
+    needed = [message.name for message in (*link.always_needed, *link.in_procedures)]
     few = [
         sum(sent.message.name in needed for sent in sents)
         for sents in (link.telecommands, link.telemetry)
@@ -276,7 +277,9 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
 @pytest.mark.parametrize(
     "shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"]
 )
-def test_chosen_messages_compile_without_a_warning(folder, compiler, standard, shared):
+def test_selected_messages_compile_without_a_warning(
+    folder, compiler, standard, shared
+):
     options = (
         *CHOSEN,
         "-DBOOTLOADER_CHOSEN",
@@ -289,7 +292,7 @@ def test_chosen_messages_compile_without_a_warning(folder, compiler, standard, s
     )
 
 
-def test_what_is_left_out_is_unsupported(folder):
+def test_excluded_features_are_reported_as_unsupported(folder):
     (folder / "left.c").write_text("""\
 #include "cubeacp.h"
 int main(void)

@@ -1,5 +1,6 @@
-"""The wire layer of the generated C alone in a firmware: what it needs, and what its
-sources say. `tests/conformance/test_wire.py` has what it answers.
+"""The wire layer in C documents its assumptions and calls only functions of memory.
+
+`tests/conformance/test_wire.py` tests its behaviour.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ def headers(tmp_path_factory):
 
 
 def test_a_node_without_a_protocol_has_no_link(demo, tmp_path, headers):
-    made = harness.generate(harness.read(demo), tmp_path)
-    assert not list(made.rglob("icdgen_wire.*")) and not list(made.rglob("link.*"))
+    folder = harness.generate(harness.read(demo), tmp_path)
+    assert not list(folder.rglob("icdgen_wire.*")) and not list(folder.rglob("link.*"))
     assert (headers / "icdgen_wire.h").is_file()
     protocols = {
         node.name
@@ -37,14 +38,14 @@ def test_a_node_without_a_protocol_has_no_link(demo, tmp_path, headers):
     )
 
 
-def test_every_assumption_stands_with_its_reason_where_its_value_is(headers):
+def test_every_assumption_has_its_reason_above_its_value(headers):
     icd = harness.shipped()
     for node in icd.nodes:
         if not icd.protocol_of(node):
             continue
         text = re.sub(r"\s+(?:\* )?", " ", (headers / node.name / "link.c").read_text())
-        # What switches logs on is a message like any other: the layer has no part in
-        # it.
+        # The wire layer does not send the message that enables logs, so its sources do
+        # not document assumptions about it.
         elsewhere = ("message ", "unsolicited_log.configured_by")
         assumed = [
             a
@@ -58,7 +59,9 @@ def test_every_assumption_stands_with_its_reason_where_its_value_is(headers):
             )
 
 
-def test_nothing_is_called_but_functions_that_move_memory(headers, tmp_path):
+def test_the_wire_layer_calls_only_functions_that_copy_and_compare_memory(
+    headers, tmp_path
+):
     text = (headers / "icdgen_wire.h").read_text()
     names = re.findall(r"^ICDGEN_API [^;{]*?\b(icd_\w+)\(", text, re.MULTILINE)
     assert len(names) > 50 and "icd_client_start" in names
@@ -111,12 +114,12 @@ def test_checksums_are_the_same_with_tables_and_without(headers, tmp_path, optio
     program = harness.compile(source, *flags, output=tmp_path / "crc")
     done = subprocess.run([program], capture_output=True, text=True, check=True)
     icd = harness.shipped()
-    known = facts.of(icd, icd.node("cubeacp"))
+    protocol = facts.of(icd, icd.node("cubeacp"))
     data = b"123456789 and so on\0"
     expected = [
         (
             *(
-                links.crc(known.checksums[name].crc, data[:n])
+                links.crc(protocol.checksums[name].crc, data[:n])
                 for name in ("crc8", "crc16")
             ),
         )

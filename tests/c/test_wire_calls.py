@@ -1,4 +1,4 @@
-"""What the generated C does when its callbacks call back, and what it calls itself."""
+"""Callbacks of the C wire layer may call the client, and no function is recursive."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ int main(void)
 """
 
 
-def test_a_transfer_that_outlasts_its_request_is_not_that_of_the_request_which_its_time_out_began(
+def test_a_late_transfer_does_not_end_a_request_started_by_the_time_out_event(
     headers, tmp_path
 ):
     source = tmp_path / "late.c"
@@ -137,7 +137,7 @@ int main(void)
 """
 
 
-def test_a_request_that_is_cancelled_is_not_in_the_way_of_the_next(headers, tmp_path):
+def test_a_cancelled_request_does_not_block_the_next(headers, tmp_path):
     source = tmp_path / "cancel.c"
     source.write_text(CANCEL)
     program = harness.compile(
@@ -152,7 +152,7 @@ def test_a_request_that_is_cancelled_is_not_in_the_way_of_the_next(headers, tmp_
 
 
 def calls_of(source, headers, folder) -> dict[str, set[str]]:
-    """The functions and what each calls, as gcc sees it without any inlining."""
+    """Return the functions that each function calls, from the call graph of gcc."""
     flags = (
         "-std=c99",
         "-O0",
@@ -172,8 +172,8 @@ def calls_of(source, headers, folder) -> dict[str, set[str]]:
     return calls
 
 
-def test_no_function_calls_itself_by_whatever_way(headers, tmp_path):
-    """So the depth of the stack is known: what firmware demands."""
+def test_no_function_calls_itself_directly_or_indirectly(headers, tmp_path):
+    """Firmware needs a known depth of the stack."""
     source = tmp_path / "all.c"
     source.write_text(
         "".join(f'#include "{path.name}"\n' for path in sorted(headers.glob("*.h")))
@@ -185,7 +185,7 @@ def test_no_function_calls_itself_by_whatever_way(headers, tmp_path):
     )  # CycleError names the functions
 
 
-def test_recursion_would_be_noticed(tmp_path):
+def test_the_test_finds_recursion(tmp_path):
     source = tmp_path / "round.c"
     source.write_text(
         "static void b(int n);\nstatic void a(int n) { if (n) b(n - 1); }\nstatic void b(int n) { a(n); }\n"

@@ -1,5 +1,6 @@
-"""A node need not describe every part of a protocol: what its ICD has is in its link,
-and nothing else.
+"""The link of a node in C contains exactly the sections of the protocol in its ICD.
+
+The tests generate nodes without each section and with each section alone.
 """
 
 from __future__ import annotations
@@ -41,13 +42,13 @@ PARTS = {
     "telemetry_log": ["log_file"],
     "unsolicited_log": ["log_message"],
 }
-"""The members of a link that each section of a protocol gives."""
+"""Members of a link that each section of a protocol sets."""
 
 MEMBERS = sorted({member for members in PARTS.values() for member in members})
 
 
 def sections_of(protocol: dict, path: str = "") -> dict:
-    """The sections of a protocol; the parts of a link and the buses are sections."""
+    """Return the sections of a protocol; parts of a link and buses are sections."""
     sections = {}
     for name, part in protocol.items():
         if f"{path}{name}" in ("link", "link.buses"):
@@ -58,7 +59,7 @@ def sections_of(protocol: dict, path: str = "") -> dict:
 
 
 def protocol_of_sections(sections: dict) -> dict:
-    """The protocol that has these sections."""
+    """Build the protocol with some sections."""
     protocol: dict = {}
     for path, part in sections.items():
         *owners, name = path.split(".")
@@ -71,20 +72,22 @@ def protocol_of_sections(sections: dict) -> dict:
 
 @pytest.fixture(scope="module")
 def icd() -> Icd:
-    """Nodes with the messages of both programs: with all that either has of a protocol,
-    without each section, with each alone.
+    """Nodes with the messages of both programs and different sections of the protocol.
+
+    One node has all sections, some have all but one, and some have one with the
+    sections that it needs.
     """
     shipped = harness.shipped()
     acp, bootloader = shipped.node("cubeacp"), shipped.node("bootloader")
-    whole = copy.deepcopy(
+    complete = copy.deepcopy(
         {**shipped.protocol_of(bootloader), **shipped.protocol_of(acp)}
     )
-    whole["procedures"] |= bootloader.protocol["procedures"]
-    for procedure in whole["procedures"].values():
+    complete["procedures"] |= bootloader.protocol["procedures"]
+    for procedure in complete["procedures"].values():
         procedure.pop("nodes", None)
-    protocols = {"whole": whole}
-    sections = sections_of(whole)
-    # Sections by those that need them
+    protocols = {"complete": complete}
+    sections = sections_of(complete)
+    # Sections that other sections need.
     needed = {key: {"link.checksums"} for key in ("procedures", "link.packets")}
     for bus in ("uart", "can"):
         needed[f"link.buses.{bus}"] = {"link.packets", "link.checksums"}
@@ -101,9 +104,8 @@ def icd() -> Icd:
             {name: sections[name] for name in (section, *needed.get(section, ()))}
         )
     taken = {id for message in bootloader.messages for id in message.ids}
-    names = {
-        message.identifier for message in bootloader.messages
-    }  # both call a message State: here by its whole name
+    # Both programs have a message `State`; the variant uses its long name.
+    names = {message.identifier for message in bootloader.messages}
     left = (message for message in acp.messages if not taken & set(message.ids))
     left = (
         dataclasses.replace(m, identifier=m.name) if m.identifier in names else m
@@ -140,13 +142,13 @@ def headers(icd, tmp_path_factory):
 @pytest.mark.parametrize(
     ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
 )
-def test_every_choice_of_sections_compiles_without_a_warning(
+def test_every_selection_of_sections_compiles_without_a_warning(
     icd, headers, compiler, standard
 ):
     harness.compile_all(icd, headers, compiler, standard, "-fsyntax-only")
 
 
-def test_the_sections_of_the_icd_are_those_of_the_link(nodes, headers, tmp_path):
+def test_the_link_has_the_sections_of_the_icd(nodes, headers, tmp_path):
     source = tmp_path / "parts.c"
     source.write_text(
         "#include <stdio.h>\n"
@@ -162,10 +164,10 @@ def test_the_sections_of_the_icd_are_those_of_the_link(nodes, headers, tmp_path)
     )
     flags = ("-std=c99", *harness.WARNINGS, f"-I{headers}")
     program = harness.compile(source, *flags, output=tmp_path / "parts")
-    told = subprocess.run(
+    lines = subprocess.run(
         [program], capture_output=True, text=True, check=True
     ).stdout.splitlines()
-    assert told == [" ".join([node.name, *parts(node.protocol)]) for node in nodes]
+    assert lines == [" ".join([node.name, *parts(node.protocol)]) for node in nodes]
 
 
 CLIENTS = """
@@ -222,7 +224,7 @@ int main(void)
 """
 
 
-def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
+def test_a_client_on_a_bus_missing_in_the_icd_refuses_every_request(
     nodes, headers, tmp_path
 ):
     source = tmp_path / "clients.c"
@@ -234,7 +236,7 @@ def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
     )
     flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
     program = harness.compile(source, *flags, output=tmp_path / "clients")
-    told = subprocess.run(
+    lines = subprocess.run(
         [program], capture_output=True, text=True, check=True
     ).stdout.splitlines()
     ok, length, unsupported = "00", "14", "44"  # of the client and of the request
@@ -242,7 +244,7 @@ def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
         [bus in buses_of(node.protocol) for bus in ("uart", "i2c", "can")]
         for node in nodes
     ]
-    assert told == [
+    assert lines == [
         " ".join(
             [
                 "",
@@ -255,13 +257,11 @@ def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
 
 
 def parts(protocol: dict) -> list[str]:
-    """What the program above tells of a link for this protocol."""
-    logs = {
-        "telemetry_log",
-        "unsolicited_log",
-    }  # which nobody can read without the mask
+    """Members that the program of the test prints for the link of a protocol."""
+    # Logs cannot be read without the mask.
+    logs = {"telemetry_log", "unsolicited_log"}
     sections = sections_of(protocol).keys() - (
         logs if "log_mask" not in protocol else set()
     )
-    found = sorted({member for section in sections for member in PARTS[section]})
-    return [*found, *(["at an address"] if "i2c" in buses_of(protocol) else [])]
+    members = sorted({member for section in sections for member in PARTS[section]})
+    return [*members, *(["at an address"] if "i2c" in buses_of(protocol) else [])]

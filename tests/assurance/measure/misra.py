@@ -67,7 +67,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if shutil.which("cppcheck") is None:
         parser.error("not installed: cppcheck")
-    stale = misra.differences(misra.record(), misra.found())
+    stale = misra.differences(misra.record(), misra.current_places())
     if stale:
         print(
             "the record is not what cppcheck finds: python -m tests.c.misra",
