@@ -62,7 +62,7 @@ let mut heat = Heat::from_bytes(&frame).unwrap();
 """,
     claims=(
         Claim(
-            "a member holds all elements, in the type of one element",
+            "a member stores all elements, in the type of one element",
             c="""\
 CHECK(sizeof heat.temperatures == 3u * sizeof(int16_t));
 CHECK(heat.temperatures[0] == 100 && heat.temperatures[1] == 250 && heat.temperatures[2] == -300);

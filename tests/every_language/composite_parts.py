@@ -1,5 +1,6 @@
-"""Composite messages: each part is available as the message that it repeats, with the
-values that the reference codec decodes there.
+"""Composite messages: programs read each part as the message that it repeats.
+
+The reference codec computes the expected values.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Inputs of procedures."""
+"""Inputs of procedures: values of an enumeration that a field can and cannot store."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""Compiles the claims of all stories into one program for each compiler, and runs the
-claims of one story.
+"""Compile the claims of all stories to one program for each compiler, and run them.
 
-A program prints each fact before it checks it, and ends with another status than 0 at
-the first claim that does not hold: the last line that it printed is the fact.
+A program prints each fact before it checks it, and fails at the first claim that is
+false. The last line of its output is then the fact.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from tests.rust import harness as rust
 from tests.rust.tools import USED, Toolchain
 
 Run = Callable[[Story], None]
-"""Checks the claims of a story; fails with the fact that does not hold."""
+"""Function that checks the claims of a story and fails with the first false fact."""
 
 C_HEAD = """\
 #include <stdio.h>
@@ -38,7 +37,7 @@ C_HEAD = """\
 
 
 def write_icds(stories: tuple[Story, ...], folder: Path) -> Icd:
-    """The nodes of all stories as one ICD."""
+    """Write the ICDs of all stories, and load them as one ICD."""
     folder.mkdir()
     for story in stories:
         for node, text in {story.node: story.icd, **story.included}.items():
@@ -47,7 +46,10 @@ def write_icds(stories: tuple[Story, ...], folder: Path) -> Icd:
 
 
 def in_c(compiler: str, stories: tuple[Story, ...], folder: Path) -> Run:
-    """A program of ``gcc``, ``clang`` or ``g++``, with sanitizers and all warnings."""
+    """Build a program with a C compiler, with sanitizers and all warnings.
+
+    ``compiler`` is ``gcc``, ``clang`` or ``g++``.
+    """
     headers = c.generate(write_icds(stories, folder / "icd"), folder / "c")
     text = "".join(f'#include "{story.node}.h"\n' for story in stories) + C_HEAD
     calls = ""
@@ -79,7 +81,7 @@ def in_c(compiler: str, stories: tuple[Story, ...], folder: Path) -> Run:
 
 
 def in_rust(toolchain: str, stories: tuple[Story, ...], folder: Path) -> Run:
-    """A program of one toolchain of `tests.rust.tools`."""
+    """Build a program with a toolchain of `tests.rust.tools`."""
     icd = write_icds(stories, folder / "icd")
     crate = rust.generate(icd, folder)
     text, calls = "", ""
@@ -100,7 +102,7 @@ def in_rust(toolchain: str, stories: tuple[Story, ...], folder: Path) -> Run:
 
 
 def in_python(stories: tuple[Story, ...], folder: Path) -> Run:
-    """The package, imported into this process."""
+    """Generate the package and import it into this process."""
     icd = write_icds(stories, folder / "icd")
     package = packages.write(icd, folder, "story_messages")
 
@@ -122,7 +124,7 @@ def in_python(stories: tuple[Story, ...], folder: Path) -> Run:
 def _numbered(
     stories: tuple[Story, ...], language: str
 ) -> Iterator[tuple[Story, int, Claim]]:
-    """Claims that have statements in ``language``."""
+    """Yield the claims that have statements in ``language``."""
     for story in stories:
         for number, claim in enumerate(story.claims):
             if getattr(claim, language):

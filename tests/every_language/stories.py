@@ -1,4 +1,4 @@
-"""All stories. A new subject is one more entry."""
+"""List of all stories. A new subject is a new entry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A story: an ICD, and what a user relies on in code that is generated from it."""
+"""Story: an ICD, and facts that users of the generated code rely on."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class Claim(NamedTuple):
 
     The statements call the generated code and check what it does with ``CHECK(...)``
     in C, ``assert`` in Python and ``assert!`` or ``assert_eq!`` in Rust. A language
-    that has no such thing is left out.
+    without the feature has no statements.
     """
 
     fact: str
@@ -26,8 +26,8 @@ class Story:
     """Claims about one ICD.
 
     ``icd`` is the text of the ICD, whose node has the name ``node``; ``included`` has
-    the texts of the ICDs that it includes, by node. ``c``, ``python`` and ``rust`` stand
-    in front of the statements of each claim: every claim starts from the same values.
+    the texts of the ICDs that it includes, by node. The statements in ``c``, ``python``
+    and ``rust`` precede those of each claim, so all claims start from the same values.
     """
 
     node: str

@@ -65,7 +65,7 @@ CHECK(view.best.system == STRUCTS_SYSTEM_GALILEO && view.best.quality == 3u && v
             python="""\
 assert type(view.best) is type(last) is Satellite
 assert (view.best.system, view.best.quality, view.best.signals) == (System.GALILEO, 3, (1, 2))
-assert [one.signals for one in view.pairs[0].both] == [(3, 4), (5, 6)]
+assert [satellite.signals for satellite in view.pairs[0].both] == [(3, 4), (5, 6)]
 """,
             rust="""\
 let best: Satellite = view.best;
@@ -170,7 +170,7 @@ CHECK(count == 4u && strcmp(fields[2].unit, "deg") == 0 && fields[3].count == 2u
             python="""\
 pairs = View.FIELDS[1]
 assert (pairs.type, pairs.struct, pairs.elements, pairs.at) == ("struct", Pair, 1, 40)
-assert [(one.attribute, one.at) for one in pairs.leaves[-4:]] == [
+assert [(leaf.attribute, leaf.at) for leaf in pairs.leaves[-4:]] == [
     ("pairs[0].both[1].azimuth", 88), ("pairs[0].both[1].signals[0]", 104),
     ("pairs[0].both[1].signals[1]", 112), ("pairs[0].version", 120),
 ]

@@ -1,5 +1,6 @@
-"""The example of each guide that requests telemetry of a simulated node: the guide
-shows it, and it runs.
+"""The guides show examples that request telemetry, and the examples run.
+
+Each example requests telemetry of a simulated node.
 """
 
 from __future__ import annotations
@@ -32,8 +33,8 @@ def test_each_guide_shows_its_example():
     assert f"```rust\n{of_rust}```\n" in documents.text("guides/rust")
 
 
-def written_with_port(source: Path, port: str, target: Path) -> None:
-    """The example with another port than that of the guide."""
+def write_with_port(source: Path, port: str, target: Path) -> None:
+    """Write an example with the port of the simulator instead of that of the guide."""
     code = source.read_text("utf-8")
     assert "4000" in code
     target.write_text(code.replace("4000", port), encoding="utf-8")
@@ -54,7 +55,7 @@ def run_c(port: str, folder: Path) -> subprocess.CompletedProcess:
 
 
 def run_python(port: str, folder: Path) -> subprocess.CompletedProcess:
-    written_with_port(EXAMPLES / "talk.py", port, folder / "talk.py")
+    write_with_port(EXAMPLES / "talk.py", port, folder / "talk.py")
     package = ROOT / "generated" / "python"
     environment = {"PATH": os.environ["PATH"], "PYTHONPATH": str(package)}
     return subprocess.run(
@@ -62,7 +63,7 @@ def run_python(port: str, folder: Path) -> subprocess.CompletedProcess:
         capture_output=True,
         text=True,
         timeout=60,
-        env=environment,  # without icdgen
+        env=environment,  # without icdgen on the path
     )
 
 
@@ -72,7 +73,7 @@ def run_rust(port: str, folder: Path) -> subprocess.CompletedProcess:
     shutil.copytree(EXAMPLES / "rust", project, ignore=ignored)
     rust.generate(rust.shipped(), folder / "build" / "quickstart")
     source = project / "src" / "bin" / "request.rs"
-    written_with_port(source, port, source)
+    write_with_port(source, port, source)
     environment = {
         **os.environ,
         "CARGO_HOME": str(folder / "home"),
@@ -96,8 +97,8 @@ def run_rust(port: str, folder: Path) -> subprocess.CompletedProcess:
         pytest.param(run_rust, marks=pytest.mark.needs("cargo")),
     ],
 )
-def test_the_example_talks_to_the_simulator(run, tmp_path):
+def test_the_example_prints_the_telemetry_of_the_simulator(run, tmp_path):
     values = ("--set", "Estimated Attitude Angles", "roll=-12.34")
-    with simulator("--node", "cubeacp", "--tcp", "0", *values) as (place, _):
-        done = run(str(urlsplit(place).port), tmp_path)
+    with simulator("--node", "cubeacp", "--tcp", "0", *values) as (address, _):
+        done = run(str(urlsplit(address).port), tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "roll -12.34 deg\n", "")

@@ -1,5 +1,7 @@
-"""A program over the generated client, against the simulator: every message, files in
-both directions, losses and faults.
+"""Programs that use the generated client communicate with a simulated node.
+
+They exchange every message and transfer files in both directions, also with losses and
+faults on the line.
 
 ``python -m tests.sim.harness -- CLIENT`` runs a client with a megabyte; ``python -m
 tests.c.sim_client FOLDER`` and ``python -m tests.rust.sim_client FOLDER`` build one.
@@ -19,9 +21,9 @@ from tests.conftest import ROOT
 from tests.rust import sim_client as rust
 from tests.sim import harness
 
-SIZE = 65_537  # the last block is of another length, its last packet of one byte
+SIZE = 65_537  # the last block is shorter, and its last packet has one byte
 
-# Each language words its errors itself.
+# Each language has its own error messages.
 UNANSWERED = {
     "c": "Identification: not answered",
     "python": "Identification (id 128) had no reply",
@@ -53,7 +55,7 @@ def language(request) -> str:
 
 @pytest.fixture(scope="module")
 def client(language, tmp_path_factory) -> list[str]:
-    """The command that starts the client."""
+    """Command that starts the client of a language."""
     if language == "c":
         return [str(c.build(tmp_path_factory.mktemp("client")))]
     if language == "rust":
@@ -63,24 +65,24 @@ def client(language, tmp_path_factory) -> list[str]:
 
 @pytest.fixture(autouse=True)
 def python_path(monkeypatch):
-    """The client in Python imports the committed package."""
+    """Set the path with which the client in Python imports the committed package."""
     path = [str(ROOT / "generated" / "python"), str(ROOT)]
     path += filter(None, [os.environ.get("PYTHONPATH")])
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path))
 
 
 @pytest.mark.parametrize("loss", ["0", "10"])
-def test_every_message_and_files_in_both_directions(client, loss):
+def test_every_message_and_files_in_both_directions_are_transferred(client, loss):
     assert harness.run(client, SIZE, loss, [], limit=60) is None
 
 
 @pytest.mark.parametrize("fault", ["corrupt", "late"])
-def test_acknowledges_that_are_damaged_or_late_cost_nothing_but_time(client, fault):
+def test_damaged_and_late_acknowledges_only_delay_transfers(client, fault):
     faults = [f"{fault}=10%@acknowledge"]
     assert harness.run(client, 20_481, "10", faults, limit=60) is None
 
 
-def test_another_node_is_noticed(client):
+def test_a_client_detects_another_node(client):
     assert harness.against(client, "--node", "bootloader").returncode == 3
 
 
@@ -92,14 +94,14 @@ def test_another_node_is_noticed(client):
         ([], NO_FILE),  # the simulator has no such file
     ],
 )
-def test_a_node_that_does_not_do_what_is_asked_is_noticed(
+def test_a_client_reports_missing_responses_refusals_and_missing_files(
     client, language, fault, reasons
 ):
     done = harness.against(client, "--node", "cubeacp", *fault)
     assert done.returncode == 1 and reasons[language] in done.stderr, done.stderr
 
 
-def test_a_client_that_leaves_out_telecommands_is_found():
+def test_the_harness_reports_a_client_that_omits_telecommands():
     forgetful = """
 import sys
 from tests.python import sim_client

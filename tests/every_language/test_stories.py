@@ -1,4 +1,7 @@
-"""The claims of every story hold in every language."""
+"""Generated code behaves in every language as the stories of this folder claim.
+
+A story is an ICD with claims about the code generated from it, see `story`.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +14,17 @@ from tests.rust.tools import toolchains
 RUST = {f"rust {name}": name for name in toolchains()}
 LANGUAGES = [
     *(
-        pytest.param(one, marks=pytest.mark.needs(one))
-        for one in ("gcc", "clang", "g++")
+        pytest.param(compiler, marks=pytest.mark.needs(compiler))
+        for compiler in ("gcc", "clang", "g++")
     ),
-    *(pytest.param(one, marks=pytest.mark.needs("rustc")) for one in RUST),
+    *(pytest.param(name, marks=pytest.mark.needs("rustc")) for name in RUST),
     "python",
 ]
 
 
 @pytest.fixture(scope="module", params=LANGUAGES)
 def run(request, tmp_path_factory) -> programs.Run:
-    """Checks the claims of a story in one language."""
+    """Function that checks the claims of a story in one language."""
     name, folder = request.param, tmp_path_factory.mktemp("stories")
     if name == "python":
         return programs.in_python(STORIES, folder)
@@ -31,5 +34,5 @@ def run(request, tmp_path_factory) -> programs.Run:
 
 
 @pytest.mark.parametrize("story", STORIES, ids=lambda story: story.node)
-def test_the_claims_of_a_story_hold(run, story):
+def test_all_claims_of_a_story_are_true(run, story):
     run(story)

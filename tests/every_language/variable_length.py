@@ -1,5 +1,6 @@
-"""Arrays, bytes and texts whose length a field or the frame says, and fields behind
-them.
+"""Arrays, bytes and texts of variable length, and fields behind them.
+
+A field or the size of the frame determines the length.
 """
 
 from __future__ import annotations
