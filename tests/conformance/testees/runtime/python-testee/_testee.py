@@ -62,7 +62,9 @@ def _message(node: Any, words: Words) -> type[Message]:
         return messages[int(id)]  # type: ignore[no-any-return]
     wanted = bytes.fromhex(name).decode()
     sharing: tuple[type[Message], ...] = messages.of(int(id))
-    return next(message_class for message_class in sharing if wanted == message_class.NAME)
+    return next(
+        message_class for message_class in sharing if wanted == message_class.NAME
+    )
 
 
 def _decode(node: Any, words: Words) -> str:
@@ -75,8 +77,7 @@ def _decode(node: Any, words: Words) -> str:
 
 @cache
 def _names(message: type[Message]) -> dict[str, str]:
-    """Return attribute -> name of each field, including elements and fields of structs.
-    """
+    """Return attribute -> name of each field, including elements and fields of structs."""
     return {
         field_info.attribute: field_info.name
         for info in message.FIELDS
@@ -149,7 +150,9 @@ class OwnedField(NamedTuple):
     name: str
 
 
-def _owned_fields(owner: Any, head: str = "", is_made: bool = False) -> Iterator[OwnedField]:
+def _owned_fields(
+    owner: Any, head: str = "", is_made: bool = False
+) -> Iterator[OwnedField]:
     """Yield the fields of a message, including fields of structs and counters without a
     field.
 
@@ -167,7 +170,9 @@ def _owned_fields(owner: Any, head: str = "", is_made: bool = False) -> Iterator
             yield OwnedField(owner, count, count.name)
 
 
-def _owned_fields_of_struct(owner: Any, info: FieldInfo, name: str, is_made: bool) -> Iterator[OwnedField]:
+def _owned_fields_of_struct(
+    owner: Any, info: FieldInfo, name: str, is_made: bool
+) -> Iterator[OwnedField]:
     """Yield the fields of a struct, or of each struct in an array."""
     value = getattr(owner, info.attribute)
     if info.is_open:
@@ -176,7 +181,9 @@ def _owned_fields_of_struct(owner: Any, info: FieldInfo, name: str, is_made: boo
         setattr(owner, info.attribute, value)
     for index in range(info.elements or 1):
         element = value[index] if info.elements else value
-        yield from _owned_fields(element, f"{name}[{index}]." if info.elements else f"{name}.")
+        yield from _owned_fields(
+            element, f"{name}[{index}]." if info.elements else f"{name}."
+        )
 
 
 @cache
@@ -210,10 +217,11 @@ def _cut(message: Message, word: str) -> None:
 
 
 def _implied(message: Message) -> FieldInfo:
-    """Return the number of elements as a field, if no field of the frame contains it.
-    """
+    """Return the number of elements as a field, if no field of the frame contains it."""
     tail: Any = message.TAIL
-    info = next(field_info for field_info in message.FIELDS if field_info.attribute == tail.part)
+    info = next(
+        field_info for field_info in message.FIELDS if field_info.attribute == tail.part
+    )
     name = f"{info.name} {'Count' if info.elements else 'Size'}"
     return FieldInfo("", name, 0, 8, "uint")
 
@@ -249,7 +257,9 @@ class Element:
         """Set the attribute and leave the other elements unchanged."""
         if self.info.elements:
             present = list(getattr(self.owner, attribute))
-            values = [present[i] if i < len(present) else 0 for i in range(self.index + 1)]
+            values = [
+                present[i] if i < len(present) else 0 for i in range(self.index + 1)
+            ]
             values += present[self.index + 1 :]
             values[self.index] = value
             value = tuple(values)
@@ -369,7 +379,9 @@ def _sweep(node: Any, words: Words) -> str:
             back = _shown(info, element.get(info.attribute))
         except RangeError:
             pass
-        reply.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")
+        reply.append(
+            f"{_floats.float64_bits(physical)},{'' if back is None else back},"
+        )
     return " values=" + "".join(reply)
 
 

@@ -94,7 +94,9 @@ def _can_split(link: Link, words: Words) -> str:
     id, source, destination = number(words), number(words), number(words)
     message = CanMessage(kind, id, source, destination, octets(words))
     packets = can_split(link, message)
-    return "".join(f" packet id={packet.id} bytes={packet.data.hex()}" for packet in packets)
+    return "".join(
+        f" packet id={packet.id} bytes={packet.data.hex()}" for packet in packets
+    )
 
 
 def _can_join(link: Link, words: Words) -> str:
@@ -135,7 +137,12 @@ def _i2c_reply(link: Link, words: Words) -> str:
 
 def _frames(frames: Iterable[LogFrame]) -> str:
     return "".join(
-        row("frame", bit=frame.bit, id="" if frame.id is None else frame.id, bytes=frame.data)
+        row(
+            "frame",
+            bit=frame.bit,
+            id="" if frame.id is None else frame.id,
+            bytes=frame.data,
+        )
         for frame in frames
     )
 

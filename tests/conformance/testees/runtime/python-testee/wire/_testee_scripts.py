@@ -140,7 +140,9 @@ def _happened(tested: Client, now: int, action: str, words: Words) -> list[Event
 def _output(tested: Client) -> str:
     if tested.bus == "can":
         packets = tested.packets()
-        return "".join(row("frame", id=packet.id, bytes=packet.data) for packet in packets)
+        return "".join(
+            row("frame", id=packet.id, bytes=packet.data) for packet in packets
+        )
     if tested.bus == "i2c":
         transfers = tested.transfers()
         return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
