@@ -243,16 +243,16 @@ def is_requested(
     packets: Packets,
     message: Message,
     telecommand_ids: Iterable[int],
-    unrequested: Iterable[int],
+    excluded_ids: Iterable[int],
 ) -> bool:
     """Return whether telemetry can be requested by the packet of ``requests``.
 
-    ``telecommand_ids``: ids of all telecommands, ``unrequested``: of the telemetry that
-    a telecommand requests, or that only responds.
+    ``telecommand_ids``: ids of all telecommands. ``excluded_ids``: ids of the telemetry
+    that a telecommand requests, or that only responds.
     """
     id, requesting = message.telemetry_id, packets.requesting
     packet = packets.by_name(requesting)
-    if packet is None or id is None or not message.requested or id in unrequested:
+    if packet is None or id is None or not message.requested or id in excluded_ids:
         return False
     sent_in = packets.packets_of_message(message.name, TELEMETRY)
     if packets.answering is None:

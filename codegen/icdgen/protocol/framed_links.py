@@ -2,7 +2,8 @@
 `icdgen.protocol.packet_formats`.
 
 `stream_of` is the entry: it reads the packet formats and then the messages of both
-directions with their packet, their checksum and their responses.
+directions with their packet, their checksum and their responses. `packet_format_of`
+also serves the packets that respond on buses.
 """
 
 from __future__ import annotations
@@ -47,126 +48,141 @@ Section = Mapping[str, Any]
 Checksums = Mapping[str, ChecksumAlgorithm]
 
 
-def bytes_of(rows: Iterable[Section]) -> int:
+def bytes_of(fields: Iterable[Section]) -> int:
     """Return the number of bytes up to the end of the last field."""
-    return -(-max((row["at"] + row["bits"] for row in rows), default=0) // 8)
+    return -(-max((field["at"] + field["bits"] for field in fields), default=0) // 8)
 
 
 def field_of(
-    node: Node, row: Section, in_trailer: bool, id_shift: int = 0, overhead: int = 0
+    node: Node,
+    declared: Section,
+    in_trailer: bool,
+    id_shift: int = 0,
+    overhead: int = 0,
 ) -> PacketField:
-    """Return the field of a row of the header or trailer.
+    """Return a field of the header or trailer, from its mapping in the ICD.
 
-    ``id_shift``: position in the id of the lowest bit that this field has.
+    ``id_shift``: number of bits of the id below the part that this field has.
     ``overhead``: bytes of header and trailer.
     """
-    at, bits = row["at"], row["bits"]
+    at, bits = declared["at"], declared["bits"]
     first, last = at // 8, (at + bits - 1) // 8
     # Bits count from the first byte on. For msb0, bit 0 is the most significant bit of
     # that byte.
     shift = at % 8 if node.bit_order != "msb0" else (last + 1) * 8 - at - bits
-    little = row.get("byte_order", node.byte_order) == "little"
-    role = "constant" if row["role"] == "sync" else row["role"]
-    size, unit = last - first + 1, row.get("unit", 1)
-    # `plus` is the device's own offset, for example CCSDS 133.0-B: bytes minus 1.
-    # `counts: message` includes header and trailer.
-    counts_all = row.get("counts", DATA) == "message"
-    plus = row.get("plus", 0) * unit + (overhead if counts_all else 0)
+    little = declared.get("byte_order", node.byte_order) == "little"
+    unit = declared.get("unit", 1)
+    # `plus` of the ICD is the device's own offset in units: -1 in CCSDS 133.0-B, where
+    # the field has the number of bytes minus 1. `counts: message` includes header and
+    # trailer. `PacketField.plus` is the sum in bytes.
+    counts_message = declared.get("counts", DATA) == "message"
+    plus = declared.get("plus", 0) * unit + (overhead if counts_message else 0)
     return PacketField(
-        role,
-        in_trailer,
-        first,
-        size,
-        shift,
-        bits,
-        little,
-        (value_of(row, TELECOMMAND, little), value_of(row, TELEMETRY, little)),
-        id_shift,
-        unit,
-        plus,
+        role="constant" if declared["role"] == "sync" else declared["role"],
+        in_trailer=in_trailer,
+        at=first,
+        size=last - first + 1,
+        shift=shift,
+        bits=bits,
+        little=little,
+        values=(
+            value_of(declared, TELECOMMAND, little),
+            value_of(declared, TELEMETRY, little),
+        ),
+        id_shift=id_shift,
+        unit=unit,
+        plus=plus,
     )
 
 
-def rows_of(
+def messages_of_direction(
     ids: Mapping[int, tuple[Variant, ...]],
     direction: str,
     packets: Packets,
     checksums: Checksums,
     exchanges: Mapping[str, Exchange],
-    requested: Container[int] = (),
+    requestable_ids: Container[int] = (),
 ) -> tuple[StreamRow, ...]:
     """Return the messages of a direction.
 
-    ``exchanges``: exchanges of telecommands, by name. ``requested``: ids of telemetry
-    that the packet of `Stream.request` requests. Messages that share an id form one
-    row; rules ICD174 and ICD178 ensure that they agree in the packet format and in
-    their responses.
+    ``exchanges``: exchanges of telecommands, by name. ``requestable_ids``: ids of the
+    telemetry that the packet of `Stream.request` can request. Messages that share an id
+    form one row with the packet format, checksum seed and `may_end_early` of the first.
+    Rule ICD174 ensures that they have the same seed and `may_end_early`, rule ICD178
+    that telecommands have the same responses.
     """
     rows = []
     for id, variants in sorted(ids.items()):
         messages = [variant.message for variant in variants]
-        first, name = messages[0], " or ".join(message.name for message in messages)
+        first = messages[0]
         exchange = next(
             (exchanges[each.name] for each in messages if each.name in exchanges), None
         )
-        # A message without values that a user could choose can request its reply.
-        is_blank = not first.layout.shortest or not raw_fields_in(first.layout)
+        # A telecommand that can be sent as zero bytes can request its reply: it can
+        # have no data, or has no field. (A constant is a field, too.)
+        is_all_zeros = not first.layout.shortest or not raw_fields_in(first.layout)
         packet, *_ = packets.packets_of_message(first.name, direction)
         algorithm = algorithm_of(packet, checksums)
         rows.append(
             StreamRow(
-                id,
-                min(message.layout.shortest for message in messages),
-                max(message.length for message in messages),
-                bool(first.may_end_early),
-                algorithm.seeds.get(first.name, 0) if algorithm else 0,
-                name,
-                exchange,
-                all(message.repeat for message in messages),
-                exchange.reply if exchange and is_blank else None,
-                packets.all.index(packet),
-                id in requested,
+                id=id,
+                least=min(message.layout.shortest for message in messages),
+                most=max(message.length for message in messages),
+                cuts_zeros=bool(first.may_end_early),
+                seed=algorithm.seeds.get(first.name, 0) if algorithm else 0,
+                name=" or ".join(message.name for message in messages),
+                exchange=exchange,
+                repeats=all(message.repeat for message in messages),
+                requests=exchange.reply if exchange and is_all_zeros else None,
+                packet=packets.all.index(packet),
+                is_requested=id in requestable_ids,
             )
         )
     return tuple(rows)
 
 
-def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
-    """Return the first or last row with a role or name; None without such a row."""
-    matches = [row for row in rows if name in (row.get("role"), row.get("name"))]
-    return matches[-1 if last else 0] if matches else None
+def _fields_named(fields: Iterable[Section], name: str) -> list[Section]:
+    """Return the fields with a role or name."""
+    return [field for field in fields if name in (field.get("role"), field.get("name"))]
 
 
 def algorithm_of(packet: Packet, checksums: Checksums) -> ChecksumAlgorithm | None:
     """Return the algorithm of the checksum of a packet; None without one."""
     return next(
-        (checksums[row["checksum"]] for row in packet.fields_of_role("checksum")), None
+        (checksums[field["checksum"]] for field in packet.fields_of_role("checksum")),
+        None,
     )
 
 
 def check_of(packet: Packet, checksums: Checksums) -> Check | None:
     """Return the checksum of a packet; None without one."""
-    for field in packet.fields_of_role("checksum"):
-        algorithm, covers = checksums[field["checksum"]], field["covers"]
-        first = _covered(packet.header, covers["from"], False)
-        last = _covered(packet.trailer, covers["to"], True)
-        covered_from = first["at"] // 8 if first else bytes_of(packet.header)
-        covered_trailer = bytes_of([last]) if last else 0
-        return Check(algorithm, covered_from, covered_trailer, bool(algorithm.seeds))
-    return None
+    field = next(iter(packet.fields_of_role("checksum")), None)
+    if field is None:
+        return None
+    algorithm, covers = checksums[field["checksum"]], field["covers"]
+    # Empty if `covers` names the data, which are between header and trailer.
+    first = _fields_named(packet.header, covers["from"])[:1]
+    last = _fields_named(packet.trailer, covers["to"])[-1:]
+    return Check(
+        algorithm=algorithm,
+        covered_from=first[0]["at"] // 8 if first else bytes_of(packet.header),
+        covered_trailer=bytes_of(last),
+        is_seeded=bool(algorithm.seeds),
+    )
 
 
-def packet_of(
+def packet_format_of(
     node: Node, packets: Packets, packet: Packet, checksums: Checksums
 ) -> PacketFormat:
-    """Return a packet format."""
-    sizes = [bytes_of(packet.header), bytes_of(packet.trailer)]
-    # By identity: mappings have no hash, and two rows can be equal.
-    shifts = {id(row): shift for row, shift in id_shifts(packet.rows)}
+    """Return the format of a packet, with its fields, its content and its checksum."""
+    header_bytes, trailer_bytes = bytes_of(packet.header), bytes_of(packet.trailer)
+    overhead = header_bytes + trailer_bytes
+    # By identity: mappings have no hash, and two fields can be equal.
+    shifts = {id(declared): shift for declared, shift in id_shifts(packet.rows)}
     fields = tuple(
-        field_of(node, row, in_trailer, shifts.get(id(row), 0), sum(sizes))
-        for in_trailer, rows in ((False, packet.header), (True, packet.trailer))
-        for row in rows
+        field_of(node, declared, in_trailer, shifts.get(id(declared), 0), overhead)
+        for in_trailer, part in ((False, packet.header), (True, packet.trailer))
+        for declared in part
     )
     assert all(field.role in ROLES for field in fields)
     content = MESSAGE
@@ -180,8 +196,8 @@ def packet_of(
         name=packet.name,
         directions=packet.directions,
         content=content,
-        header_bytes=sizes[0],
-        trailer_bytes=sizes[1],
+        header_bytes=header_bytes,
+        trailer_bytes=trailer_bytes,
         reserved=packets.reserved_in(packet),
         fields=fields,
         check=check_of(packet, checksums),
@@ -214,36 +230,38 @@ def stream_of(
     ``checksums`` and ``enums``: checksum algorithms and enumerations of the node, by
     name.
     """
-    sent, received = (
+    telecommand_messages, telemetry_messages = (
         [variant.message for variants in of_id.values() for variant in variants]
         for of_id in (ids.telecommand, ids.telemetry)
     )
-    packets = declared_packets(section, sent)
-    telemetry = {
+    packets = declared_packets(section, telecommand_messages)
+    telemetry_by_name = {
         message.name: (message.telemetry_id, message)
-        for message in received
+        for message in telemetry_messages
         if message.telemetry_id is not None
     }
     formats = tuple(
-        packet_of(node, packets, packet, checksums) for packet in packets.all
+        packet_format_of(node, packets, packet, checksums) for packet in packets.all
     )
-    sources = Sources(node, packets, formats, enums, telemetry)
+    sources = Sources(node, packets, formats, enums, telemetry_by_name)
     commands = section.get("commands", {})
     exchanges = {
         message.name: exchange
-        for message in sent
+        for message in telecommand_messages
         if (exchange := exchange_of(sources, commands, message))
     }
     sequences = [
-        row for packet in packets.all for row in packet.fields_of_role("sequence")
+        field for packet in packets.all for field in packet.fields_of_role("sequence")
     ]
-    telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, checksums, exchanges)
-    request, requesting = None, packets.number_of(packets.requesting)
-    if requesting is not None:
+    telecommands = messages_of_direction(
+        ids.telecommand, TELECOMMAND, packets, checksums, exchanges
+    )
+    request, request_packet = None, packets.number_of(packets.requesting)
+    if request_packet is not None:
         exchange = request_exchange(sources, section["requests"])
-        request = TelemetryRequest(requesting, exchange)
-    # Without its telemetry for now: `confirming`, on which the requested telemetry
-    # depends, uses only the telecommands and the request.
+        request = TelemetryRequest(request_packet, exchange)
+    # Built first without telemetry, because `Stream.confirming` is needed to find the
+    # telemetry that can be requested. It uses only the telecommands and the request.
     stream = Stream(
         delimited_by=section["framing"]["by"],
         per_id=bool(sequences) and sequences[0].get("per") == "id",
@@ -255,17 +273,17 @@ def stream_of(
     )
     # Telemetry that a telecommand requests, or that only responds, is not requested by
     # the packet.
-    unrequested = {row.requests for row in telecommands if row.requests is not None}
-    unrequested |= {*stream.confirming}
-    requested = set()
+    excluded_ids = {row.requests for row in telecommands if row.requests is not None}
+    excluded_ids |= {*stream.confirming}
+    requestable_ids = set()
     for id, variants in ids.telemetry.items():
         messages = [variant.message for variant in variants]
         if all(
-            is_requested(packets, message, ids.telecommand, unrequested)
+            is_requested(packets, message, ids.telecommand, excluded_ids)
             for message in messages
         ):
-            requested.add(id)
-    rows_of_telemetry = rows_of(
-        ids.telemetry, TELEMETRY, packets, checksums, {}, requested
+            requestable_ids.add(id)
+    telemetry = messages_of_direction(
+        ids.telemetry, TELEMETRY, packets, checksums, {}, requestable_ids
     )
-    return replace(stream, telemetry=rows_of_telemetry)
+    return replace(stream, telemetry=telemetry)

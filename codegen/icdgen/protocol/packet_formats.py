@@ -54,8 +54,10 @@ class PacketField:
     little: bool
     # Value of a constant, or default: in telecommands, in telemetry
     values: tuple[int, int]
-    id_shift: int = 0  # bits of the id below those in this field
-    # Of a length: value * unit - plus are the bytes of the data
+    id_shift: int = 0  # number of bits of the id below the part in this field
+    # Of a length: the data have value * unit - plus bytes. `plus` is the number of
+    # bytes that the length counts in addition to the data. (`plus` of
+    # `icdgen.icd.layout.Counted` has the opposite sign.)
     unit: int = 1
     plus: int = 0
 
@@ -92,11 +94,11 @@ class StreamRow:
     # Of a telecommand: its responses; None if nothing responds to it
     exchange: Exchange | None = None
     repeats: bool = False  # whether it may be sent again after a time-out
-    # Id of the telemetry that it requests if it is sent without values, which is as
-    # `least` zero bytes
+    # Id of the telemetry that it requests if it is sent as `least` zero bytes
     requests: int | None = None
     packet: int = 0  # index of `Stream.packets`
-    is_requested: bool = False  # of telemetry: by the packet of `Stream.request`
+    # Of telemetry: whether the packet of `Stream.request` can request it
+    is_requested: bool = False
 
 
 MESSAGE, REQUEST, REQUESTED, NOTHING = CONTENTS = (

@@ -35,7 +35,7 @@ from icdgen.icd.variants import ids_of
 from icdgen.once import cached_property
 from icdgen.protocol.declared import read_part
 from icdgen.protocol.exchange import BusExchanges
-from icdgen.protocol.framed_links import packet_of, stream_of
+from icdgen.protocol.framed_links import packet_format_of, stream_of
 from icdgen.protocol.packet_formats import PacketFormat, Stream
 from icdgen.protocol.procedure_steps import ProcedureReader
 from icdgen.protocol.procedures import Procedure
@@ -151,7 +151,9 @@ class ProtocolReader:
         return Sources(
             self.node,
             packets,
-            tuple(packet_of(self.node, packets, each, {}) for each in packets.all),
+            tuple(
+                packet_format_of(self.node, packets, each, {}) for each in packets.all
+            ),
             self.enums,
             {message.name: (id, message) for id, message in self.telemetry.items()},
         )
