@@ -14,7 +14,7 @@ from icdgen.icd.formula import parse
 from icdgen.icd.layout import integer_range
 
 PLACES = st.builds(
-    frames.Place,
+    frames.FrameBits,
     st.integers(0, 480),
     st.integers(1, 32),
     st.sampled_from([frames.LITTLE, frames.BIG]),

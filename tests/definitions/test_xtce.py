@@ -272,8 +272,8 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
 def test_unsupported_and_recursive_containers_are_left_out(
     text, says, tmp_path, monkeypatch
 ):
-    most = xtce_types.Types.most_steps if "things" not in says else 20_000
-    monkeypatch.setattr(xtce_types.Types, "most_steps", most)
+    most = xtce_types.XtceTypes.most_steps if "things" not in says else 20_000
+    monkeypatch.setattr(xtce_types.XtceTypes, "most_steps", most)
     assert says.replace("1,000,000", "20,000") in refused(system(text), tmp_path)
 
 

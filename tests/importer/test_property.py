@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from icdgen.diagnostics import Findings
 from icdgen.importer import html, profile, run
-from icdgen.importer.pages.extract import Page, Word
+from icdgen.importer.pages.extract import PageContents, Word
 from icdgen.importer.reading import pdf
 from icdgen.importer.rules import explore
 from tests.importer.manuals.wild import WILD
@@ -165,7 +165,7 @@ def _pages(path):
         yield from file.pages
 
 
-def _spoiled(page: Page, chance: random.Random) -> Page:
+def _spoiled(page: PageContents, chance: random.Random) -> PageContents:
     words = []
     for word in page.words:
         what = chance.random()
@@ -181,6 +181,6 @@ def _spoiled(page: Page, chance: random.Random) -> Page:
             word = word._replace(top=word.top + shift, bottom=word.bottom + shift)
         words.append(word)
     chance.shuffle(words)
-    return Page(page.number, page.width, page.height, words, *(
+    return PageContents(page.number, page.width, page.height, words, *(
         [rule for rule in rules if chance.random() > 0.05] for rules in (page.across, page.down)
     ), page.fills)  # fmt: skip

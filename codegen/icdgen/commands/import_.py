@@ -27,7 +27,7 @@ from icdgen.diagnostics import Finding, Findings, has_errors
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
-    from icdgen.definitions.model import Reader
+    from icdgen.definitions.model import DefinitionReader
     from icdgen.import_results.targets import Target
     from icdgen.importer.document import Document, SourceTable
     from icdgen.importer.run import Result
@@ -180,7 +180,7 @@ def import_(
         if folder is not None:
             from icdgen.wording import count
 
-            paths = table_files.write(result.tables, folder, result.document)
+            paths = table_files.write_tables(result.tables, folder, result.document)
             say(
                 f"{folder}: {count(len(paths), 'table')} written; correct them, then `icdgen import {folder}`",
                 err=form == "json",
@@ -216,7 +216,7 @@ def import_(
 
 def _definitions(
     files: tuple[Path, ...], kind: str | None
-) -> list[tuple[Path, Reader]]:
+) -> list[tuple[Path, DefinitionReader]]:
     """Return the definitions in files and folders with their readers; empty for a
     manual.
 
@@ -225,7 +225,7 @@ def _definitions(
     from icdgen.definitions import kinds
 
     requested = kinds.get(kind) if kind is not None else None
-    definitions: dict[Path, tuple[Path, Reader]] = {}
+    definitions: dict[Path, tuple[Path, DefinitionReader]] = {}
     for path in files:
         if path.is_dir():
             inside = kinds.within(path)
@@ -257,7 +257,11 @@ def _definitions(
 
 
 def _define(
-    files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: bool, form: str
+    files: list[tuple[Path, DefinitionReader]],
+    out: Path,
+    update: bool,
+    dry_run: bool,
+    form: str,
 ) -> None:
     """Import one definition, or several that may refer to each other."""
     from icdgen.definitions import console, run

@@ -276,7 +276,7 @@ def _message(
             f"Also sent by {', '.join(senders[1:])}." if len(senders) > 1 else "",
         )
     )
-    placed: list[tuple[Item, frames.Place]] = []
+    placed: list[tuple[Item, frames.FrameBits]] = []
     for signal in signals:
         place = signal_place(signal)
         if not 0 <= place.at <= place.at + place.bits <= 8 * message.length:
@@ -354,16 +354,16 @@ def _is_alternative(field: Item, other: Item) -> bool:
     )
 
 
-def signal_place(signal: Any) -> frames.Place:
+def signal_place(signal: Any) -> frames.FrameBits:
     """Return the position of a signal.
 
     DBC numbers the bits of a byte from the least significant bit in both byte orders.
     """
     if signal.byte_order == "little_endian":
-        return frames.Place(signal.start, signal.length, frames.LITTLE)
+        return frames.FrameBits(signal.start, signal.length, frames.LITTLE)
     # In a DBC, a big-endian signal starts at its most significant bit, from which `BIG`
     # counts as well.
-    return frames.Place(
+    return frames.FrameBits(
         signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG
     )
 

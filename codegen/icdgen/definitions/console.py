@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from icdgen.definitions.run import Read
+from icdgen.definitions.run import ReadDefinitions
 from icdgen.diagnostics import Finding
 from icdgen.import_results import report as shared
 from icdgen.import_results.targets import Target
@@ -15,7 +15,7 @@ from icdgen.reports.excerpt import printable
 _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 
 
-def report(reads: Sequence[Read], colour: bool = False) -> str:
+def report(reads: Sequence[ReadDefinitions], colour: bool = False) -> str:
     """Return the findings of each definition, followed by its statistics and the
     renamed identifiers.
     """
@@ -33,13 +33,13 @@ def report(reads: Sequence[Read], colour: bool = False) -> str:
     return "\n\n".join(blocks)
 
 
-def _has_content(read: Read) -> bool:
+def _has_content(read: ReadDefinitions) -> bool:
     """Return whether a definition has messages, or findings about them."""
     definitions = read.definitions
     return bool(read.trees or definitions.total or definitions.import_findings)
 
 
-def _lines(read: Read, colour: bool) -> list[str]:
+def _lines(read: ReadDefinitions, colour: bool) -> list[str]:
     definitions = read.definitions
     return [
         *shared.findings(definitions.import_findings, definitions.file, colour),
@@ -47,7 +47,7 @@ def _lines(read: Read, colour: bool) -> list[str]:
     ]
 
 
-def _summary(read: Read) -> list[str]:
+def _summary(read: ReadDefinitions) -> list[str]:
     names, definitions = read.identifiers, read.definitions
     lines = [
         f"{definitions.files}: {read.kind}, {read.imported} of {definitions.total} messages imported",
@@ -64,7 +64,9 @@ def _summary(read: Read) -> list[str]:
 
 
 def as_json(
-    reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[Finding]
+    reads: Sequence[ReadDefinitions],
+    targets: Sequence[Target],
+    checked: Sequence[Finding],
 ) -> str:
     """Return the report as JSON.
 
@@ -82,7 +84,7 @@ def as_json(
     return json.dumps({**head, **tail}, indent=2, ensure_ascii=False)
 
 
-def _as_item(read: Read) -> dict[str, Any]:
+def _as_item(read: ReadDefinitions) -> dict[str, Any]:
     definitions = read.definitions
     findings = []
     for finding in definitions.import_findings:

@@ -24,7 +24,7 @@ _ID_BITS = (8, 16, 24, 32)
 
 
 @dataclass
-class Piece:
+class FieldType:
     """Field of a type, without name and position.
 
     ``bits`` is 0 if the length varies.
@@ -36,7 +36,7 @@ class Piece:
 
 
 @dataclass
-class Part:
+class ContainerPart:
     """Entry of a container with its position ``at``, in bits from the start of the
     frame.
 
@@ -78,7 +78,7 @@ class Counter(NamedTuple):
     variable-length part.
     """
 
-    part: Part
+    part: ContainerPart
     plus: int = 0
 
     @property
@@ -105,7 +105,7 @@ class Lost(NamedTuple):
         to.warn(AS_BYTES, text, help, "error", line, file)
 
 
-AnyPart = TypeVar("AnyPart", bound=Part)
+AnyPart = TypeVar("AnyPart", bound=ContainerPart)
 
 
 @dataclass(kw_only=True)
@@ -203,7 +203,7 @@ def check_only_value(item: Item, raw: int, name: str) -> None:
         )
 
 
-def fixed_field(part: Part, name: str, at: int) -> Item:
+def fixed_field(part: ContainerPart, name: str, at: int) -> Item:
     """Return the ICD field of a fixed-length part, in a big-endian message.
 
     ``at`` is its position in the message, in bits.
@@ -223,7 +223,7 @@ def fixed_field(part: Part, name: str, at: int) -> Item:
     )
 
 
-def bits_of_counted(parts: Iterable[Part]) -> int:
+def bits_of_counted(parts: Iterable[ContainerPart]) -> int:
     """Return the maximum number of bits of all parts with a counter.
 
     A part that extends to the end of the frame must leave room for them.
@@ -253,7 +253,7 @@ def in_sequence(fields: list[Item]) -> list[Item]:
 
 
 def variable_field(
-    part: Part, name: str, at: int, names: Mapping[int, str], behind: int = 0
+    part: ContainerPart, name: str, at: int, names: Mapping[int, str], behind: int = 0
 ) -> Item:
     """Return the ICD field of a variable-length part.
 

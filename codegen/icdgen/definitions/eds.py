@@ -11,11 +11,17 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import eds_sheets, packets, safe_xml
 from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.eds_interfaces import Interfaces, Sending
-from icdgen.definitions.eds_layout import Layout, Structs
+from icdgen.definitions.eds_layout import EdsLayout, Structs
 from icdgen.definitions.eds_sheets import Sheets
-from icdgen.definitions.eds_types import Types, described
+from icdgen.definitions.eds_types import EdsTypes, described
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotSupported, Source
+from icdgen.definitions.model import (
+    Definitions,
+    Item,
+    Network,
+    NotSupported,
+    SourceFile,
+)
 from icdgen.definitions.wording import line, node_name
 from icdgen.diagnostics import Findings
 
@@ -61,7 +67,7 @@ class Eds:
         account.report(to)
         return to
 
-    def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
+    def read_set(self, sources: Sequence[SourceFile]) -> list[Definitions]:
         """Return the definitions of each file.
 
         All files and their folders share types and design parameters.
@@ -102,7 +108,7 @@ class Eds:
 
 def _define(sheets: Sheets, to: Definitions) -> None:
     """Add the ICD with the messages of all packages of a file."""
-    types, structs = Types(to, sheets), Structs()
+    types, structs = EdsTypes(to, sheets), Structs()
     sent, independent = Interfaces(sheets).sent()
     messages = (_read_message(sending, sheets, types, structs, to) for sending in sent)
     containers = [message for message in messages if message is not None]
@@ -125,7 +131,7 @@ class _Message:
     """Container with its layout, kind and header, ready to become a message."""
 
     def __init__(
-        self, sending: Sending, layout: Layout, more: Item, sheets: Sheets
+        self, sending: Sending, layout: EdsLayout, more: Item, sheets: Sheets
     ) -> None:
         self.container, self.layout, self.more = sending.container, layout, more
         self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
@@ -176,7 +182,7 @@ class _Message:
 
 
 def _read_message(
-    sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions
+    sending: Sending, sheets: Sheets, types: EdsTypes, structs: Structs, to: Definitions
 ) -> _Message | None:
     """Read the layout of a container.
 
@@ -185,7 +191,7 @@ def _read_message(
     to.total += 1
     container = sending.container
     types.message = line(container.get("name"), 200)
-    layout = Layout(sheets, types, structs)
+    layout = EdsLayout(sheets, types, structs)
     try:
         layout.read(container)
         return _Message(

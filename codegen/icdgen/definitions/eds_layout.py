@@ -18,9 +18,9 @@ from icdgen.definitions.containers import (
     in_sequence,
     variable_field,
 )
-from icdgen.definitions.eds_parts import Line, Part, Told
+from icdgen.definitions.eds_parts import Constraint, EdsPart, LinearConversion
 from icdgen.definitions.eds_sheets import Sheets
-from icdgen.definitions.eds_types import ARRAY, CONTAINER, Types, described
+from icdgen.definitions.eds_types import ARRAY, CONTAINER, EdsTypes, described
 from icdgen.definitions.eds_values import whole
 from icdgen.definitions.frames import LITTLE
 from icdgen.definitions.model import Item, NotSupported, replace_keys
@@ -32,7 +32,7 @@ UNCHECKED = "IMP082"
 _DEEPEST = 30  # levels of inheritance, nesting, and arrays of arrays
 _FIELDS = ("Entry", "FixedValueEntry", "LengthEntry", "ErrorControlEntry")
 # Packet data length of CCSDS 133.0-B: bytes after the 6-byte header, minus 1.
-_PACKET = Line(Fraction(1), Fraction(7))
+_PACKET = LinearConversion(Fraction(1), Fraction(7))
 
 
 @dataclass
@@ -44,13 +44,13 @@ class Structs:
 
 
 @dataclass
-class Layout(Container[Part]):
+class EdsLayout(Container[EdsPart]):
     """Parts of a container, including inherited ones, with their constraints."""
 
     sheets: Sheets
-    types: Types
+    types: EdsTypes
     structs: Structs
-    constraints: list[Told] = field(default_factory=list)
+    constraints: list[Constraint] = field(default_factory=list)
     # Raw value that a constraint requires, by path and entry.
     constants: dict[Hashable, int] = field(default_factory=dict)
     within: tuple[Element, ...] = ()  # containers in which this one is repeated
@@ -108,7 +108,7 @@ class Layout(Container[Part]):
             for constraint in ancestor.iterfind("ConstraintSet/*"):
                 entry = self.sheets.attribute(constraint, "entry")
                 self.constraints.append(
-                    Told((*path, *entry.replace("/", ".").split(".")), constraint)
+                    Constraint((*path, *entry.replace("/", ".").split(".")), constraint)
                 )
 
     def chain(self, container: Element) -> list[Element]:
@@ -153,7 +153,7 @@ class Layout(Container[Part]):
                 raise
             except NotSupported as why:
                 name = line(entry.get("name"), 100) or f"unnamed {at}"
-                self.lose(Part((*path, name), {}, at, 0, entry=entry), why, before)
+                self.lose(EdsPart((*path, name), {}, at, 0, entry=entry), why, before)
 
     def _add_entry(
         self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]
@@ -204,7 +204,7 @@ class Layout(Container[Part]):
         elif type_.tag == CONTAINER:
             item, bits = self._struct(type_, name, within)
             self._put(
-                Part(
+                EdsPart(
                     path,
                     {**item, "count": count, **described(entry)},
                     self.at,
@@ -213,24 +213,26 @@ class Layout(Container[Part]):
                 )
             )
         else:
-            piece = self.types.piece(type_, entry, f"`{name}`")
+            field_type = self.types.field_type(type_, entry, f"`{name}`")
             if entry.tag == "FixedValueEntry":
-                eds_parts.fix(piece, self.sheets.attribute(entry, "fixedValue"), name)
-            part = Part(
+                eds_parts.fix(
+                    field_type, self.sheets.attribute(entry, "fixedValue"), name
+                )
+            part = EdsPart(
                 path,
-                piece.item,
+                field_type.item,
                 self.at,
-                piece.bits,
-                piece.order,
+                field_type.bits,
+                field_type.order,
                 entry=entry,
-                piece=piece,
+                field_type=field_type,
             )
             if count != 1:
                 self._repeat(part, count, name)
             replace_keys(part.item, {**part.item, **self._summary(entry, name)})
             self._put(part)
 
-    def _put(self, part: Part) -> None:
+    def _put(self, part: EdsPart) -> None:
         if part.at % 8 and (part.order == LITTLE or "struct" in part.item):
             raise NotSupported(f"`{part.path[-1]}` begins within a byte")
         self.add(part)
@@ -326,7 +328,7 @@ class Layout(Container[Part]):
             # An enumeration as index has an element for each number between its labels,
             # too.
             return max(values) - min(values) + 1
-        low, high = self.types.piece(
+        low, high = self.types.field_type(
             type_, type_, f"the index of `{name}`"
         ).range.of_integers()
         if low is None or high is None or high < low:
@@ -335,7 +337,7 @@ class Layout(Container[Part]):
             )
         return int(high - low) + 1
 
-    def _repeat(self, part: Part, count: int, name: str) -> None:
+    def _repeat(self, part: EdsPart, count: int, name: str) -> None:
         """Make a scalar an array.
 
         An array of bytes above `MOST_ELEMENTS` becomes a field of type `bytes`.
@@ -367,7 +369,7 @@ class Layout(Container[Part]):
         """
         struct = self.structs.items.get(container)
         if struct is None:
-            inner = Layout(self.sheets, self.types, self.structs, within=within)
+            inner = EdsLayout(self.sheets, self.types, self.structs, within=within)
             inner.read(container)
             if (
                 inner.at % 8
@@ -416,9 +418,9 @@ class Layout(Container[Part]):
         if (
             length_part is None
             or self.is_behind(length_part)
-            or length_part.piece is None
-            or length_part.piece.item["type"] != "uint"
-            or length_part.piece.bits != length_part.bits
+            or length_part.field_type is None
+            or length_part.field_type.item["type"] != "uint"
+            or length_part.field_type.bits != length_part.bits
         ):
             raise NotSupported(
                 f"`{name}` is there as often as `{line(counter, 60)}` says, which is not a number in front of it"
@@ -428,15 +430,19 @@ class Layout(Container[Part]):
         if type_.tag == CONTAINER:
             item, bits = self._struct(type_, name, within)
         else:
-            piece = self.types.piece(type_, entry, f"`{name}`")
-            item, bits = piece.item, piece.bits
-            order = {"byte_order": LITTLE} if piece.order == LITTLE and bits > 8 else {}
+            field_type = self.types.field_type(type_, entry, f"`{name}`")
+            item, bits = field_type.item, field_type.bits
+            order = (
+                {"byte_order": LITTLE}
+                if field_type.order == LITTLE and bits > 8
+                else {}
+            )
             replace_keys(item, {"bits": bits, **item, **order})
         if not bits or bits % 8:
             raise NotSupported(
                 f"`{name}` is a list of elements without a fixed number of bytes"
             )
-        _, most = length_part.piece.range.within(
+        _, most = length_part.field_type.range.within(
             eds_ranges.Range(Fraction(0), Fraction((1 << length_part.bits) - 1))
         ).of_integers()
         item["up_to"] = max(1, min(int(most or 1), MOST_ELEMENTS))
@@ -446,7 +452,7 @@ class Layout(Container[Part]):
             if key not in item or "struct" in item
         }
         self.add(
-            Part(
+            EdsPart(
                 path,
                 item,
                 self.at,
@@ -457,7 +463,7 @@ class Layout(Container[Part]):
             )
         )
 
-    def header(self) -> packets.Header | None:
+    def header(self) -> packets.PrimaryHeader | None:
         """Return the primary header of a space packet (CCSDS 133.0-B) if the container
         begins with one, else None.
         """
@@ -465,7 +471,7 @@ class Layout(Container[Part]):
         plain = [
             part
             for part in first_parts
-            if part.piece is not None and part.piece.bits == part.bits
+            if part.field_type is not None and part.field_type.bits == part.bits
         ]
         header = packets.header(
             (part.at, part.bits, part.item.get("const")) for part in plain
@@ -488,7 +494,7 @@ class Layout(Container[Part]):
         id, else None.
         """
         part = next(iter(self.parts), None)
-        if part is None or part.piece is None or not part.is_message_id:
+        if part is None or part.field_type is None or not part.is_message_id:
             return None
         return (part.path, part.entry), part.bits
 
@@ -528,7 +534,7 @@ class Layout(Container[Part]):
             not part.bits and part.counter is None for part in self.parts
         )
 
-    def add(self, part: Part) -> None:
+    def add(self, part: EdsPart) -> None:
         """Add a part.
 
         Raises `NotSupported` if it follows a part of variable length, and does not have
@@ -546,7 +552,7 @@ class Layout(Container[Part]):
             )
         super().add(part)
 
-    def _has_uncounted(self, added: Part) -> bool:
+    def _has_uncounted(self, added: EdsPart) -> bool:
         """Return whether ``added`` or another variable-length part has no counter."""
         return any(
             not part.bits and part.counter is None for part in (*self.parts, added)

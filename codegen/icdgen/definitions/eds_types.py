@@ -14,7 +14,7 @@ from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotSupported
-from icdgen.definitions.reading import Reading
+from icdgen.definitions.reading import ReadingState
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
 from icdgen.icd.variable_length import MOST_BYTES
@@ -34,7 +34,7 @@ _MARKUP = re.compile(r"(?<!\S)[\\@][A-Za-z]\w*\s*")  # of Doxygen
 
 
 @dataclass
-class Piece(containers.Piece):
+class EdsFieldType(containers.FieldType):
     """Field of a type, with integer encoding, labels and range of raw values."""
 
     code: str = UNSIGNED  # integer encoding; empty for other types
@@ -68,7 +68,7 @@ class Piece(containers.Piece):
 
 
 @dataclass
-class Types(Reading):
+class EdsTypes(ReadingState):
     """Factory of fields and enumerations from types."""
 
     most_steps = 500_000  # types and labels of all messages
@@ -92,7 +92,7 @@ class Types(Reading):
             chain.append(base)
         return chain
 
-    def piece(self, type_: Element, entry: Element, where: str) -> Piece:
+    def field_type(self, type_: Element, entry: Element, where: str) -> EdsFieldType:
         """Return the field of a scalar type.
 
         The encoding of the entry takes precedence over that of the type.
@@ -113,28 +113,30 @@ class Types(Reading):
             None,
         )
         if kind in ("Integer", "Enumerated"):
-            piece = self._integer(encoding, where, kind == "Enumerated")
+            field_type = self._integer(encoding, where, kind == "Enumerated")
         elif kind == "Boolean":
-            piece = self._flag(encoding, chain[-1])
+            field_type = self._flag(encoding, chain[-1])
         elif kind == "Float":
-            piece = self._float(encoding, where)
+            field_type = self._float(encoding, where)
         elif kind == "String":
-            piece = self._text(encoding, chain[-1])
+            field_type = self._text(encoding, chain[-1])
         elif kind == "Binary":
-            piece = self._binary(chain[-1])
+            field_type = self._binary(chain[-1])
         else:
             raise NotSupported(f"{where} is a `{line(chain[-1].tag, 60)}`")
         if kind == "Enumerated":
-            self._labels(piece, chain[-1], where)
-        piece.range = self._range(chain, entry)
-        if piece.item["type"] in ("uint", "int", "float") and piece.code in (
+            self._labels(field_type, chain[-1], where)
+        field_type.range = self._range(chain, entry)
+        if field_type.item["type"] in ("uint", "int", "float") and field_type.code in (
             UNSIGNED,
             TWOS,
         ):
-            piece.item |= self._meaning(chain, entry, piece, where)
-        return piece
+            field_type.item |= self._meaning(chain, entry, field_type, where)
+        return field_type
 
-    def _integer(self, encoding: Element | None, where: str, has_names: bool) -> Piece:
+    def _integer(
+        self, encoding: Element | None, where: str, has_names: bool
+    ) -> EdsFieldType:
         if encoding is None or encoding.tag != "IntegerDataEncoding":
             raise NotSupported(f"{where} has a type without an encoding")
         code = self._keyword(encoding, "encoding", UNSIGNED, CODES)
@@ -146,9 +148,11 @@ class Types(Reading):
             self.raw_only(where, f"it is encoded as {code}", _BITS_ONLY)
         if bits > _WORD:
             return _bytes(bits, where)
-        return Piece({"type": "int" if code == TWOS else "uint"}, bits, order, code)
+        return EdsFieldType(
+            {"type": "int" if code == TWOS else "uint"}, bits, order, code
+        )
 
-    def _float(self, encoding: Element | None, where: str) -> Piece:
+    def _float(self, encoding: Element | None, where: str) -> EdsFieldType:
         if encoding is None or encoding.tag != "FloatDataEncoding":
             raise NotSupported(f"{where} has a type without an encoding")
         precision = self.sheets.attribute(
@@ -157,17 +161,17 @@ class Types(Reading):
         bits = self._size(encoding, where, _FLOATS.get(precision.lower()))
         order = self._order(encoding, bits, where)
         if _FLOATS.get(precision.lower()) == bits:
-            return Piece({"type": "float"}, bits, order)
+            return EdsFieldType({"type": "float"}, bits, order)
         self.raw_only(
             where, f"it is encoded as {line(precision, 60)} of {bits} bits", _BITS_ONLY
         )
         return (
             _bytes(bits, where)
             if bits > _WORD
-            else Piece({"type": "uint"}, bits, order, "")
+            else EdsFieldType({"type": "uint"}, bits, order, "")
         )
 
-    def _flag(self, encoding: Element | None, type_: Element) -> Piece:
+    def _flag(self, encoding: Element | None, type_: Element) -> EdsFieldType:
         bits = (
             1
             if encoding is None
@@ -182,19 +186,19 @@ class Types(Reading):
             raise NotSupported(f"the flag `{type_.get('name', '')}` has {bits} bits")
         names = ("True", "False") if is_inverse else ("False", "True")
         values = {name.lower(): value for value, name in enumerate(names)}
-        piece = Piece({"type": "bool"}, bits, code="", values=values)
+        field_type = EdsFieldType({"type": "bool"}, bits, code="", values=values)
         # The type `bool` has one bit, and 1 means true.
         if bits > 1 or is_inverse:
             members: list[Item] = [
                 {"value": value, "name": name} for value, name in enumerate(names)
             ]
-            piece.item = {"type": "enum"}
+            field_type.item = {"type": "enum"}
             self.enums.give(
-                piece.item, _enumeration_name(type_), self._owner(type_), members
+                field_type.item, _enumeration_name(type_), self._owner(type_), members
             )
-        return piece
+        return field_type
 
-    def _text(self, encoding: Element | None, type_: Element) -> Piece:
+    def _text(self, encoding: Element | None, type_: Element) -> EdsFieldType:
         length = whole(
             self.sheets.attribute(type_, "length"),
             "the length of a text",
@@ -210,21 +214,21 @@ class Types(Reading):
             "false",
             "0",
         ):
-            return Piece({"type": "text"}, 8 * length)
+            return EdsFieldType({"type": "text"}, 8 * length)
         if ends:
             raise NotSupported(
                 f"`{type_.get('name', '')}` ends at the character `{line(ends, 20)}`"
             )
-        return Piece({"type": "text", "up_to": length}, 0)
+        return EdsFieldType({"type": "text", "up_to": length}, 0)
 
-    def _binary(self, type_: Element) -> Piece:
+    def _binary(self, type_: Element) -> EdsFieldType:
         bits = self._size(type_, f"`{type_.get('name', '')}`")
         if self.sheets.attribute(type_, "fixedSize", "true").lower() in ("false", "0"):
             if bits % 8:
                 raise NotSupported(f"`{type_.get('name', '')}` has up to {bits} bits")
-            return Piece({"type": "bytes", "up_to": bits // 8}, 0)
+            return EdsFieldType({"type": "bytes", "up_to": bits // 8}, 0)
         if bits % 8 and bits <= _WORD:
-            return Piece({"type": "uint"}, bits)
+            return EdsFieldType({"type": "uint"}, bits)
         return _bytes(bits, f"`{type_.get('name', '')}`")
 
     def _size(self, encoding: Element, where: str, default: int | None = None) -> int:
@@ -262,13 +266,13 @@ class Types(Reading):
             raise NotSupported(f"its `{key}` is `{line(text, 60)}`")
         return keyword
 
-    def _labels(self, piece: Piece, type_: Element, where: str) -> None:
+    def _labels(self, field_type: EdsFieldType, type_: Element, where: str) -> None:
         choices: dict[int, str] = {}
         for label, value in self.sheets.labels(type_):
             self.step()
             raw = (
-                coded(value, piece.code, piece.bits)
-                if piece.item["type"] != "bytes"
+                coded(value, field_type.code, field_type.bits)
+                if field_type.item["type"] != "bytes"
                 else None
             )
             if raw is None:
@@ -276,14 +280,14 @@ class Types(Reading):
                     f"{where} never has the value `{value}` of `{line(label, 60)}`"
                 )
             choices.setdefault(raw, label)
-            piece.values.setdefault(label, raw)
+            field_type.values.setdefault(label, raw)
         if not choices:
             return
         notes = self.heard(f"labels of {id(type_)}")  # report faults of a type once
         name = _enumeration_name(type_)
         self.enums.hold(
-            piece.item,
-            piece.bits,
+            field_type.item,
+            field_type.bits,
             choices,
             name,
             self._owner(type_),
@@ -304,7 +308,7 @@ class Types(Reading):
         return result
 
     def _meaning(
-        self, chain: list[Element], entry: Element, piece: Piece, where: str
+        self, chain: list[Element], entry: Element, field_type: EdsFieldType, where: str
     ) -> Item:
         """Return calibration and unit of the entry, and the limits of its type.
 
@@ -318,8 +322,10 @@ class Types(Reading):
         except ValueError as error:
             self.raw_only(where, str(error), _BITS_ONLY)
             return item
-        if not item and "special" not in piece.item and piece.range != ALL:
-            item |= eds_ranges.limited(piece.item, piece.bits, piece.range)
+        if not item and "special" not in field_type.item and field_type.range != ALL:
+            item |= eds_ranges.limited(
+                field_type.item, field_type.bits, field_type.range
+            )
         return {**self._unit((entry, *chain)), **item}
 
     def _unit(self, chain: tuple[Element, ...]) -> Item:
@@ -352,11 +358,11 @@ def _enumeration_name(type_: Element) -> str:
     return without_type(line(type_.get("name"), 60))
 
 
-def _bytes(bits: int, where: str) -> Piece:
+def _bytes(bits: int, where: str) -> EdsFieldType:
     """Return a field of bytes, for numbers that exceed 64 bits.
 
     Raises `NotSupported` for a partial byte.
     """
     if bits % 8:
         raise NotSupported(f"{where} has {bits} bits")
-    return Piece({"type": "bytes"}, bits, code="")
+    return EdsFieldType({"type": "bytes"}, bits, code="")

@@ -19,7 +19,7 @@ ORDERS = {
 }
 
 
-class Place(NamedTuple):
+class FrameBits(NamedTuple):
     """Bits of a frame: position of the first bit, number of bits and order.
 
     `LITTLE` counts from the least significant bit of each byte, `BIG` from the most
@@ -46,14 +46,16 @@ class Place(NamedTuple):
             1 << at // 8 * 8 + 7 - at % 8 for at in range(self.at, self.at + self.bits)
         )
 
-    def counted(self, order: str) -> Place:
+    def counted(self, order: str) -> FrameBits:
         """Return these bits in another order, or unchanged if they span several bytes."""
         if order == self.order or not self.is_within_byte:
             return self
-        return Place(self.at // 8 * 8 + 8 - self.at % 8 - self.bits, self.bits, order)
+        return FrameBits(
+            self.at // 8 * 8 + 8 - self.at % 8 - self.bits, self.bits, order
+        )
 
 
-def usual(places: Iterable[Place]) -> str:
+def usual(places: Iterable[FrameBits]) -> str:
     """Return the order of most fields that span bytes; `LITTLE` if there is no majority
     for `BIG`.
     """
@@ -62,7 +64,7 @@ def usual(places: Iterable[Place]) -> str:
 
 
 def laid_out(
-    message: Item, placed: list[tuple[Item, Place]], order: str, to: Definitions
+    message: Item, placed: list[tuple[Item, FrameBits]], order: str, to: Definitions
 ) -> Item:
     """Return the message with its fields.
 
@@ -94,8 +96,8 @@ def laid_out(
 
 
 def _with_overlays(
-    name: str, placed: list[tuple[Item, Place]], to: Definitions
-) -> Iterator[tuple[Item, Place]]:
+    name: str, placed: list[tuple[Item, FrameBits]], to: Definitions
+) -> Iterator[tuple[Item, FrameBits]]:
     """Yield the fields, with overlapping smaller fields as overlay fields (IMP071).
 
     Bits that only overlay fields cover become fields. Optional fields that overlap
@@ -163,7 +165,7 @@ def listed(condition: object) -> list[object]:
     return condition if isinstance(condition, list) else [condition]
 
 
-def _fields_of_bits(mask: int) -> Iterator[tuple[Item, Place]]:
+def _fields_of_bits(mask: int) -> Iterator[tuple[Item, FrameBits]]:
     """Yield a field for each run of bits, at most one byte long."""
     at = 0
     while mask >> at:
@@ -173,7 +175,7 @@ def _fields_of_bits(mask: int) -> Iterator[tuple[Item, Place]]:
         if at > start:
             yield (
                 {"name": f"Bits from {start}", "type": "uint"},
-                Place(start, at - start, LITTLE),
+                FrameBits(start, at - start, LITTLE),
             )
         else:
             at += 1

@@ -16,9 +16,9 @@ from icdgen.definitions.containers import (
     variable_field,
 )
 from icdgen.definitions.frames import ORDERS, usual
-from icdgen.definitions.kaitai_layout import Layout
-from icdgen.definitions.kaitai_parts import File, Key, Part, Undecided
-from icdgen.definitions.kaitai_types import Type, declared, mapping
+from icdgen.definitions.kaitai_layout import KaitaiLayout
+from icdgen.definitions.kaitai_parts import File, KaitaiPart, Key, Undecided
+from icdgen.definitions.kaitai_types import KaitaiType, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import (
     Definitions,
@@ -120,18 +120,18 @@ class Kaitai:
         return to
 
 
-def _messages(root: Type, shared: File) -> list[Layout]:
+def _messages(root: KaitaiType, shared: File) -> list[KaitaiLayout]:
     """Return a layout for each combination of branches (`if`, `switch-on`), in the
     order of the file.
 
     Walks the type again with one more decision whenever the layout depends on a value
     that is not decided yet.
     """
-    result: list[Layout] = []
+    result: list[KaitaiLayout] = []
     left: list[dict[Key, int | None]] = [{}]
     while left:
         decided = left.pop()
-        layout = Layout(shared, decided)
+        layout = KaitaiLayout(shared, decided)
         try:
             layout.read(root)
         except Undecided as asked:
@@ -157,7 +157,7 @@ def _messages(root: Type, shared: File) -> list[Layout]:
     return result
 
 
-def _names(name: str, layouts: list[Layout]) -> list[str]:
+def _names(name: str, layouts: list[KaitaiLayout]) -> list[str]:
     """Return a distinct name for each layout: the name of the format and the labels of
     its branches.
 
@@ -187,13 +187,13 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
     return result
 
 
-def _name_with_values(name: str, layout: Layout) -> str:
+def _name_with_values(name: str, layout: KaitaiLayout) -> str:
     """Return the name of the format, with words and values of the branches."""
     labels = (f"{label.word} {label.value}".strip() for label in layout.labels)
     return " ".join([name, *labels])
 
 
-def _fields(layout: Layout, order: str) -> list[Item]:
+def _fields(layout: KaitaiLayout, order: str) -> list[Item]:
     """Return the fields of a layout.
 
     A part of which only some bits are decided becomes several fields, and an overlay
@@ -239,7 +239,7 @@ def _fields(layout: Layout, order: str) -> list[Item]:
     return in_sequence(fields)
 
 
-def _split_fields(part: Part, name: str, order: str) -> list[Item]:
+def _split_fields(part: KaitaiPart, name: str, order: str) -> list[Item]:
     """Return a field for each run of decided or undecided bits, and an overlay field
     (`view`) for the complete part.
     """
@@ -276,7 +276,7 @@ def _split_fields(part: Part, name: str, order: str) -> list[Item]:
     return sorted([*fields, overlay], key=lambda field: field["at"])
 
 
-def _position(part: Part, at: int, bits: int, order: str) -> Item:
+def _position(part: KaitaiPart, at: int, bits: int, order: str) -> Item:
     """Return the keys for the position, and for the byte order if it differs from
     ``order`` of the message.
     """

@@ -1,5 +1,10 @@
 """Layout of a .ksy: its attributes as consecutive parts, for one combination of its
 conditional branches.
+
+A `KaitaiLayout` gets the root type of the file and the values that select branches. If
+the layout depends on a further value, it raises `Undecided` with the values to try;
+`kaitai` repeats the layout with each of them. `kaitai_types` has the fields of types,
+`kaitai_parts` the parts and the names that expressions can use.
 """
 
 from __future__ import annotations
@@ -19,18 +24,19 @@ from icdgen.definitions.kaitai_expressions import (
     number,
 )
 from icdgen.definitions.kaitai_parts import (
+    BranchLabel,
     Ended,
     File,
+    KaitaiPart,
     Key,
-    Label,
-    Part,
-    Scope,
+    TypeScope,
     Undecided,
+    apply_valid,
     placed,
 )
 from icdgen.definitions.kaitai_types import (
-    Piece,
-    Type,
+    KaitaiFieldType,
+    KaitaiType,
     built_in,
     contents,
     named,
@@ -40,7 +46,6 @@ from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, summary, unit
-from icdgen.icd.layout import integer_range
 from icdgen.icd.located import Map
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
@@ -50,7 +55,7 @@ _WORD = 8  # bytes of the largest integer
 
 
 @dataclass
-class Layout(Container[Part]):
+class KaitaiLayout(Container[KaitaiPart]):
     """Parts of a root type.
 
     ``decided`` are the values of the fields that select branches.
@@ -59,7 +64,7 @@ class Layout(Container[Part]):
     file: File
     decided: dict[Key, int | None]
     is_struct: bool = False
-    labels: list[Label] = field(default_factory=list)
+    labels: list[BranchLabel] = field(default_factory=list)
     # Bit behind each enclosing part that states its `size`.
     ends: list[int] = field(default_factory=list)
 
@@ -68,19 +73,23 @@ class Layout(Container[Part]):
         """Whether the last part extends to the end of the frame."""
         return super().is_open and self.parts[-1].counter is None
 
-    def read(self, root: Type) -> None:
+    def read(self, root: KaitaiType) -> None:
         """Add the parts of the root type.
 
         Raises `NotSupported` if it is not supported, `Undecided` if a branch depends on
         a value that is not in ``decided``.
         """
         try:
-            self.type(root, Scope(root), (), (root,))
+            self.add_type(root, TypeScope(root), (), (root,))
         except Ended:
             return
 
-    def type(
-        self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]
+    def add_type(
+        self,
+        type_: KaitaiType,
+        scope: TypeScope,
+        path: tuple[str, ...],
+        within: tuple[KaitaiType, ...],
     ) -> None:
         """Add the attributes of a type (`seq`), and the formulas of its `instances`."""
         try:
@@ -91,7 +100,11 @@ class Layout(Container[Part]):
         self._instances(type_, scope, path)
 
     def _sequence(
-        self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]
+        self,
+        type_: KaitaiType,
+        scope: TypeScope,
+        path: tuple[str, ...],
+        within: tuple[KaitaiType, ...],
     ) -> None:
         """Add the attributes of `seq`.
 
@@ -120,8 +133,8 @@ class Layout(Container[Part]):
         attribute: Map,
         name: str,
         where: tuple[str, ...],
-        scope: Scope,
-        within: tuple[Type, ...],
+        scope: TypeScope,
+        within: tuple[KaitaiType, ...],
     ) -> None:
         """Add the parts of an attribute.
 
@@ -142,10 +155,10 @@ class Layout(Container[Part]):
             if chosen is None:
                 return
             name_of_type = chosen
-        piece = built_in(str(name_of_type or ""), attribute, scope.type)
+        field_type = built_in(str(name_of_type or ""), attribute, scope.type)
         count = self._count(attribute, scope)
-        if piece is not None:
-            part = self._place(where, piece, count, attribute, scope)
+        if field_type is not None:
+            part = self._place(where, field_type, count, attribute, scope)
             scope.names[name] = part
             return
         if "(" in str(name_of_type):
@@ -163,17 +176,17 @@ class Layout(Container[Part]):
         if count is not None:
             self._structs(where, inner, count, attribute, within)
             return
-        below = Scope(inner, scope)
+        below = TypeScope(inner, scope)
         scope.names[name] = below
         self._within(attribute, inner, below, where, within)
 
     def _within(
         self,
         attribute: Map,
-        inner: Type,
-        below: Scope,
+        inner: KaitaiType,
+        below: TypeScope,
         where: tuple[str, ...],
-        within: tuple[Type, ...],
+        within: tuple[KaitaiType, ...],
     ) -> None:
         """Add the fields of a type that is not repeated.
 
@@ -183,7 +196,7 @@ class Layout(Container[Part]):
             raise NotSupported(f"its size is `{line(str(attribute['size']), 80)}`")
         size = sized(attribute)
         if size is None:
-            self.type(inner, below, where, (*within, inner))
+            self.add_type(inner, below, where, (*within, inner))
             return
         self._align()
         end = self.at + 8 * size
@@ -191,7 +204,7 @@ class Layout(Container[Part]):
             raise NotSupported(f"its {size} bytes are more than there are around it")
         self.ends.append(end)
         try:
-            self.type(inner, below, where, (*within, inner))
+            self.add_type(inner, below, where, (*within, inner))
         except Ended:
             pass
         finally:
@@ -202,7 +215,7 @@ class Layout(Container[Part]):
             )
         self.at = end
 
-    def _count(self, attribute: Map, scope: Scope) -> int | Counter | str | None:
+    def _count(self, attribute: Map, scope: TypeScope) -> int | Counter | str | None:
         """Return the number of repetitions: None without `repeat`, a number, a counter,
         or `rest` for `repeat: eos`.
 
@@ -224,7 +237,7 @@ class Layout(Container[Part]):
             raise NotSupported(f"it is repeated {count} times")
         return count
 
-    def _counter(self, expression: object, scope: Scope, why: str) -> Counter:
+    def _counter(self, expression: object, scope: TypeScope, why: str) -> Counter:
         """Return the preceding integer that an expression refers to.
 
         Raises `NotSupported` with ``why`` for other expressions.
@@ -255,58 +268,60 @@ class Layout(Container[Part]):
     def _place(
         self,
         where: tuple[str, ...],
-        piece: Piece,
+        field_type: KaitaiFieldType,
         count: int | Counter | str | None,
         attribute: Map,
-        scope: Scope,
-    ) -> Part:
+        scope: TypeScope,
+    ) -> KaitaiPart:
         """Add a number, a text or bytes behind the last part. Raises `NotSupported`."""
         counter = count if isinstance(count, Counter) else None
-        if not piece.bits and "size" in attribute:
+        if not field_type.bits and "size" in attribute:
             counter = self._counter(
                 attribute["size"],
                 scope,
                 f"its size is `{line(str(attribute['size']), 80)}`",
             )
-        if not piece.is_bits:
+        if not field_type.is_bits:
             self._align()
         elif (
             self.at % 8
             and self.parts
-            and self.parts[-1].piece.is_bits
-            and self.parts[-1].piece.order != piece.order
+            and self.parts[-1].field_type.is_bits
+            and self.parts[-1].field_type.order != field_type.order
         ):
             raise NotSupported(
                 "its bits are counted from the other end of a byte than the bits in front of it"
             )
-        if not piece.bits and self.ends:
-            piece.bits = self.ends[-1] - self.at
-            if piece.bits <= 0:
+        if not field_type.bits and self.ends:
+            field_type.bits = self.ends[-1] - self.at
+            if field_type.bits <= 0:
                 raise NotSupported("no byte is left for it")
         if "enum" in attribute:
             reference = str(attribute["enum"])
             named(
-                piece.item,
-                piece.bits,
+                field_type.item,
+                field_type.bits,
                 reference,
                 scope.type,
                 self.file.enums,
                 self.file.heard(reference),
             )
         if count is not None:
-            if piece.item["type"] == "bytes" or not piece.bits:
+            if field_type.item["type"] == "bytes" or not field_type.bits:
                 raise NotSupported("its elements are not numbers")
-            piece.item |= {
-                "bits": piece.bits,
+            field_type.item |= {
+                "bits": field_type.bits,
                 "count": REST if isinstance(count, Counter) else count,
             }
-        piece.item |= summary(str(attribute.get("doc") or "")) | unit(_unit(attribute))
-        part = placed(where, piece, self.at, counter)
-        self._valid(part, attribute.get("valid"), scope)
+        field_type.item |= summary(str(attribute.get("doc") or "")) | unit(
+            _unit(attribute)
+        )
+        part = placed(where, field_type, self.at, counter)
+        apply_valid(part, attribute.get("valid"), scope)
         self._fit(part)
         return part
 
-    def _fit(self, part: Part) -> None:
+    def _fit(self, part: KaitaiPart) -> None:
         """Add a part.
 
         Raises `NotSupported` if it does not fit into the enclosing part.
@@ -319,34 +334,6 @@ class Layout(Container[Part]):
             )
         self.add(part)
 
-    def _valid(self, part: Part, valid: Any, scope: Scope) -> None:
-        """Apply the key `valid`: a single value becomes a constant, `min` and `max`
-        become limits.
-
-        Ignores other forms.
-        """
-        item = part.item
-        if (
-            valid is None
-            or item["type"] not in ("uint", "int", "enum", "bool")
-            or "count" in item
-        ):
-            return
-        equal = valid.get("eq") if isinstance(valid, Map) else valid
-        all_bits = (1 << part.bits) - 1
-        if isinstance(valid, Map) and item["type"] in ("uint", "int"):
-            low, high = integer_range(part.bits, item["type"] == "int")
-            item |= {
-                key: valid[key]
-                for key in ("min", "max")
-                if type(valid.get(key)) is int and low <= valid[key] <= high
-            }
-        try:
-            value = number(str(equal), scope.type.members)
-        except NotSupported:
-            return  # `valid` has an expression
-        part.mask, part.value = all_bits, value & all_bits
-
     def _constant(self, where: tuple[str, ...], always: bytes, attribute: Map) -> None:
         """Add the bytes of `contents` as constant integers of up to 8 bytes."""
         self._align()
@@ -358,17 +345,17 @@ class Layout(Container[Part]):
                 **(summary(str(attribute.get("doc") or "")) if not start else {}),
             }
             bits = 8 * len(data)
-            part = placed(name, Piece(item, bits), self.at)
+            part = placed(name, KaitaiFieldType(item, bits), self.at)
             part.mask, part.value = (1 << bits) - 1, int.from_bytes(data, "big")
             self.add(part)
 
     def _structs(
         self,
         where: tuple[str, ...],
-        inner: Type,
+        inner: KaitaiType,
         count: int | Counter | str,
         attribute: Map,
-        within: tuple[Type, ...],
+        within: tuple[KaitaiType, ...],
     ) -> None:
         """Add an array of structs.
 
@@ -376,12 +363,12 @@ class Layout(Container[Part]):
         size.
         """
         self._align()
-        layout = Layout(self.file, {}, is_struct=True)
+        layout = KaitaiLayout(self.file, {}, is_struct=True)
         try:
             layout._within(
                 attribute,
                 inner,
-                Scope(inner),
+                TypeScope(inner),
                 (),
                 (*within, inner) if sized(attribute) is None else within,
             )
@@ -404,7 +391,7 @@ class Layout(Container[Part]):
         )
         if struct["length"] != layout.at // 8:
             raise NotSupported("they are not as long as elsewhere")
-        self._fit(placed(where, Piece(item, layout.at), self.at, counter))
+        self._fit(placed(where, KaitaiFieldType(item, layout.at), self.at, counter))
 
     def _as_bytes(
         self,
@@ -460,13 +447,13 @@ class Layout(Container[Part]):
         """
         self._align()
         item: Item = {"type": "bytes"}
-        part = placed(where, Piece(item, bits), self.at)
+        part = placed(where, KaitaiFieldType(item, bits), self.at)
         part.is_whole = False
         self.add(part)
 
     # Branches: `if` and `switch-on`.
 
-    def _is_present(self, attribute: Map, name: str, scope: Scope) -> bool:
+    def _is_present(self, attribute: Map, name: str, scope: TypeScope) -> bool:
         """Return whether this message contains an attribute with `if`.
 
         Raises `NotSupported` if the condition is not supported.
@@ -484,7 +471,7 @@ class Layout(Container[Part]):
             is_met = (chosen is not None) != condition.is_negated
             if is_new:
                 self.labels.append(
-                    Label(
+                    BranchLabel(
                         f"with {name}" if is_met else "",
                         "" if chosen is None else f"{value}",
                     )
@@ -493,7 +480,7 @@ class Layout(Container[Part]):
                 return False
         return True
 
-    def _switched(self, switch: Map, scope: Scope) -> str | None:
+    def _switched(self, switch: Map, scope: TypeScope) -> str | None:
         """Return the type that a `switch-on` selects in this message, None if no case
         applies.
 
@@ -509,19 +496,18 @@ class Layout(Container[Part]):
         }
         of = masked(switch.get("switch-on"))
         value, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
-        chosen = (
-            str(cases["_"])
-            if value is None and "_" in cases
-            else None
-            if value is None
-            else types[value]
-        )
+        if value is not None:
+            chosen = types[value]
+        else:
+            chosen = str(cases["_"]) if "_" in cases else None
         if is_new and chosen is not None:
-            self.labels.append(Label(chosen, "other" if value is None else f"{value}"))
+            self.labels.append(
+                BranchLabel(chosen, "other" if value is None else f"{value}")
+            )
         return chosen
 
     def _choose(
-        self, of: Masked, options: list[int], scope: Scope, is_else: bool
+        self, of: Masked, options: list[int], scope: TypeScope, is_else: bool
     ) -> tuple[int | None, bool]:
         """Return which of ``options`` the bits of a field have in this message, and
         whether a new decision was needed.
@@ -577,7 +563,9 @@ class Layout(Container[Part]):
             part.mask, part.value = part.mask | mask, part.value & ~mask | chosen
         return (None if chosen is None else raw[chosen]), True
 
-    def _instances(self, type_: Type, scope: Scope, path: tuple[str, ...]) -> None:
+    def _instances(
+        self, type_: KaitaiType, scope: TypeScope, path: tuple[str, ...]
+    ) -> None:
         """Add the formulas of `instances`, and the fields of instances at a fixed
         `pos`.
 
@@ -618,7 +606,7 @@ class Layout(Container[Part]):
                 )
 
     def _add_positioned(
-        self, name: str, instance: Map, type_: Type, scope: Scope
+        self, name: str, instance: Map, type_: KaitaiType, scope: TypeScope
     ) -> bool:
         """Add an instance with a fixed `pos` as a field, and return whether it is one.
 
@@ -643,7 +631,7 @@ class Layout(Container[Part]):
             self._as_bytes(instance, (name,), why, is_present=True)
         return True
 
-    def _formula(self, instance: Map, scope: Scope) -> bool:
+    def _formula(self, instance: Map, scope: TypeScope) -> bool:
         """Add the formula of an instance to the field it depends on, and return whether
         that is possible.
         """

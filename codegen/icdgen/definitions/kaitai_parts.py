@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from icdgen.definitions import containers
 from icdgen.definitions.containers import Counter
-from icdgen.definitions.frames import Place
-from icdgen.definitions.kaitai_types import Piece, Type
+from icdgen.definitions.frames import FrameBits
+from icdgen.definitions.kaitai_expressions import number
+from icdgen.definitions.kaitai_types import KaitaiFieldType, KaitaiType
 from icdgen.definitions.model import Item, NotSupported
-from icdgen.definitions.reading import Reading
+from icdgen.definitions.reading import ReadingState
 from icdgen.definitions.wording import line
 from icdgen.frozen import NamedTuple
+from icdgen.icd.layout import integer_range
+from icdgen.icd.located import Map
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 # Path of a field, mask of its bits, and the values that have branches.
@@ -34,7 +38,7 @@ class Ended(Exception):
     """
 
 
-class Label(NamedTuple):
+class BranchLabel(NamedTuple):
     """Word that a branch adds to the name of the message, and the value that selects
     the branch.
     """
@@ -44,14 +48,14 @@ class Label(NamedTuple):
 
 
 @dataclass
-class Part(containers.Part):
+class KaitaiPart(containers.ContainerPart):
     """Attribute at its position.
 
     The bits of ``mask`` have the fixed values in ``value``. ``excluded`` are pairs of
     mask and value that do not occur.
     """
 
-    piece: Piece = field(kw_only=True)
+    field_type: KaitaiFieldType = field(kw_only=True)
     mask: int = 0
     value: int = 0
     excluded: set[tuple[int, int]] = field(default_factory=set)
@@ -63,50 +67,60 @@ class Part(containers.Part):
         """Whether the byte or bit order affects the part."""
         is_number = self.item.get("type", "bytes") not in ("bytes", "text")
         return is_number and (
-            self.piece.is_bits
-            or self.piece.bits > 8
+            self.field_type.is_bits
+            or self.field_type.bits > 8
             or (self.mask > 0 and "count" not in self.item)
         )
 
     @property
-    def place(self) -> Place:
+    def place(self) -> FrameBits:
         """Position of the part in the message."""
-        return Place(self.at, self.bits, self.piece.order)
+        return FrameBits(self.at, self.bits, self.field_type.order)
 
 
 def placed(
-    path: tuple[str, ...], piece: Piece, at: int, counter: Counter | None = None
-) -> Part:
-    """Return the part that a piece makes at a bit.
+    path: tuple[str, ...],
+    field_type: KaitaiFieldType,
+    at: int,
+    counter: Counter | None = None,
+) -> KaitaiPart:
+    """Return the part that a field type makes at a bit.
 
     ``counter`` counts its elements, or bytes.
     """
-    item, count = piece.item, piece.item.get("count", 1)
-    bits = piece.bits * count if isinstance(count, int) else 0
+    item, count = field_type.item, field_type.item.get("count", 1)
+    bits = field_type.bits * count if isinstance(count, int) else 0
     if not bits:
         most = MOST_ELEMENTS if "count" in item else MOST_BYTES
         item["up_to"] = min(most, counter.most) if counter is not None else most
-    return Part(
-        path, item, at, bits, piece.order, piece.bits or 8, counter, piece=piece
+    return KaitaiPart(
+        path,
+        item,
+        at,
+        bits,
+        field_type.order,
+        field_type.bits or 8,
+        counter,
+        field_type=field_type,
     )
 
 
 @dataclass
-class Scope:
+class TypeScope:
     """Names that expressions within a type can refer to."""
 
-    type: Type
-    outer: Scope | None = None
-    names: dict[str, Part | Scope] = field(default_factory=dict)
+    type: KaitaiType
+    outer: TypeScope | None = None
+    names: dict[str, KaitaiPart | TypeScope] = field(default_factory=dict)
 
-    def find(self, path: str) -> Part:
+    def find(self, path: str) -> KaitaiPart:
         """Return the part at a path such as ``_parent.header.length``.
 
         Raises `NotSupported` if no preceding part has it.
         """
-        here: Part | Scope | None = self
+        here: KaitaiPart | TypeScope | None = self
         for name in path.split("."):
-            if not isinstance(here, Scope):
+            if not isinstance(here, TypeScope):
                 here = None
             elif name == "_root":
                 while here.outer is not None:
@@ -115,13 +129,42 @@ class Scope:
                 here = here.outer
             else:
                 here = here.names.get(name)
-        if not isinstance(here, Part):
+        if not isinstance(here, KaitaiPart):
             raise NotSupported(f"`{line(path, 80)}` is not a number in front of it")
         return here
 
 
+def apply_valid(part: KaitaiPart, valid: Any, scope: TypeScope) -> None:
+    """Apply the key `valid`: a single value becomes a constant, `min` and `max`
+    become limits.
+
+    Ignores other forms.
+    """
+    item = part.item
+    if (
+        valid is None
+        or item["type"] not in ("uint", "int", "enum", "bool")
+        or "count" in item
+    ):
+        return
+    equal = valid.get("eq") if isinstance(valid, Map) else valid
+    all_bits = (1 << part.bits) - 1
+    if isinstance(valid, Map) and item["type"] in ("uint", "int"):
+        low, high = integer_range(part.bits, item["type"] == "int")
+        item |= {
+            key: valid[key]
+            for key in ("min", "max")
+            if type(valid.get(key)) is int and low <= valid[key] <= high
+        }
+    try:
+        value = number(str(equal), scope.type.members)
+    except NotSupported:
+        return  # `valid` has an expression
+    part.mask, part.value = all_bits, value & all_bits
+
+
 @dataclass
-class File(Reading):
+class File(ReadingState):
     """State that all messages of a file share."""
 
     # Attributes of all messages; a small file can have many combinations of branches.

@@ -28,7 +28,7 @@ _DEEPEST = 40  # levels of nested types
 
 
 @dataclass
-class Piece(containers.Piece):
+class KaitaiFieldType(containers.FieldType):
     """Field that the type of an attribute describes.
 
     ``bits`` is the width of one element.
@@ -39,15 +39,15 @@ class Piece(containers.Piece):
 
 
 @dataclass
-class Type:
+class KaitaiType:
     """Type that the file declares, with its nested types."""
 
     name: str
     body: Map
-    outer: Type | None
+    outer: KaitaiType | None
     endian: str | None = None
     bit_endian: str = BIG
-    types: dict[str, Type] = field(default_factory=dict)
+    types: dict[str, KaitaiType] = field(default_factory=dict)
 
     @property
     def seq(self) -> list[Map]:
@@ -71,13 +71,13 @@ class Type:
         """Computed values, and attributes at a stated position (`pos`)."""
         return mapping(self.body, "instances")
 
-    def find(self, reference: str) -> Type:
+    def find(self, reference: str) -> KaitaiType:
         """Return the type that a reference names in this type or an enclosing one.
 
         Raises `NotSupported` if it is missing.
         """
         first, *inner_names = reference.split("::")
-        scope: Type | None = self
+        scope: KaitaiType | None = self
         while scope is not None:
             result = scope.types.get(first) or (
                 scope if scope.outer is None and scope.name == first else None
@@ -95,7 +95,7 @@ class Type:
         Raises `NotSupported` if this and the enclosing types lack it.
         """
         *path, name = reference.split("::")
-        scope: Type | None = self.find("::".join(path)) if path else self
+        scope: KaitaiType | None = self.find("::".join(path)) if path else self
         while scope is not None:
             enumeration = mapping(scope.body, "enums").get(name)
             if isinstance(enumeration, Map):
@@ -121,7 +121,9 @@ def mapping(body: Map, key: str) -> Map | dict[str, Any]:
     return value if isinstance(value, Map) else {}
 
 
-def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) -> Type:
+def declared(
+    name: str, body: Map, outer: KaitaiType | None = None, depth: int = 0
+) -> KaitaiType:
     """Return a type with its nested types.
 
     A type inherits the byte order and bit order of the enclosing one.
@@ -131,14 +133,14 @@ def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) ->
     if "endian" in meta:
         endian = _ORDERS.get(str(meta["endian"]))
     bits = _ORDERS.get(str(meta.get("bit-endian")), outer.bit_endian if outer else BIG)
-    result = Type(name, body, outer, endian, bits)
+    result = KaitaiType(name, body, outer, endian, bits)
     for inner, of in mapping(body, "types").items() if depth < _DEEPEST else ():
         if isinstance(of, Map):
             result.types[inner] = declared(inner, of, result, depth + 1)
     return result
 
 
-def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
+def built_in(name: str, attribute: Map, within: KaitaiType) -> KaitaiFieldType | None:
     """Return the field of a built-in type, None for a type that the file declares.
 
     ``within`` has the default byte order and encoding. A size that another field gives
@@ -151,24 +153,24 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
         order = _ORDERS[suffix] if suffix else within.endian
         if order is None and size != "1":
             raise NotSupported(f"the byte order of `{name}` is not stated")
-        return Piece({"type": _KINDS[kind]}, 8 * int(size), order or BIG)
+        return KaitaiFieldType({"type": _KINDS[kind]}, 8 * int(size), order or BIG)
     if (bits := _BITS.match(name)) is not None:
         width, order = int(bits[1]), _ORDERS[bits[2]] if bits[2] else within.bit_endian
         if width > 64:
             raise NotSupported(f"an integer has {width} bits")
         # `b1` is a boolean in Kaitai Struct, wider types are integers.
         kind = "bool" if width == 1 and "enum" not in attribute else "uint"
-        return Piece({"type": kind}, width, order, is_bits=True)
+        return KaitaiFieldType({"type": kind}, width, order, is_bits=True)
     if name not in ("str", "strz", ""):
         return None
     encoding = attribute.get("encoding") or _encoding(within)
     kind = "text" if name and str(encoding).upper() in _PLAIN else "bytes"
     if (size := sized(attribute)) is not None:
-        return Piece({"type": kind}, 8 * size)
+        return KaitaiFieldType({"type": kind}, 8 * size)
     if "size" in attribute:
-        return Piece({"type": kind}, 0)  # a field gives the size
+        return KaitaiFieldType({"type": kind}, 0)  # a field gives the size
     if attribute.get("size-eos") is True:
-        return Piece({"type": kind}, 0)
+        return KaitaiFieldType({"type": kind}, 0)
     if name == "strz" or "terminator" in attribute:
         raise NotSupported("its size is not stated: it ends at a terminator")
     raise NotSupported("its size is not stated")
@@ -219,7 +221,7 @@ def named(
     item: Item,
     bits: int,
     reference: str,
-    within: Type,
+    within: KaitaiType,
     enums: Enumerations,
     to: Definitions,
 ) -> None:
@@ -243,11 +245,11 @@ def named(
     )
 
 
-def _encoding(within: Type) -> object:
+def _encoding(within: KaitaiType) -> object:
     """Return the default text encoding (`meta.encoding`) of a type or the nearest
     enclosing one.
     """
-    scope: Type | None = within
+    scope: KaitaiType | None = within
     while scope is not None:
         if (encoding := mapping(scope.body, "meta").get("encoding")) is not None:
             return encoding

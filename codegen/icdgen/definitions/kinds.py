@@ -9,7 +9,12 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import cast
 
-from icdgen.definitions.model import Definitions, Reader, Source, unreadable
+from icdgen.definitions.model import (
+    DefinitionReader,
+    Definitions,
+    SourceFile,
+    unreadable,
+)
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
@@ -37,7 +42,7 @@ def names() -> list[str]:
     return [*_BUILT_IN, *sorted(_plug_ins())]
 
 
-def get(name: str) -> Reader:
+def get(name: str) -> DefinitionReader:
     """Return the reader of a kind.
 
     Raises `UserError` if the kind is unknown or its reader cannot be loaded.
@@ -50,14 +55,14 @@ def get(name: str) -> Reader:
         )
     module, _, attribute = target.partition(":")
     try:
-        return cast(Reader, getattr(import_module(module), attribute)())
+        return cast(DefinitionReader, getattr(import_module(module), attribute)())
     except (ImportError, AttributeError) as error:
         raise UserError(
             f"the reader of `{name}`, {target}, cannot be loaded: {error}"
         ) from None
 
 
-def of(path: Path) -> Reader | None:
+def of(path: Path) -> DefinitionReader | None:
     """Return the reader that recognizes a file by its beginning, or else by its suffix.
 
     Returns None for manuals and unreadable files.
@@ -80,12 +85,12 @@ def of(path: Path) -> Reader | None:
     )
 
 
-def within(folder: Path) -> list[tuple[Path, Reader]]:
+def within(folder: Path) -> list[tuple[Path, DefinitionReader]]:
     """Return the definitions in a folder and its subfolders, by path.
 
     Other files and hidden folders are ignored.
     """
-    definitions: list[tuple[Path, Reader]] = []
+    definitions: list[tuple[Path, DefinitionReader]] = []
     for where, folders, files in os.walk(folder):
         folders[:] = sorted(
             subfolder for subfolder in folders if not subfolder.startswith(".")
@@ -97,7 +102,7 @@ def within(folder: Path) -> list[tuple[Path, Reader]]:
     return sorted(definitions, key=lambda pair: pair[0])
 
 
-def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
+def read_set(paths: Sequence[Path], reader: DefinitionReader) -> list[Definitions]:
     """Read files of one kind, together if they may refer to each other.
 
     An unreadable file is reported in its own definitions. Raises `UserError` if a
@@ -106,10 +111,10 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
     _check_libraries(reader)
     most = getattr(reader, "most_bytes", MAX_BYTES)
     result: list[Definitions] = []
-    sources: list[Source] = []
+    sources: list[SourceFile] = []
     for path in paths:
         try:
-            sources.append(Source(str(path), contents(path, most)))
+            sources.append(SourceFile(str(path), contents(path, most)))
         except Findings as error:
             result.append(Definitions(str(path)))
             result[-1].refuse(error)
@@ -124,7 +129,7 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
     return result
 
 
-def read(path: Path, reader: Reader) -> Definitions:
+def read(path: Path, reader: DefinitionReader) -> Definitions:
     """Read a file.
 
     Raises `Findings` if the file cannot be read, and `UserError` if a library is
@@ -136,7 +141,7 @@ def read(path: Path, reader: Reader) -> Definitions:
     )
 
 
-def _check_libraries(reader: Reader) -> None:
+def _check_libraries(reader: DefinitionReader) -> None:
     """Raise `UserError` if a library of a reader is missing."""
     missing = [module for module in reader.needs if find_spec(module) is None]
     if missing:

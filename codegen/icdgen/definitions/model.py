@@ -219,14 +219,14 @@ class Definitions:
         ]
 
 
-class Source(NamedTuple):
+class SourceFile(NamedTuple):
     """File with its contents."""
 
     file: str
     data: bytes
 
 
-class Reader(Protocol):
+class DefinitionReader(Protocol):
     """Interface of a reader.
 
     Packages can register readers in the entry point group ``icdgen.definitions``.

@@ -23,7 +23,7 @@ _APID, _FLAGS = (5, 11), (3, 2)
 _MOST_ID_BITS = 32
 
 
-class Header(NamedTuple):
+class PrimaryHeader(NamedTuple):
     """Primary header of a space packet.
 
     Each field has its constant, or None if it varies.
@@ -45,7 +45,7 @@ class Sent(Protocol):
 
     name: str
     kind: str
-    header: Header | None  # None for a container without a primary header
+    header: PrimaryHeader | None  # None for a container without a primary header
     # Key in `told` and bits of the first part, if a header can use it as id:
     front: tuple[Hashable, int] | None
     told: dict[Hashable, int]  # constants by part: candidates for the discriminator
@@ -57,7 +57,7 @@ class Sent(Protocol):
         """
 
 
-def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
+def header(parts: Iterable[tuple[int, int, int | None]]) -> PrimaryHeader | None:
     """Return the primary header that the first parts form, or None.
 
     A part has position, bits and constant.
@@ -86,7 +86,7 @@ def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
         if flags is None
         else (flags >> 1, flags & 1)
     )
-    return Header(values.get((0, 3)), kind, secondary, values[_APID])
+    return PrimaryHeader(values.get((0, 3)), kind, secondary, values[_APID])
 
 
 def is_of_header(at: int, bits: int) -> bool:
@@ -110,7 +110,7 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
     """Add space packets: the primary header is the framing, and the application process
     id is the message id.
     """
-    headers: list[tuple[str, Header]] = []
+    headers: list[tuple[str, PrimaryHeader]] = []
     versions = [
         container.header.version
         for container in containers
@@ -164,7 +164,7 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
     }
 
 
-def _secondary_flag(headers: list[tuple[str, Header]]) -> Item:
+def _secondary_flag(headers: list[tuple[str, PrimaryHeader]]) -> Item:
     """Return the secondary header flag as a key, if it is constant in a direction."""
     values = {
         kind: {head.secondary for direction, head in headers if direction == kind}

@@ -18,7 +18,7 @@ class TooMuch(NotSupported):
 
 
 @dataclass
-class Reading:
+class ReadingState:
     """State shared by the messages of one file.
 
     ``most_steps`` limits the work for a file, because a small file can describe a large

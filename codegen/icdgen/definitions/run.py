@@ -11,7 +11,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen.definitions import kinds
-from icdgen.definitions.model import Definitions, Item, Network, Reader, unreadable
+from icdgen.definitions.model import (
+    DefinitionReader,
+    Definitions,
+    Item,
+    Network,
+    unreadable,
+)
 from icdgen.definitions.settle import settle
 
 # Keys that manuals usually lack, and definitions contain.
@@ -19,7 +25,7 @@ TOLD = frozenset({"special", "min", "max", "shares_id"})
 
 
 @dataclass
-class Read:
+class ReadDefinitions:
     """Result of reading a file."""
 
     definitions: Definitions
@@ -41,7 +47,7 @@ class Read:
         )
 
 
-def read(path: Path, reader: Reader) -> Read:
+def read(path: Path, reader: DefinitionReader) -> ReadDefinitions:
     """Read a file.
 
     Raises `Findings` if no message can be imported, and `UserError` if a library is
@@ -67,14 +73,14 @@ def read(path: Path, reader: Reader) -> Read:
     return result
 
 
-def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
+def read_set(files: Sequence[tuple[Path, DefinitionReader]]) -> list[ReadDefinitions]:
     """Read files, all files of a kind together because they may refer to each other.
 
     The names of all ICDs are unique.
 
     Raises `UserError` if a library is missing.
     """
-    by_kind: dict[str, tuple[Reader, list[Path]]] = {}
+    by_kind: dict[str, tuple[DefinitionReader, list[Path]]] = {}
     for path, reader in files:
         by_kind.setdefault(reader.name, (reader, []))[1].append(path)
     results = [
@@ -91,9 +97,11 @@ def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
     return [_settled_result(definitions, reader) for definitions, reader in results]
 
 
-def _settled_result(definitions: Definitions, reader: Reader) -> Read:
+def _settled_result(
+    definitions: Definitions, reader: DefinitionReader
+) -> ReadDefinitions:
     """Return the result with ICDs that pass `icdgen check`."""
-    result = Read(definitions, reader.title, {})
+    result = ReadDefinitions(definitions, reader.title, {})
     _make_names_unique(definitions.networks)
     for network in definitions.networks:
         if network.messages:

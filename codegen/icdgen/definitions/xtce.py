@@ -14,12 +14,18 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import packets, safe_xml, xtce_files
 from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotSupported, Source
+from icdgen.definitions.model import (
+    Definitions,
+    Item,
+    Network,
+    NotSupported,
+    SourceFile,
+)
 from icdgen.definitions.wording import line, node_name
-from icdgen.definitions.xtce_layout import Layout, RequiredValue
-from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
-from icdgen.definitions.xtce_parts import Part
-from icdgen.definitions.xtce_types import Types, described
+from icdgen.definitions.xtce_layout import RequiredValue, XtceLayout
+from icdgen.definitions.xtce_names import XtceNames, ancillary_data, name_of
+from icdgen.definitions.xtce_parts import XtcePart
+from icdgen.definitions.xtce_types import XtceTypes, described
 from icdgen.diagnostics import Findings
 
 _TELECOMMAND, _TELEMETRY = packets.TELECOMMAND, packets.TELEMETRY
@@ -61,7 +67,7 @@ class Xtce:
         root = safe_xml.parse(file, data, account=Account())
         return _define({file: root}, Definitions(file), node_name(file))
 
-    def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
+    def read_set(self, sources: Sequence[SourceFile]) -> list[Definitions]:
         """Return the definitions of each database, a set of files with references
         between them.
 
@@ -92,8 +98,8 @@ def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definit
     """Add the network of one database, which may consist of several files, to its
     definitions and return them.
     """
-    names = Names(roots, to)
-    types = Types(to, names)
+    names = XtceNames(roots, to)
+    types = XtceTypes(to, names)
     messages = _identified(list(_all(names, types, to)), to)
     types.report_raw_only()
     root = next(iter(roots.values()))
@@ -121,7 +127,7 @@ class _Candidate:
         self,
         kind: str,
         element: Element,
-        layout: Layout,
+        layout: XtceLayout,
         more: Item,
         is_base: bool = False,
     ) -> None:
@@ -181,7 +187,7 @@ class _Candidate:
             )
         return message
 
-    def _is_ahead(self, part: Part, start: int) -> bool:
+    def _is_ahead(self, part: XtcePart, start: int) -> bool:
         """Whether a part belongs to the primary header or, without one, is the message
         id.
         """
@@ -193,7 +199,7 @@ class _Candidate:
         )
 
 
-def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
+def _all(names: XtceNames, types: XtceTypes, to: Definitions) -> Iterator[_Candidate]:
     """Return the telemetry containers and commands in the order of the file.
 
     Reports unsupported ones.
@@ -202,7 +208,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
     for element in _containers(names, bases):
         to.total += 1
         types.message = name_of(element)
-        layout = Layout(names, types)
+        layout = XtceLayout(names, types)
         try:
             layout.read(element)
             more = {**_group(names, element), **described(element)}
@@ -217,7 +223,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
         types.message = name_of(element)
         try:
             chain = names.commands(element)
-            layout = Layout(names, types, _arguments(chain))
+            layout = XtceLayout(names, types, _arguments(chain))
             container = names.container_of(element)
             if container is None:
                 raise NotSupported("it has no container, which says how it is sent")
@@ -270,7 +276,7 @@ def _identified(candidates: list[_Candidate], to: Definitions) -> list[_Candidat
     return [candidate for candidate in candidates if candidate not in bases]
 
 
-def _containers(names: Names, bases: set[int]) -> list[Element]:
+def _containers(names: XtceNames, bases: set[int]) -> list[Element]:
     """Return the containers that are messages: not abstract, and not only a base or a
     part of others.
     """
@@ -287,7 +293,7 @@ def _containers(names: Names, bases: set[int]) -> list[Element]:
     ]
 
 
-def _used(names: Names, path: str) -> set[int]:
+def _used(names: XtceNames, path: str) -> set[int]:
     """Return `id` of each container that an element at ``path`` of another container
     refers to.
     """
@@ -371,7 +377,7 @@ def _is_same(first: Item, second: Item) -> bool:
     )
 
 
-def _group(names: Names, element: Element) -> Item:
+def _group(names: XtceNames, element: Element) -> Item:
     """Return the group of a message: that of its ICD if icdgen wrote the file, else the
     path below the root system.
     """

@@ -15,21 +15,21 @@ from icdgen.definitions.containers import (
     check_only_value,
     fixed_field,
 )
-from icdgen.definitions.frames import LITTLE, Place, laid_out
+from icdgen.definitions.frames import LITTLE, FrameBits, laid_out
 from icdgen.definitions.model import Definitions, Item, NotSupported, replace_keys
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
-from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
+from icdgen.definitions.xtce_names import XtceNames, ancillary_data, name_of
 from icdgen.definitions.xtce_parts import (
-    Part,
     Reference,
+    XtcePart,
     numbered,
     sequence_fields,
 )
 from icdgen.definitions.xtce_types import (
-    Piece,
-    Types,
+    XtceFieldType,
+    XtceTypes,
     described,
     repeated,
     special_values,
@@ -52,13 +52,13 @@ class RequiredValue(NamedTuple):
 
 
 @dataclass
-class Layout(Container[Part]):
+class XtceLayout(Container[XtcePart]):
     """Parts of a container, its own and inherited ones, with the values that restrict
     it.
     """
 
-    names: Names
-    types: Types
+    names: XtceNames
+    types: XtceTypes
     arguments: dict[str, Element] = field(default_factory=dict)  # of a command
     required_values: list[RequiredValue] = field(default_factory=list)
     jumps: bool = False  # whether a part has an explicit position
@@ -120,7 +120,9 @@ class Layout(Container[Part]):
                     raise
                 item: Item = {}
                 self.lose(
-                    Part((_named(entry),), item, at, 0, piece=Piece(item, 0)),
+                    XtcePart(
+                        (_named(entry),), item, at, 0, field_type=XtceFieldType(item, 0)
+                    ),
                     why,
                     before,
                 )
@@ -128,7 +130,7 @@ class Layout(Container[Part]):
                 raise NotSupported(f"it has more than {MOST_FIELDS} fields")
 
     def _conditional(
-        self, entry: Element, conditions: list[tuple[Part, object]], before: int
+        self, entry: Element, conditions: list[tuple[XtcePart, object]], before: int
     ) -> None:
         """Make the parts behind the first ``before`` optional.
 
@@ -203,9 +205,9 @@ class Layout(Container[Part]):
             type_ = self.types.member(type_, member, where)
         dimensions = entry.find("DimensionList")
         if type_.tag.startswith("Array") and dimensions is not None:
-            piece = self.types.array(type_, dimensions, where)
+            field_type = self.types.array(type_, dimensions, where)
         else:
-            piece = self.types.piece(type_, where)
+            field_type = self.types.field_type(type_, where)
         keys = {**special_values(of), **described(of, type_)}
         keys |= {"view": True} if "view" in ancillary_data(of) else {}
         keys |= (
@@ -214,9 +216,11 @@ class Layout(Container[Part]):
             else {}
         )
         name = " ".join((name_of(of), *reference.path))
-        self._place(reference, name, repeated(piece, count, where), keys)
+        self._place(reference, name, repeated(field_type, count, where), keys)
 
-    def _place(self, reference: Reference, name: str, piece: Piece, keys: Item) -> None:
+    def _place(
+        self, reference: Reference, name: str, field_type: XtceFieldType, keys: Item
+    ) -> None:
         """Add a field at the current position, or the members of an aggregate in their
         order.
 
@@ -225,8 +229,8 @@ class Layout(Container[Part]):
         of, path = reference
         if len(path) > _DEEPEST:
             raise NotSupported(f"`{name}` has members nested without end")
-        for member, type_ in piece.members:
-            of_member = self.types.piece(type_, f"`{name} {member}`")
+        for member, type_ in field_type.members:
+            of_member = self.types.field_type(type_, f"`{name} {member}`")
             self._place(
                 Reference(of, (*path, member)),
                 f"{name} {member}",
@@ -235,25 +239,25 @@ class Layout(Container[Part]):
             )
             if len(self.parts) > MOST_FIELDS:
                 raise NotSupported(f"it has more than {MOST_FIELDS} fields")
-        if piece.members:
+        if field_type.members:
             return
-        if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
-            if self.at // 8 == (self.at + piece.bits - 1) // 8:
+        if field_type.order == LITTLE and (self.at % 8 or field_type.bits % 8):
+            if self.at // 8 == (self.at + field_type.bits - 1) // 8:
                 raise NotSupported(
-                    f"the least significant byte of the {piece.bits} bits of `{name}` is sent first"
+                    f"the least significant byte of the {field_type.bits} bits of `{name}` is sent first"
                 )
             # Little-endian within a byte: bits are counted from the least significant
             # one, as in Yamcs.
             self.jumps = True
-        item = replace_keys(piece.item, {**piece.item, **keys})
-        part = Part(
+        item = replace_keys(field_type.item, {**field_type.item, **keys})
+        part = XtcePart(
             (name,),
             item,
             self.at,
-            piece.bits,
-            piece.order,
+            field_type.bits,
+            field_type.order,
             item.get("bits", 8),
-            piece=piece,
+            field_type=field_type,
         )
         # The XTCE that icdgen writes marks its padding, so that an import gives the
         # same ICD.
@@ -280,13 +284,17 @@ class Layout(Container[Part]):
         if bits > 64 and value:
             raise NotSupported(f"a fixed value has {bits} bits")
         item: Item = {"type": "uint", "const": value}
-        part = Part(
-            (name or f"Fixed {self.at}",), item, self.at, bits, piece=Piece(item, bits)
+        part = XtcePart(
+            (name or f"Fixed {self.at}",),
+            item,
+            self.at,
+            bits,
+            field_type=XtceFieldType(item, bits),
         )
         part.is_reserved = not (name and bits <= 64) and not value
         self._add(part)
 
-    def _add(self, part: Part) -> None:
+    def _add(self, part: XtcePart) -> None:
         """Add a part.
 
         Raises `NotSupported` if it follows a part of variable length, and does not have
@@ -339,13 +347,13 @@ class Layout(Container[Part]):
 
     def _conditions(
         self, condition: Element, seen_from: Element, named: str, before: int
-    ) -> list[tuple[Part, object]]:
+    ) -> list[tuple[XtcePart, object]]:
         """Return the parts in front of an entry on which it depends, with the values
         that they must have.
 
         Raises `NotSupported`.
         """
-        conditions: list[tuple[Part, object]] = []
+        conditions: list[tuple[XtcePart, object]] = []
         for alternatives in self._all_of(
             condition, seen_from, f"`{named}` is present only if there is"
         ):
@@ -456,7 +464,7 @@ class Layout(Container[Part]):
         part.item["const"] = raw
         return raw
 
-    def _part(self, required: RequiredValue, end: int | None = None) -> Part:
+    def _part(self, required: RequiredValue, end: int | None = None) -> XtcePart:
         """Return the last of the first ``end`` parts that an equality refers to.
 
         Raises `NotSupported` if it does not exist.
@@ -473,13 +481,13 @@ class Layout(Container[Part]):
             raise self.missing(required.reference.name)
         return part
 
-    def _raw(self, part: Part, required: RequiredValue) -> int:
+    def _raw(self, part: XtcePart, required: RequiredValue) -> int:
         """Return the raw value of an equality.
 
         Raises `NotSupported` if the part is calibrated, not an integer, or too narrow.
         """
         item, text, name = part.item, required.value.strip(), required.reference.name
-        if part.piece.is_raw:
+        if part.field_type.is_raw:
             raise NotSupported(
                 f"it depends on `{name}`, of which only the raw bits are imported"
             )
@@ -489,8 +497,8 @@ class Layout(Container[Part]):
             )
         if item.keys() & {"formula", "points"} and not required.is_raw:
             raise NotSupported(f"it depends on the calibrated value of `{name}`")
-        if text in part.piece.values and not required.is_raw:
-            return part.piece.values[text]
+        if text in part.field_type.values and not required.is_raw:
+            return part.field_type.values[text]
         try:
             raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
         except ValueError:
@@ -548,7 +556,7 @@ class Layout(Container[Part]):
             placed = [
                 (
                     replace_keys(part.item, {"name": names[id(part)], **part.item}),
-                    Place(part.at - start, part.bits, part.order),
+                    FrameBits(part.at - start, part.bits, part.order),
                 )
                 for part in closed
             ]

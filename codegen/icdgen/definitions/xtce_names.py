@@ -22,7 +22,7 @@ _SETS = {
 }  # fmt: skip
 
 
-class Names:
+class XtceNames:
     """Elements that references can name, by kind and path."""
 
     def __init__(self, roots: Mapping[str, Element], to: Definitions) -> None:

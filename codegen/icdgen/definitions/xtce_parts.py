@@ -19,7 +19,7 @@ from icdgen.definitions.frames import ORDERS
 from icdgen.definitions.model import Definitions, Item, NotSupported, replace_keys
 from icdgen.definitions.xtce_calibration import number
 from icdgen.definitions.xtce_names import ancillary_data
-from icdgen.definitions.xtce_types import Piece
+from icdgen.definitions.xtce_types import XtceFieldType
 from icdgen.frozen import NamedTuple
 from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.variable_length import MOST_BYTES
@@ -40,14 +40,14 @@ class Reference(NamedTuple):
 
 
 @dataclass
-class Part(containers.Part):
+class XtcePart(containers.ContainerPart):
     """Entry of an XTCE container at its position. A fixed value has no reference."""
 
-    piece: Piece = field(kw_only=True)
+    field_type: XtceFieldType = field(kw_only=True)
     reference: Reference | None = None
     is_reserved: bool = False  # has a size but no meaning
     # Earlier parts, and the values with which this one is present.
-    conditions: list[tuple[Part, object]] = field(default_factory=list)
+    conditions: list[tuple[XtcePart, object]] = field(default_factory=list)
 
     @property
     def width(self) -> int:
@@ -55,7 +55,7 @@ class Part(containers.Part):
         return int(self.item.get("bits", self.bits)) if self.bits else self.element
 
 
-def numbered(parts: Iterable[Part]) -> dict[int, str]:
+def numbered(parts: Iterable[XtcePart]) -> dict[int, str]:
     """Return the names of parts by `id`.
 
     Repeated names get a number: ``Mode``, ``Mode 2``.
@@ -70,8 +70,8 @@ def numbered(parts: Iterable[Part]) -> dict[int, str]:
 
 
 def sequence_fields(
-    parts: list[Part],
-    front: list[Part],
+    parts: list[XtcePart],
+    front: list[XtcePart],
     names: Mapping[int, str],
     message: Item,
     order: str,
@@ -109,29 +109,36 @@ def sequence_fields(
 
 
 def _count(
-    part: Part, name: str, at: int, parts: list[Part], message: str, to: Definitions
+    part: XtcePart,
+    name: str,
+    at: int,
+    parts: list[XtcePart],
+    message: str,
+    to: Definitions,
 ) -> None:
     """Set the counter of a variable-length part, if another part can count it, and its
     maximum number of elements.
     """
-    item, piece = part.item, part.piece
+    item, field_type = part.item, part.field_type
     most = min(item["up_to"], (8 * MOST_BYTES - at) // part.element)
     if (
         part.reference is not None
         and (limit := ancillary_data(part.reference.of).get("up_to")) is not None
     ):
         most = min(most, max(1, number(limit, "a size")))
-    counter = next((other for other in parts if _is_named(other, piece.size)), None)
-    counted = _counted(counter, piece, most) if counter is not None else 0
+    counter = next(
+        (other for other in parts if _is_named(other, field_type.size)), None
+    )
+    counted = _counted(counter, field_type, most) if counter is not None else 0
     if counter is not None and counted:
-        part.counter, most = Counter(counter, piece.plus or 0), counted
+        part.counter, most = Counter(counter, field_type.plus or 0), counted
     elif counter is not None:
-        text = f"message `{message}`: `{name}` is as long as `{piece.size}` says"
+        text = f"message `{message}`: `{name}` is as long as `{field_type.size}` says"
         to.warn(OPEN, text, "it is imported up to the end of the frame")
     item["up_to"] = most
 
 
-def _is_named(part: Part, reference: str) -> bool:
+def _is_named(part: XtcePart, reference: str) -> bool:
     """Whether a reference, which may include a path of systems, ends with the name of a
     part.
     """
@@ -140,12 +147,16 @@ def _is_named(part: Part, reference: str) -> bool:
     )
 
 
-def _counted(counter: Part, piece: Piece, most: int) -> int:
+def _counted(counter: XtcePart, field_type: XtceFieldType, most: int) -> int:
     """Return the maximum number of elements, or bytes, that a field can count; 0 if it
     cannot count them.
     """
-    if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
+    if (
+        field_type.plus is None
+        or not counter.bits
+        or reasons_against(counter.item, COUNTER)
+    ):
         return 0
-    counted = min(most, (1 << counter.bits) - 1 + piece.plus)
+    counted = min(most, (1 << counter.bits) - 1 + field_type.plus)
     # A counter with the value 0 means `plus` elements, which the maximum must allow.
-    return counted if counted >= max(1, piece.plus) else 0
+    return counted if counted >= max(1, field_type.plus) else 0

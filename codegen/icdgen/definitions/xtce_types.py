@@ -15,7 +15,7 @@ from icdgen.definitions import containers
 from icdgen.definitions.accounting import settle
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotSupported
-from icdgen.definitions.reading import Reading
+from icdgen.definitions.reading import ReadingState
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import (
     NUMBER,
@@ -26,7 +26,7 @@ from icdgen.definitions.xtce_calibration import (
     number,
     simplified_table,
 )
-from icdgen.definitions.xtce_names import Names, alias, ancillary_data
+from icdgen.definitions.xtce_names import XtceNames, alias, ancillary_data
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 _MOST_NAMED = 1024  # values that one label can cover
@@ -49,7 +49,7 @@ _LIMITS = {
 
 
 @dataclass
-class Piece(containers.Piece):
+class XtceFieldType(containers.FieldType):
     """Field that a type describes, with its counter and the labels of its raw values."""
 
     size: str = ""  # parameter that gives the size; empty if the size is fixed
@@ -63,14 +63,14 @@ class Piece(containers.Piece):
 
 
 @dataclass
-class Types(Reading):
+class XtceTypes(ReadingState):
     """Types of a database as fields, and their enumerations."""
 
     most_steps = 1_000_000  # entries, members and labels of all messages
 
-    names: Names
+    names: XtceNames
 
-    def piece(self, element: Element, where: str) -> Piece:
+    def field_type(self, element: Element, where: str) -> XtceFieldType:
         """Return the field of a type.
 
         ``where`` names the parameter in messages. Raises `NotSupported` if it is not
@@ -85,39 +85,43 @@ class Types(Reading):
                 (member.get("name", ""), type_of(member.get("typeRef", ""), element))
                 for member in _inside(chain, "MemberList/Member")
             ]
-            return Piece({}, 0, members=members)
+            return XtceFieldType({}, 0, members=members)
         if kind == "Array":
             return self.array(element, element.find("DimensionList"), where)
         encoding = next(
             (child for child in _below(chain) if child.tag in _ENCODINGS), None
         )
         try:
-            piece = self._encoded(chain, kind, encoding)
+            field_type = self._encoded(chain, kind, encoding)
         except NotSupported as why:
             return self._raw(chain, encoding, where, why)
         if kind == "Enumerated":
-            self._labels(piece, chain, element, where)
+            self._labels(field_type, chain, element, where)
         elif kind == "Boolean":
-            self._flag(piece, chain, element)
-        elif piece.item["type"] in ("uint", "int", "float"):
-            is_supported = self._calibrated(piece, chain, encoding, kind, where)
-            piece.item |= _unit(chain) if is_supported else {}
-            piece.item |= self._limits(piece.item, chain) if is_supported else {}
-        return piece
+            self._flag(field_type, chain, element)
+        elif field_type.item["type"] in ("uint", "int", "float"):
+            is_supported = self._calibrated(field_type, chain, encoding, kind, where)
+            field_type.item |= _unit(chain) if is_supported else {}
+            field_type.item |= (
+                self._limits(field_type.item, chain) if is_supported else {}
+            )
+        return field_type
 
     def member(self, element: Element, name: str, where: str) -> Element:
         """Return the type of a member of an aggregate.
 
         Raises `NotSupported` if it does not exist.
         """
-        for member, type_ in self.piece(element, where).members:
+        for member, type_ in self.field_type(element, where).members:
             if member == name:
                 return type_
         raise NotSupported(
             f"{where}: `{element.get('name', '')}` has no member `{line(name, 60)}`"
         )
 
-    def array(self, element: Element, dimensions: Element | None, where: str) -> Piece:
+    def array(
+        self, element: Element, dimensions: Element | None, where: str
+    ) -> XtceFieldType:
         """Return an array of one dimension with a fixed or counted number of elements.
 
         Raises `NotSupported` for other arrays.
@@ -145,14 +149,14 @@ class Types(Reading):
         # The last index is part of the array.
         return _array(self._element(of, where), last - first + 1, where)
 
-    def _element(self, of: Element, where: str) -> Piece:
+    def _element(self, of: Element, where: str) -> XtceFieldType:
         """Return the element of an array.
 
         Raises `NotSupported` for an array of arrays.
         """
         if of.tag.startswith("Array"):
             raise NotSupported(f"{where} is an array of arrays")
-        return self.piece(of, where)
+        return self.field_type(of, where)
 
     def _chain(self, element: Element) -> list[Element]:
         """Return a type and its base types, the derived one first.
@@ -175,7 +179,7 @@ class Types(Reading):
 
     def _encoded(
         self, chain: list[Element], kind: str, encoding: Element | None
-    ) -> Piece:
+    ) -> XtceFieldType:
         """Return the field of an encoding, or of an integer or float type without one.
 
         Raises `NotSupported`.
@@ -235,7 +239,7 @@ class Types(Reading):
         encoding: Element | None,
         where: str,
         why: NotSupported,
-    ) -> Piece:
+    ) -> XtceFieldType:
         """Return the raw bits of a type that is not supported, and note it.
 
         Raises ``why`` if its size is not fixed.
@@ -261,18 +265,24 @@ class Types(Reading):
         )
         for type_ in chain:
             settle(type_)
-        return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
+        return XtceFieldType(
+            {"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True
+        )
 
     def _labels(
-        self, piece: Piece, chain: list[Element], element: Element, where: str
+        self,
+        field_type: XtceFieldType,
+        chain: list[Element],
+        element: Element,
+        where: str,
     ) -> None:
         """Add the enumeration of a type with labels.
 
         Raises `NotSupported` if it is not an integer, or a label covers too much.
         """
-        if piece.item["type"] not in ("uint", "int"):
+        if field_type.item["type"] not in ("uint", "int"):
             raise NotSupported(
-                f"{where} has labels, and is encoded as {piece.item['type']}"
+                f"{where} has labels, and is encoded as {field_type.item['type']}"
             )
         choices: dict[int, str] = {}
         for enumeration in _inside(chain, "EnumerationList/Enumeration"):
@@ -288,12 +298,12 @@ class Types(Reading):
             for value in range(first, last + 1):
                 choices.setdefault(value, enumeration.get("label", ""))
         # Reversed: of equal labels, the first value counts.
-        piece.values = {label: value for value, label in reversed(choices.items())}
+        field_type.values = {label: value for value, label in reversed(choices.items())}
         notes = self.heard(f"labels of {id(element)}")  # report once per type
         called = _enumeration_name(element)
         self.enums.hold(
-            piece.item,
-            piece.bits,
+            field_type.item,
+            field_type.bits,
             choices,
             called,
             self._owner(element),
@@ -305,19 +315,21 @@ class Types(Reading):
         """Return the name of the system that contains a type."""
         return self.names.system(element).rsplit("/", 1)[-1]
 
-    def _flag(self, piece: Piece, chain: list[Element], element: Element) -> None:
+    def _flag(
+        self, field_type: XtceFieldType, chain: list[Element], element: Element
+    ) -> None:
         """Make a field a flag, or an enumeration of two members if it has several bits.
 
         Raises `NotSupported`.
         """
-        if piece.item["type"] not in ("uint", "int"):
-            raise NotSupported(f"a flag is encoded as {piece.item['type']}")
+        if field_type.item["type"] not in ("uint", "int"):
+            raise NotSupported(f"a flag is encoded as {field_type.item['type']}")
         label_of_0 = _attribute(chain, "zeroStringValue", "False")
         label_of_1 = _attribute(chain, "oneStringValue", "True")
         # Comparisons may use the words of XML instead of the labels.
-        piece.values = {label_of_0: 0, label_of_1: 1, "false": 0, "true": 1}
-        if piece.bits == 1:
-            piece.item["type"] = "bool"
+        field_type.values = {label_of_0: 0, label_of_1: 1, "false": 0, "true": 1}
+        if field_type.bits == 1:
+            field_type.item["type"] = "bool"
             return
         choices, called = (
             {
@@ -327,8 +339,8 @@ class Types(Reading):
             _enumeration_name(element),
         )
         self.enums.hold(
-            piece.item,
-            piece.bits,
+            field_type.item,
+            field_type.bits,
             choices,
             called,
             self._owner(element),
@@ -338,7 +350,7 @@ class Types(Reading):
 
     def _calibrated(
         self,
-        piece: Piece,
+        field_type: XtceFieldType,
         chain: list[Element],
         encoding: Element | None,
         kind: str,
@@ -351,7 +363,7 @@ class Types(Reading):
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
             keys = (
-                _time(piece.item, chain)
+                _time(field_type.item, chain)
                 if is_time
                 else {}
                 if encoding is None
@@ -364,9 +376,11 @@ class Types(Reading):
             for type_ in chain:
                 settle(type_)
             return False
-        if "points" in keys and piece.item["type"] != "float":
-            keys = simplified_table(keys, piece.bits, piece.item["type"] == "int")
-        piece.item |= keys
+        if "points" in keys and field_type.item["type"] != "float":
+            keys = simplified_table(
+                keys, field_type.bits, field_type.item["type"] == "int"
+            )
+        field_type.item |= keys
         return True
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
@@ -396,31 +410,41 @@ class Types(Reading):
         return result
 
 
-def repeated(piece: Piece, count: int, where: str) -> Piece:
+def repeated(field_type: XtceFieldType, count: int, where: str) -> XtceFieldType:
     """Return an array of a field, or the field itself if ``count`` is 1.
 
     Raises `NotSupported`.
     """
-    return piece if count == 1 else _array(piece, count, where)
+    return field_type if count == 1 else _array(field_type, count, where)
 
 
-def _array(piece: Piece, count: int, where: str) -> Piece:
+def _array(field_type: XtceFieldType, count: int, where: str) -> XtceFieldType:
     """Return an array of ``count`` elements of a fixed size. Raises `NotSupported`."""
-    if piece.members or "count" in piece.item or not piece.bits:
+    if field_type.members or "count" in field_type.item or not field_type.bits:
         raise NotSupported(f"{where} is an array of elements of variable size")
     if not 1 <= count <= MOST_ELEMENTS:
         raise NotSupported(f"{where} is an array of {count} elements")
-    piece.item |= {"bits": piece.bits, "count": count}
-    return Piece(piece.item, piece.bits * count, piece.order, values=piece.values)
+    field_type.item |= {"bits": field_type.bits, "count": count}
+    return XtceFieldType(
+        field_type.item,
+        field_type.bits * count,
+        field_type.order,
+        values=field_type.values,
+    )
 
 
-def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
+def _counted(field_type: XtceFieldType, dynamic: Element, where: str) -> XtceFieldType:
     """Return an array with a last index that a parameter or argument gives.
 
     Raises `NotSupported` if it is not supported.
     """
     name, slope, intercept = _adjusted(dynamic)
-    if piece.members or "count" in piece.item or not piece.bits or piece.bits % 8:
+    if (
+        field_type.members
+        or "count" in field_type.item
+        or not field_type.bits
+        or field_type.bits % 8
+    ):
         raise NotSupported(
             f"{where} is an array of elements without a fixed size in bytes"
         )
@@ -428,9 +452,11 @@ def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
         raise NotSupported(
             f"{where} is an array of a number of elements that no parameter counts"
         )
-    most = min(MOST_ELEMENTS, MOST_BYTES * 8 // piece.bits)
-    piece.item |= {"bits": piece.bits, "count": "rest", "up_to": most}
-    return Piece(piece.item, 0, piece.order, size=name, plus=intercept + 1)
+    most = min(MOST_ELEMENTS, MOST_BYTES * 8 // field_type.bits)
+    field_type.item |= {"bits": field_type.bits, "count": "rest", "up_to": most}
+    return XtceFieldType(
+        field_type.item, 0, field_type.order, size=name, plus=intercept + 1
+    )
 
 
 def special_values(element: Element) -> Item:
@@ -511,7 +537,7 @@ def _below(chain: list[Element]) -> Iterator[Element]:
         yield from type_.iterfind("Encoding/*")
 
 
-def _numbers(type_: str, bits: int, order: str) -> Piece:
+def _numbers(type_: str, bits: int, order: str) -> XtceFieldType:
     """Return an integer of 1 to 64 bits, or a float of 32 or 64 bits.
 
     Raises `NotSupported` for other widths.
@@ -520,7 +546,7 @@ def _numbers(type_: str, bits: int, order: str) -> Piece:
         raise NotSupported(f"a float has {bits} bits")
     if not 1 <= bits <= 64:
         raise NotSupported(f"an integer has {bits} bits")
-    return Piece({"type": type_}, bits, order)
+    return XtceFieldType({"type": type_}, bits, order)
 
 
 def _order(encoding: Element) -> str:
@@ -545,7 +571,7 @@ def _order(encoding: Element) -> str:
     return BIG
 
 
-def _bytes(encoding: Element, type_: str) -> Piece:
+def _bytes(encoding: Element, type_: str) -> XtceFieldType:
     """Return text or bytes of a fixed or variable length.
 
     Raises `NotSupported` for length prefixes and terminators.
@@ -574,10 +600,10 @@ def _bytes(encoding: Element, type_: str) -> Piece:
         return _numbers("uint", bits, BIG)
     if bits < 8 or bits % 8:
         raise NotSupported(f"text or bytes have {bits} bits")
-    return Piece({"type": type_}, bits)
+    return XtceFieldType({"type": type_}, bits)
 
 
-def _open(type_: str, of: Element) -> Piece:
+def _open(type_: str, of: Element) -> XtceFieldType:
     """Return text or bytes of a length that another parameter gives.
 
     Raises `NotSupported` if there is no parameter.
@@ -591,7 +617,7 @@ def _open(type_: str, of: Element) -> Piece:
         if slope == 8 and intercept is not None and intercept % 8 == 0
         else None
     )
-    return Piece(
+    return XtceFieldType(
         {"type": type_, "size": "rest", "up_to": MOST_BYTES}, 0, size=name, plus=plus
     )
 

@@ -1,5 +1,9 @@
 """Build one ICD tree per node from the results of all tables, and report contradictions
 between tables.
+
+The `Survey` of a document goes in, with messages, enumerations and lists in the order
+of their tables. They are assigned to nodes here; `references` compares and connects
+them, and `icd_trees` writes the tree of each node.
 """
 
 from __future__ import annotations
@@ -13,12 +17,12 @@ from icdgen.import_results.findings import ImportFinding
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document
 from icdgen.importer.model import (
-    Found,
     NodeParts,
     ReadEnum,
     ReadList,
     ReadMessage,
     Survey,
+    TableResult,
 )
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, squeezed, table_name
@@ -33,65 +37,69 @@ def assemble(
     """
     findings = survey.import_findings
     nodes = _parts_by_node(document, survey, profile)
-    everything = [enum for _, enum in survey.of(ReadEnum)]
+    everything = [enum for _, enum in survey.results_of(ReadEnum)]
     for node in nodes:
         _merge_enums(node, survey)
     for node in nodes:
-        references.listed(node, findings)
-    _includes(nodes)
+        references.compare_with_lists(node, findings)
+    _include_shared_nodes(nodes)
     for node in nodes:
-        references.enums(node, nodes, everything, findings)
+        references.resolve_enumerations(node, nodes, everything, findings)
     for node in nodes:
         head = icd_trees.head(node, document, profile)
-        references.complete(node, head, findings)
+        references.check_messages(node, head, findings)
     return {
         node.name: icd_trees.tree(node, document, profile, prose, findings)
         for node in nodes
-        if node.holds
+        if node.has_contents
     }
 
 
 def _parts_by_node(
     document: Document, survey: Survey, profile: Profile
 ) -> list[NodeParts]:
-    """Each thing to its node."""
-    keys = _keys(survey, profile)
+    """Return the nodes, each with the messages, enumerations and lists of its tables."""
+    keys = _nodes_of_results(survey, profile)
     used = [
-        (key, result.thing)
-        for key, result in zip(keys, survey.found, strict=True)
-        if result.thing is not None
+        (key, result.content)
+        for key, result in zip(keys, survey.results, strict=True)
+        if result.content is not None
     ]
-    nodes = {key: _node(key, profile) for key, _ in used if key}
+    nodes = {key: _new_node(key, profile) for key, _ in used if key}
     if used and not nodes:
-        nodes = {"": _node(_document_name(document), profile)}
+        nodes = {"": _new_node(_document_name(document), profile)}
     first = next(iter(nodes), "")
-    for key, thing in used:
-        nodes.get(key, nodes[first]).add(thing)
+    for key, content in used:
+        nodes.get(key, nodes[first]).add_content(content)
     if len(nodes) == 1:
         next(iter(nodes.values())).shared = False
-    return [node for node in nodes.values() if node.holds]
+    return [node for node in nodes.values() if node.has_contents]
 
 
-def _keys(survey: Survey, profile: Profile) -> list[str]:
+def _nodes_of_results(survey: Survey, profile: Profile) -> list[str]:
     """Return the name of the node of each table in the manual.
 
     It is "" if neither a caption nor the profile names a node.
     """
     keys, current, twins = [], "", _twins(survey)
-    for result in survey.found:
-        stated = _by_profile(result, profile)
-        if stated is None and isinstance(result.thing, ReadList) and result.thing.node:
-            current = result.thing.node
+    for result in survey.results:
+        stated = _node_by_profile(result, profile)
+        if (
+            stated is None
+            and isinstance(result.content, ReadList)
+            and result.content.node
+        ):
+            current = result.content.node
         if stated is not None:
             current = stated
         keys.append(current)
-    keys = [_canonical(key, profile) for key in keys]
+    keys = [_name_in_profile(key, profile) for key in keys]
     named = {
-        id(result.table): key for result, key in zip(survey.found, keys, strict=True)
+        id(result.table): key for result, key in zip(survey.results, keys, strict=True)
     }
     return [
         key or named.get(twins.get(id(result.table), 0), "")
-        for result, key in zip(survey.found, keys, strict=True)
+        for result, key in zip(survey.results, keys, strict=True)
     ]
 
 
@@ -99,7 +107,7 @@ def _twins(survey: Survey) -> dict[int, int]:
     """Enumeration table -> a later one of the same name, both by identity."""
     last: dict[str, int] = {}
     twins: dict[int, int] = {}
-    for result, enum in reversed(survey.of(ReadEnum)):
+    for result, enum in reversed(survey.results_of(ReadEnum)):
         name = squeezed(enum.name)
         if name in last:
             twins[id(result.table)] = last[name]
@@ -108,7 +116,11 @@ def _twins(survey: Survey) -> dict[int, int]:
     return twins
 
 
-def _by_profile(result: Found, profile: Profile) -> str | None:
+def _node_by_profile(result: TableResult, profile: Profile) -> str | None:
+    """Return the node to which the profile assigns a table, or None.
+
+    The profile states table numbers or groups, or words in the caption of a list.
+    """
     number = result.table.label
     for words in profile.nodes:
         if words.tables is not None or words.group is not None:
@@ -120,34 +132,36 @@ def _by_profile(result: Found, profile: Profile) -> str | None:
                 return words.name
         elif not words.match:
             return words.name  # a profile with one node and nothing to choose by
-        elif isinstance(result.thing, ReadList):
-            text = result.thing.node or result.table.caption
-            if any(_says(text, match) for match in words.match):
+        elif isinstance(result.content, ReadList):
+            text = result.content.node or result.table.caption
+            if any(_has_phrase(text, match) for match in words.match):
                 return words.name
     return None
 
 
-def _canonical(key: str, profile: Profile) -> str:
+def _name_in_profile(key: str, profile: Profile) -> str:
     """Return the name in the profile of a node that the manual calls ``key``."""
-    return next(
-        (
-            w.name
-            for w in profile.nodes
-            if w.name == key or any(_says(key, m) for m in w.match)
-        ),
-        key,
-    )
+    for node in profile.nodes:
+        if node.name == key or any(_has_phrase(key, match) for match in node.match):
+            return node.name
+    return key
 
 
-def _says(text: str, phrase: str) -> bool:
+def _has_phrase(text: str, phrase: str) -> bool:
+    """Return whether a text has the words of a phrase, consecutively and in order."""
     words, parts = folded(text), folded(phrase)
     return any(words[i : i + len(parts)] == parts for i in range(len(words)))
 
 
-def _node(key: str, profile: Profile) -> NodeParts:
+def _new_node(key: str, profile: Profile) -> NodeParts:
+    """Return a node without contents, as the profile describes it.
+
+    The name of a node that the profile does not have is derived from ``key``, its name
+    in the manual.
+    """
     words = next((w for w in profile.nodes if w.name == key), None)
     if words is not None:
-        shared = any(_says(key, s) for s in profile.data["shared"])
+        shared = any(_has_phrase(key, s) for s in profile.data["shared"])
         return NodeParts(
             words.name,
             words.head.get("title", key),
@@ -155,7 +169,7 @@ def _node(key: str, profile: Profile) -> NodeParts:
             words,
             include=list(words.include),
         )
-    shared = any(_says(key, word) for word in profile.data["shared"])
+    shared = any(_has_phrase(key, word) for word in profile.data["shared"])
     name = re.sub(r"[^a-z0-9]", "", key.casefold())[:40]
     if not name or not name[0].isalpha():
         name = f"node{name}"[:40]
@@ -167,8 +181,8 @@ def _document_name(document: Document) -> str:
     return " ".join(words[:3]) or "device"
 
 
-def _includes(nodes: list[NodeParts]) -> None:
-    """Nodes that share messages with all others are included by these."""
+def _include_shared_nodes(nodes: list[NodeParts]) -> None:
+    """Let all other nodes include the nodes that the profile states as shared."""
     shared = [node.name for node in nodes if node.shared]
     for node in nodes:
         if not node.shared:
@@ -183,12 +197,14 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
 
     A table to which a field refers becomes the source of the merged enumeration.
     """
-    pointed = {
-        (message.table.run, field.described.enum_table)
-        for _, message in survey.of(ReadMessage)
-        for field in message.all_fields
-        if field.described.enum_table is not None
-    }
+    # Tables to which fields refer, by run of table numbers and number.
+    references_of_fields = set()
+    for _, message in survey.results_of(ReadMessage):
+        for field in message.all_fields:
+            if field.described.enum_table is not None:
+                references_of_fields.add(
+                    (message.table.run, field.described.enum_table)
+                )
     by_name: dict[str, ReadEnum] = {}
     taken: Counter[str] = Counter()
     for duplicate in node.enums:
@@ -199,11 +215,11 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
         if [(m.value, m.name) for m in first.members] == [
             (m.value, m.name) for m in duplicate.members
         ]:
-            is_meant, first_is = (
-                (enum.table.run, enum.table.label) in pointed
-                for enum in (duplicate, first)
+            is_first_meant, is_duplicate_meant = (
+                (enum.table.run, enum.table.label) in references_of_fields
+                for enum in (first, duplicate)
             )
-            if is_meant and not first_is:
+            if is_duplicate_meant and not is_first_meant:
                 duplicate.also = [first.table, *first.also]
                 by_name[duplicate.name] = duplicate
             else:

@@ -1,4 +1,7 @@
-"""Report of an import as text and as JSON."""
+"""Report of an import as text and as JSON.
+
+`import_results/report.py` has the parts that imports of definitions share.
+"""
 
 from __future__ import annotations
 
@@ -27,11 +30,14 @@ def report(result: Result, colour: bool = False) -> str:
 
 def summary(result: Result) -> list[str]:
     """Return the numbers of tables by kind and certainty, then a line for each file."""
-    kinds = Counter(result_of_table.what for result_of_table in result.survey.found)
-    order = ["message", "enumeration", "list", "loggable frames", BACKGROUND, UNKNOWN]
-    parts = [
-        f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]
-    ]
+    kinds = Counter(entry.what for entry in result.survey.results)
+    parts = []
+    for kind in ("message", "enumeration", "list"):
+        if kinds[kind]:
+            parts.append(f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}")
+    for kind in ("loggable frames", BACKGROUND, UNKNOWN):  # without a plural
+        if kinds[kind]:
+            parts.append(f"{kinds[kind]} {kind}")
     pages = f"{count(result.document.pages, 'page')}, " if result.document.pages else ""
     sure = result.sureness()
     return [
@@ -41,9 +47,9 @@ def summary(result: Result) -> list[str]:
         "read: "
         + (
             ", ".join(
-                f"{sure[result_of_table]} {result_of_table}"
-                for result_of_table in (CERTAIN, LIKELY, DOUBTFUL)
-                if sure[result_of_table]
+                f"{sure[certainty]} {certainty}"
+                for certainty in (CERTAIN, LIKELY, DOUBTFUL)
+                if sure[certainty]
             )
             or "none"
         ),
@@ -51,19 +57,14 @@ def summary(result: Result) -> list[str]:
     ]
 
 
-def _many(kind: str, number: int) -> str:
-    if kind in (BACKGROUND, UNKNOWN) or kind.endswith("s") or number == 1:
-        return kind
-    return kind + "s"
-
-
 def as_json(result: Result, checked: Sequence[Finding]) -> str:
-    """Tables and findings for programs; ``checked`` are the findings of `icdgen check`
-    for the files.
+    """Return tables and findings as JSON.
+
+    ``checked`` are the findings of `icdgen check` for the files.
     """
     entries = [
         _table_as_json(entry.table, entry.what, result.sure_of(entry.table))
-        for entry in result.survey.found
+        for entry in result.survey.results
     ]
     import_findings = [_finding_as_json(finding) for finding in result.import_findings]
     written = shared.files_as_json(result.targets)
@@ -91,13 +92,13 @@ def _finding_as_json(finding: ImportFinding) -> dict[str, Any]:
 
 
 def _table(number: int | None) -> int | str | None:
-    """A table's number for programs; that of a chapter's table is a text, ``4-12``."""
+    """Return the number of a table; that of a chapter's table is a text, ``4-12``."""
     name = table_name(number) if number is not None else ""
     return int(name) if name.isdigit() else name or None
 
 
 def refused_as_json(manual: str, findings: list[Finding]) -> str:
-    """JSON report of a manual, a profile or an ICD that cannot be read."""
+    """Return the JSON report of a manual, a profile or an ICD that cannot be read."""
     import_findings = [
         {"code": f.code, "severity": f.severity, "message": f.message, "help": f.help, "file": f.place.file,
          "table": None, "page": None, "line": f.place.line}

@@ -1,4 +1,8 @@
-"""Unit, formula, enumeration and valid value of a field, taken from its description."""
+"""Unit, formula, enumeration and constant of a field, taken from its description.
+
+The `phrases` and `variables` of the profile say how a manual words them. The text that
+contains none of them is the summary of the field.
+"""
 
 from __future__ import annotations
 
@@ -27,11 +31,11 @@ class Described:
     enum_table: int | None = None
     enum_title: str = ""
     const: str = ""  # as printed
-    rest: str = ""  # what is left as prose
+    prose: str = ""  # text without the phrases above
     problems: list[str] = field(default_factory=list)
 
 
-def read(text: str, profile: Profile, is_enum: bool = False) -> Described:
+def read_description(text: str, profile: Profile, is_enum: bool = False) -> Described:
     """Return the facts in a description, and its remaining prose."""
     text = plain(text)
     described = Described()
@@ -41,19 +45,19 @@ def read(text: str, profile: Profile, is_enum: bool = False) -> Described:
     if is_enum:
         _enumeration(text, profile, described, spans)
     _const(text, profile, described)
-    described.rest = _without(text, spans)
+    described.prose = _without_spans(text, spans)
     return described
 
 
-def names(profile: Profile) -> formulas.Words:
+def value_names(profile: Profile) -> formulas.ValueNames:
     variables = profile.data["variables"]
-    return formulas.words(tuple(variables["raw"]), tuple(variables["physical"]))
+    return formulas.value_names(tuple(variables["raw"]), tuple(variables["physical"]))
 
 
 def _formula(
     text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]
 ) -> None:
-    formula = formulas.find(text, names(profile))
+    formula = formulas.find_formula(text, value_names(profile))
     announced = ""
     for what, value in (("gives_physical", "physical"), ("gives_raw", "raw")):
         for pattern in profile.phrases[what]:
@@ -61,7 +65,7 @@ def _formula(
                 announced = value
                 spans.append(match.span())
     if formula is None:
-        if formulas.mentions(text, names(profile)) or (
+        if formulas.mentions_formula(text, value_names(profile)) or (
             announced and _FORMULA_WORD.search(text)
         ):
             described.problems.append("a formula is there and cannot be read")
@@ -109,24 +113,16 @@ def _enumeration(
         described.enum_title = (groups.get("title") or "").strip()
         spans.append(match.span())
         return
-    loose = _caption_in(text, profile)
-    if loose:
-        described.enum_table, described.enum_title = loose
-
-
-def _caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
-    """A table that the text names, whatever the words around it."""
+    # Otherwise, a table that the text names, whatever the words around it.
     words = "|".join(re.escape(word) for word in profile.data["captions"])
     match = re.search(
         rf"\b(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)(?:\s*[:–—-]\s*(?P<title>[^.;()]+))?",
         text,
         re.I,
     )
-    return (
-        (table_number(match["number"]), (match["title"] or "").strip())
-        if match
-        else None
-    )
+    if match:
+        described.enum_table = table_number(match["number"])
+        described.enum_title = (match["title"] or "").strip()
 
 
 def _const(text: str, profile: Profile, described: Described) -> None:
@@ -149,7 +145,7 @@ def _const(text: str, profile: Profile, described: Described) -> None:
         return
 
 
-def _without(text: str, spans: list[tuple[int, int]]) -> str:
+def _without_spans(text: str, spans: list[tuple[int, int]]) -> str:
     remaining, at = "", 0
     for start, end in sorted(spans):
         if start > at:

@@ -14,7 +14,7 @@ from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.words import plain, squeezed
 
 
-class Box(NamedTuple):
+class PageBox(NamedTuple):
     """A rectangle on a page in points; y grows downwards."""
 
     page: int
@@ -33,7 +33,7 @@ class Box(NamedTuple):
 
 
 @dataclass(slots=True)
-class Cell:
+class SourceCell:
     """A cell; ``text`` has the line breaks of the source, ``columns`` and ``rows`` are
     its spans.
     """
@@ -50,7 +50,7 @@ class SourceRow:
     Cells of rows above that span this row are not repeated.
     """
 
-    cells: list[Cell]
+    cells: list[SourceCell]
     page: int | None = None
     line: int | None = None
 
@@ -65,7 +65,7 @@ class Slot(NamedTuple):
     and whether it begins here.
     """
 
-    cell: Cell
+    cell: SourceCell
     column: int
     is_origin: bool
 
@@ -94,7 +94,7 @@ class SourceTable:
     headings: list[str] = field(default_factory=list)
     before: list[str] = field(default_factory=list)
     after: list[str] = field(default_factory=list)
-    boxes: list[Box] = field(default_factory=list)
+    boxes: list[PageBox] = field(default_factory=list)
     sheet: str = ""  # of a spreadsheet
     # Which run of ascending labels it is in: parts of a document may number their
     # tables anew.
@@ -140,7 +140,7 @@ class SourceTable:
         """
         grid: list[list[Slot]] = []
         # Column -> rows that a cell above goes on, the cell, its first column.
-        reaching: dict[int, tuple[int, Cell, int]] = {}
+        reaching: dict[int, tuple[int, SourceCell, int]] = {}
         for row in self.rows:
             slots: dict[int, Slot] = {}
             for column, (left, cell, first) in list(reaching.items()):
@@ -161,7 +161,7 @@ class SourceTable:
             width = max(slots, default=-1) + 1
             grid.append(
                 [
-                    slots.get(column) or Slot(Cell(""), column, True)
+                    slots.get(column) or Slot(SourceCell(""), column, True)
                     for column in range(width)
                 ]
             )
@@ -211,7 +211,7 @@ class Heading:
 
 
 @dataclass(slots=True)
-class Text:
+class TextBlock:
     """A paragraph, or a line of one."""
 
     text: str
@@ -219,7 +219,7 @@ class Text:
     line: int | None = None
 
 
-Block = SourceTable | Heading | Text
+Block = SourceTable | Heading | TextBlock
 
 
 @dataclass(slots=True)

@@ -1,4 +1,7 @@
-"""Pages that explain the findings of an import, from ``findings.md``."""
+"""Pages that explain the findings of an import (IMP codes), from ``findings.md``.
+
+`icdgen rule CODE` prints them, and the reference of rules has them all.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,10 @@ _SECTION = re.compile(
 )
 
 
-class Page(NamedTuple):
-    """``text`` is the reason, and below it an example as an indented block, in
-    Markdown.
+class ImportFindingPage(NamedTuple):
+    """Explanation of a finding.
+
+    ``text`` is the reason, and below it an example as an indented block, in Markdown.
     """
 
     title: str
@@ -25,12 +29,12 @@ class Page(NamedTuple):
 
 
 @cache
-def pages() -> dict[str, Page]:
+def pages() -> dict[str, ImportFindingPage]:
     """Return the pages by code, in ascending order."""
     _, *parts = _SECTION.split(_PAGE.read_text(encoding="utf-8"))
     sections = zip(parts[0::4], parts[1::4], parts[2::4], parts[3::4], strict=True)
     return {
-        code: Page(title, severity, text.strip("\n"))
+        code: ImportFindingPage(title, severity, text.strip("\n"))
         for code, title, severity, text in sections
     }
 

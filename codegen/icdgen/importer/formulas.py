@@ -1,5 +1,9 @@
 """Formulas in running text: ``(formatted value) [deg] = RAWVAL*0.01`` and its variants,
-in both directions.
+in both directions, and factors in columns of their own.
+
+A text and the names of raw and physical values go in. The formula comes out in the
+notation of the ICD, or None if it cannot be read completely: part of a formula would be
+a wrong scale.
 """
 
 from __future__ import annotations
@@ -32,12 +36,11 @@ _OPERATOR = re.compile(
 )
 
 
-# What shows that an expression goes on in a way that is not understood: a power, a
-# decimal comma, a name.
+# Continuation of an expression that is not supported: a power, a decimal comma, a name.
 _GOES_ON = re.compile(r"\s*[*/×·÷^²³]|\s*:\s*[0-9(.]|,[0-9]|[A-Za-z_%]|\s*[+]")
 
 
-class Read(NamedTuple):
+class ReadFormula(NamedTuple):
     """A formula in the notation of the ICD.
 
     ``gives`` is its result, "raw" or "physical".
@@ -50,7 +53,7 @@ class Read(NamedTuple):
     end: int
 
 
-class Words(NamedTuple):
+class ValueNames(NamedTuple):
     """Names of raw and physical values in a manual."""
 
     raw: re.Pattern[str]
@@ -58,24 +61,23 @@ class Words(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def words(raw: tuple[str, ...], physical: tuple[str, ...]) -> Words:
-    return Words(_names(raw), _names(physical))
+def value_names(raw: tuple[str, ...], physical: tuple[str, ...]) -> ValueNames:
+    return ValueNames(_pattern_of_names(raw), _pattern_of_names(physical))
 
 
-def _names(names: tuple[str, ...]) -> re.Pattern[str]:
-    parts = [
-        re.escape(name).replace(r"\ ", r"\s+")
-        # Longer names first: a pattern takes the first alternative that matches, and
-        # one name can begin another.
-        for name in sorted(names, key=len, reverse=True)
-    ]
+def _pattern_of_names(names: tuple[str, ...]) -> re.Pattern[str]:
+    # Longer names first: a pattern takes the first alternative that matches, and one
+    # name can begin another.
+    longest_first = sorted(names, key=len, reverse=True)
+    any_name = "|".join(
+        re.escape(name).replace(r"\ ", r"\s+") for name in longest_first
+    )
     return re.compile(
-        rf"(?:\(\s*(?:{'|'.join(parts)})\s*\)|(?<![A-Za-z])(?:{'|'.join(parts)})(?![A-Za-z]))",
-        re.I,
+        rf"(?:\(\s*(?:{any_name})\s*\)|(?<![A-Za-z])(?:{any_name})(?![A-Za-z]))", re.I
     )
 
 
-def find(text: str, names: Words) -> Read | None:
+def find_formula(text: str, names: ValueNames) -> ReadFormula | None:
     """Return the first formula of the text that can be read, or None."""
     for sign in re.finditer("=", text):
         left = _left(text[: sign.start()], names)
@@ -86,10 +88,10 @@ def find(text: str, names: Words) -> Read | None:
         expression, end = _expression(
             text, sign.end(), variable, "raw" if gives == "physical" else "value"
         )
-        if expression and _is_good(
+        if expression and _is_formula(
             candidate := expression if gives == "physical" else f"raw = {expression}"
         ):
-            return Read(candidate, unit, gives, start, end)
+            return ReadFormula(candidate, unit, gives, start, end)
     return None
 
 
@@ -108,7 +110,7 @@ _FACTOR = re.compile(
 )
 
 
-def per_step(text: str, names: Words | None) -> Scaled | None:
+def formula_of_step(text: str, names: ValueNames | None) -> Scaled | None:
     """Read a cell of a column of formulas or factors: an expression of the raw value, a
     factor (``0.01``, ``1e-7``, ``2^-20``, ``1/256``), or a factor with its unit (``10
     mV/LSB``).
@@ -116,11 +118,11 @@ def per_step(text: str, names: Words | None) -> Scaled | None:
     None for any other text.
     """
     if names is not None:
-        announced = find(text, names)
+        announced = find_formula(text, names)
         if announced:
             return Scaled(announced.formula)
         expression, end = _expression(text, 0, names.raw, "raw")
-        if expression and not text[end:].strip() and _is_good(expression):
+        if expression and not text[end:].strip() and _is_formula(expression):
             return Scaled(expression)
     match = _FACTOR.match(plain(text))
     if match is None:
@@ -129,29 +131,27 @@ def per_step(text: str, names: Words | None) -> Scaled | None:
         exponent = int(
             re.sub(r"[−–]", "-", match["power"].split("^")[1].replace(" ", ""))
         )
-        formula = (
-            f"raw/{2**-exponent}"
-            if exponent < 0
-            else f"raw*{2**exponent}"
-            if exponent
-            else ""
-        )
+        formula = ""
+        if exponent < 0:
+            formula = f"raw/{2**-exponent}"
+        elif exponent > 0:
+            formula = f"raw*{2**exponent}"
     elif match["over"]:
         formula = f"raw/{match['over'].split('/')[1].strip()}"
     else:
         number = match["number"] if match["number"][0] != "." else "0" + match["number"]
         formula = "" if float(number) == 1 else f"raw*{number}"
-    if formula and not _is_good(formula):
+    if formula and not _is_formula(formula):
         return None
     return Scaled(formula, tidy_unit(match["unit"] or ""))
 
 
-def mentions(text: str, names: Words) -> bool:
+def mentions_formula(text: str, names: ValueNames) -> bool:
     """Return whether the text contains something like a formula."""
     return any(_left(text[: sign.start()], names) for sign in re.finditer("=", text))
 
 
-def _left(before: str, names: Words) -> tuple[str, str, int] | None:
+def _left(before: str, names: ValueNames) -> tuple[str, str, int] | None:
     """Read the left side of an equation: its value, the unit, and the position at which
     it begins.
     """
@@ -174,25 +174,32 @@ def _expression(
 ) -> tuple[str, int]:
     """Return the longest expression from ``at`` on in the notation of the ICD, and its
     end.
+
+    ``variable`` matches the names of the value, which is called ``name`` in the result.
+    The expression is "" if it does not contain the value, or continues in a way that is
+    not supported.
     """
     tokens: list[str] = []
-    good, end = 0, at
-    depth, operand, seen = 0, True, False
+    # Number of tokens of the longest complete expression so far, and its end.
+    complete, end = 0, at
+    depth = 0  # open parentheses
+    is_operand_next, has_variable = True, False
     while True:
         while at < len(text) and text[at].isspace():
             at += 1
         if at >= len(text):
             break
-        if operand:
+        if is_operand_next:
             match = variable.match(text, at) or _NUMBER.match(text, at)
             if match:
                 is_name = variable.match(text, at) is not None
-                seen = seen or is_name
+                has_variable = has_variable or is_name
                 number = match.group()
-                tokens.append(
-                    name if is_name else "0" + number if number[0] == "." else number
-                )
-                at, operand = match.end(), False
+                if is_name:
+                    tokens.append(name)
+                else:
+                    tokens.append("0" + number if number[0] == "." else number)
+                at, is_operand_next = match.end(), False
             elif text[at] == "(":
                 tokens.append("(")
                 at, depth = at + 1, depth + 1
@@ -207,19 +214,21 @@ def _expression(
         elif match := _OPERATOR.match(text, at):
             sign = match.group()
             tokens.append(_TIMES.get(sign, sign))
-            at, operand = match.end(), True
+            at, is_operand_next = match.end(), True
         else:
             break
         # Complete so far. What follows may be text and no part of the formula.
-        if depth == 0 and not operand:
-            good, end = len(tokens), at
-    if not seen or name not in tokens[:good] or _GOES_ON.match(text, end):
+        if depth == 0 and not is_operand_next:
+            complete, end = len(tokens), at
+    if not has_variable or name not in tokens[:complete] or _GOES_ON.match(text, end):
         return "", at
-    return _spelled(tokens[:good]), end
+    return _spelled(tokens[:complete]), end
 
 
 def _spelled(tokens: list[str]) -> str:
-    """``raw*0.01``, ``(raw - 32)*5/9``: blanks around plus and minus only."""
+    """Return an expression as text, with blanks around plus and minus only:
+    ``raw*0.01``, ``(raw - 32)*5/9``.
+    """
     text = ""
     for index, token in enumerate(tokens):
         unary = index == 0 or tokens[index - 1] == "("
@@ -227,7 +236,7 @@ def _spelled(tokens: list[str]) -> str:
     return text
 
 
-def _is_good(text: str) -> bool:
+def _is_formula(text: str) -> bool:
     try:
         formulas.parse(text)
     except formulas.FormulaError:

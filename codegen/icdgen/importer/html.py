@@ -11,8 +11,8 @@ from collections import Counter
 from collections.abc import Iterator
 
 from icdgen.import_results.findings import CERTAIN, ImportFinding
-from icdgen.importer.document import Box, Cell, SourceTable
-from icdgen.importer.model import Found
+from icdgen.importer.document import PageBox, SourceCell, SourceTable
+from icdgen.importer.model import TableResult
 from icdgen.importer.run import Result
 
 RESOLUTION = 110
@@ -49,10 +49,14 @@ def report(result: Result) -> str:
         ):
             about.setdefault(order, []).append(import_finding)
     doubtful = [
-        entry for entry in result.survey.found if result.sure_of(entry.table) != CERTAIN
+        entry
+        for entry in result.survey.results
+        if result.sure_of(entry.table) != CERTAIN
     ]
     certain = [
-        entry for entry in result.survey.found if result.sure_of(entry.table) == CERTAIN
+        entry
+        for entry in result.survey.results
+        if result.sure_of(entry.table) == CERTAIN
     ]
     parts = [
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>Import of {name}</title>',
@@ -83,7 +87,7 @@ def report(result: Result) -> str:
 
 
 def _stake(import_findings: list[ImportFinding]) -> tuple[int, int]:
-    """Tables with most errors first, then with most warnings."""
+    """Return the sort key of a table: most errors first, then most warnings."""
     counts = Counter(t.severity for t in import_findings)
     return -counts["error"], -counts["warning"]
 
@@ -102,7 +106,7 @@ def _list(import_findings: list[ImportFinding], linked: bool = False) -> str:
 
 
 def _table(
-    entry: Found,
+    entry: TableResult,
     result: Result,
     import_findings: list[ImportFinding],
     pictures: _Pictures,
@@ -111,8 +115,9 @@ def _table(
     title = html.escape(table.title[:1].upper() + table.title[1:])
     yield f'<h2 id="table-{table.spot.order}">{title} <span class="sure">{entry.what}, {result.sure_of(table)}</span></h2>'
     yield _list(import_findings)
-    images = "".join(pictures.of(table))
-    read = _as_read(table)
+    images = "".join(pictures.images_of(table))
+    rows = ("<tr>" + "".join(map(_cell, row.cells)) + "</tr>" for row in table.rows)
+    read = "<table>" + "\n".join(rows) + "</table>"
     yield (
         f'<div class="pair"><div>{images}</div><div>{read}</div></div>'
         if images
@@ -120,12 +125,7 @@ def _table(
     )
 
 
-def _as_read(table: SourceTable) -> str:
-    rows = ("<tr>" + "".join(map(_cell, row.cells)) + "</tr>" for row in table.rows)
-    return "<table>" + "\n".join(rows) + "</table>"
-
-
-def _cell(cell: Cell) -> str:
+def _cell(cell: SourceCell) -> str:
     spans = "".join(
         f' {key}="{n}"'
         for key, n in (("colspan", cell.columns), ("rowspan", cell.rows))
@@ -135,14 +135,14 @@ def _cell(cell: Cell) -> str:
 
 
 class _Pictures:
-    """Cuts tables out of the pages of a PDF; gives none for a text."""
+    """Pictures of tables, cut out of the pages of a PDF; none for other documents."""
 
     def __init__(self, result: Result) -> None:
         self.result, self.file, self.left = result, None, MOST
         self.pages: dict[int, object] = {}
 
     def __enter__(self) -> _Pictures:
-        if any(entry.table.boxes for entry in self.result.survey.found):
+        if any(entry.table.boxes for entry in self.result.survey.results):
             import pypdfium2  # type: ignore[import-untyped]
 
             try:
@@ -156,7 +156,7 @@ class _Pictures:
         if self.file is not None:
             self.file.close()
 
-    def of(self, table: SourceTable) -> Iterator[str]:
+    def images_of(self, table: SourceTable) -> Iterator[str]:
         for box in table.boxes:
             if self.file is None or self.left <= 0:
                 return
@@ -181,9 +181,9 @@ class _Pictures:
 
 
 def _crop(
-    box: Box, width: float, height: float
+    box: PageBox, width: float, height: float
 ) -> tuple[float, float, float, float] | None:
-    """Margins to cut off on the left, below, on the right and above; None if the whole
+    """Return the margins to cut off on the left, below, on the right and above; None if the whole
     page would be cut off.
     """
     x0, x1 = max(0.0, box.x0 - MARGIN), min(width, box.x1 + MARGIN)

@@ -1,4 +1,8 @@
-"""Write messages, enumerations and lists of a node as the tree of its ICD."""
+"""ICD of a node as a tree of mappings and lists, with the keys of the YAML format.
+
+`assemble` calls this module when all references of the node are resolved. `icd/fmt`
+writes a tree as text.
+"""
 
 from __future__ import annotations
 
@@ -62,11 +66,12 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
     """
     by_kind = {}
     for kind in dict.fromkeys(message["kind"] for message in messages):
-        of_kind = (message for message in messages if message["kind"] == kind)
-        all_fields = (
-            field for message in of_kind for field in message.get("fields", ())
-        )
-        fields = [field for field in all_fields if "formula" in field]
+        fields = []
+        for message in messages:
+            if message["kind"] == kind:
+                fields += [
+                    field for field in message.get("fields", ()) if "formula" in field
+                ]
         words = {field.get("formula_for") for field in fields}
         if len(fields) > 1 and len(words) == 1 and None not in words:
             by_kind[kind] = words.pop()
@@ -117,7 +122,7 @@ def _enum(enum: ReadEnum, prose: bool) -> dict[str, Any]:
 
 
 def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
-    """A summary where the description says more than the name."""
+    """Return a summary if the description says more than the name."""
     return (
         {"summary": text}
         if wanted and text and squeezed(text) != squeezed(name)
@@ -150,16 +155,16 @@ def _field(field: ReadField, prose: bool) -> dict[str, Any]:
             count=field.count, enum=field.enum, unit=SIGNS.get(described.unit, described.unit), formula=described.formula,
             formula_for=described.formula_for,
         ),
-        # Which may be 0.
+        # A constant can be 0, which `_given` would leave out.
         **({"const": Spelled(described.const)} if described.const else {}),
-        **_prose(field.name, described.rest, prose),
+        **_prose(field.name, described.prose, prose),
     }  # fmt: skip
 
 
 def _units(
     node: NodeParts, import_findings: list[ImportFinding]
 ) -> list[dict[str, Any]]:
-    """Units that icdgen does not know by any of their spellings."""
+    """Return declarations of units that are not built in, and report them (IMP042)."""
     first: dict[str, tuple[ReadMessage, ReadField]] = {}
     for message in node.messages:
         for field in message.all_fields:
@@ -175,6 +180,7 @@ def _units(
 
 
 def _missing(row: Listed) -> dict[str, Any] | None:
+    """Return an entry of `missing`, or None for a row without an id or a kind."""
     number = row.id if row.id is not None else row.get_id
     if number is None or not row.kind:
         return None

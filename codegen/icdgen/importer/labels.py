@@ -1,5 +1,8 @@
-"""Rows above the fields of a message, such as ``ID 132, Frame Length (bytes) 6``, in
-any cells.
+"""Labelled values in the rows above the fields of a message, such as ``ID 132, Frame
+Length (bytes) 6``.
+
+They may be distributed over any number of cells: the cells are joined before they are
+parsed. The `labels` of the profile give them a meaning.
 """
 
 from __future__ import annotations
@@ -8,7 +11,12 @@ import re
 
 from icdgen.frozen import NamedTuple
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import folded, growing_squeezed, grows, plain
+from icdgen.importer.words import (
+    depends_on_count,
+    folded,
+    plain,
+    without_blanks_in_counts,
+)
 
 _VALUE = re.compile(
     r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z"
@@ -17,8 +25,9 @@ _COUNTED = frozenset({"byte", "bytes", "octet", "octets"})
 
 
 class Labelled(NamedTuple):
-    """A label and its value as text; ``what`` is the label's meaning by the profile, ""
-    if it has none.
+    """A label and its value as text.
+
+    ``what`` is the meaning of the label in the profile, "" if it has none.
     """
 
     what: str
@@ -26,7 +35,7 @@ class Labelled(NamedTuple):
     value: str
 
 
-def parse(text: str, profile: Profile) -> list[Labelled]:
+def parse_labels(text: str, profile: Profile) -> list[Labelled]:
     """Return all labels with a number after them, in order.
 
     A label without a number is last, with an empty value.
@@ -34,15 +43,19 @@ def parse(text: str, profile: Profile) -> list[Labelled]:
     labelled: list[Labelled] = []
     label: list[str] = []
     words = (
-        re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", growing_squeezed(plain(text)))
+        re.sub(
+            r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", without_blanks_in_counts(plain(text))
+        )
         .replace(":", " : ")
         .split()
     )
     for word in words:
         bare = word.strip(",;|")
-        if (_VALUE.match(bare) or grows(bare)) and label:
+        if (_VALUE.match(bare) or depends_on_count(bare)) and label:
             labelled.append(
-                Labelled(meaning(" ".join(label), profile), " ".join(label), bare)
+                Labelled(
+                    meaning_of_label(" ".join(label), profile), " ".join(label), bare
+                )
             )
             label = []
         elif bare in (":", "=", "-", "") and not folded(bare):
@@ -60,12 +73,12 @@ def parse(text: str, profile: Profile) -> list[Labelled]:
             label.append(bare)
     if label:
         labelled.append(
-            Labelled(meaning(" ".join(label), profile), " ".join(label), "")
+            Labelled(meaning_of_label(" ".join(label), profile), " ".join(label), "")
         )
     return labelled
 
 
-def meaning(label: str, profile: Profile) -> str:
+def meaning_of_label(label: str, profile: Profile) -> str:
     """Return the meaning of a label, or "".
 
     The order of its words is ignored, because cells may be torn.
@@ -73,12 +86,12 @@ def meaning(label: str, profile: Profile) -> str:
     return profile.labels.get(tuple(sorted(folded(label))), "")
 
 
-def begins(text: str, profile: Profile) -> bool:
+def begins_message_table(text: str, profile: Profile) -> bool:
     """Return whether a line can only be the first row of a message table.
 
     It has the id of the message, and only labelled values.
     """
-    labelled = parse(text, profile)
+    labelled = parse_labels(text, profile)
     return (
         bool(labelled)
         and labelled[0].what in ("id", "both_ids", "set_id")
@@ -90,13 +103,13 @@ def begins(text: str, profile: Profile) -> bool:
     )
 
 
-def leads(text: str, profile: Profile) -> str:
+def leading_meaning(text: str, profile: Profile) -> str:
     """Return the meaning of the label at the begin of a line ("description", "fields"
     ...), or "".
     """
     words = plain(text).split()
     meanings = (
-        meaning(" ".join(words[:length]), profile)
+        meaning_of_label(" ".join(words[:length]), profile)
         for length in range(min(5, len(words)), 0, -1)
     )
     return next(filter(None, meanings), "")

@@ -1,5 +1,8 @@
 """Messages, enumerations and lists that rules read from tables, before they become
 ICDs.
+
+`rules/` fills a `Survey`, in the order of the tables. `assemble` distributes its
+contents to a `NodeParts` for each node.
 """
 
 from __future__ import annotations
@@ -151,6 +154,8 @@ class ReadMessage:
 
 @dataclass(slots=True)
 class ReadMember:
+    """A member of an enumeration."""
+
     value: int
     name: str
     summary: str = ""
@@ -191,7 +196,9 @@ class ReadList:
 
 
 @dataclass(slots=True)
-class LogBit:
+class ReadLogBit:
+    """Bit of a log mask, with the id and the name of the frame that it selects."""
+
     bit: int
     id: int
     name: str
@@ -199,37 +206,39 @@ class LogBit:
 
 @dataclass(slots=True)
 class ReadLog:
-    bits: list[LogBit]
+    """A table of the frames that a device can log."""
+
+    bits: list[ReadLogBit]
 
 
-Thing = ReadMessage | ReadEnum | ReadList | ReadLog
+TableContent = ReadMessage | ReadEnum | ReadList | ReadLog
 T = TypeVar("T", ReadEnum, ReadList, ReadLog, ReadMessage)
 BACKGROUND, UNKNOWN = "background", "not understood"
 
 
 @dataclass(slots=True)
-class Found:
+class TableResult:
     """Result of one table, in the order of the document."""
 
     table: SourceTable
     # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
     what: str
-    thing: Thing | None
+    content: TableContent | None
 
 
 @dataclass(slots=True)
 class Survey:
     """All tables of a document in order, and the findings about them."""
 
-    found: list[Found] = field(default_factory=list)
+    results: list[TableResult] = field(default_factory=list)
     import_findings: list[ImportFinding] = field(default_factory=list)
 
-    def of(self, kind: type[T]) -> list[tuple[Found, T]]:
+    def results_of(self, kind: type[T]) -> list[tuple[TableResult, T]]:
         """Return the tables that gave an object of this class, each with the object."""
         return [
-            (entry, entry.thing)
-            for entry in self.found
-            if isinstance(entry.thing, kind)
+            (entry, entry.content)
+            for entry in self.results
+            if isinstance(entry.content, kind)
         ]
 
 
@@ -248,14 +257,14 @@ class NodeParts:
     include: list[str] = field(default_factory=list)
     missing: list[Listed] = field(default_factory=list)
 
-    def add(self, thing: Thing) -> None:
+    def add_content(self, content: TableContent) -> None:
         """Add an object to the list of its class."""
         by_kind: dict[type, list[Any]] = {
             ReadMessage: self.messages, ReadEnum: self.enums, ReadList: self.lists, ReadLog: self.logs,
         }  # fmt: skip
-        by_kind[type(thing)].append(thing)
+        by_kind[type(content)].append(content)
 
     @property
-    def holds(self) -> bool:
+    def has_contents(self) -> bool:
         """Whether there are any contents for an ICD."""
         return bool(self.messages or self.enums or self.logs)

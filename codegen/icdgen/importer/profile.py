@@ -14,7 +14,7 @@ from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map, plain
 from icdgen.importer.rules.language import TypeName
-from icdgen.importer.rules.rule import Rule, read_rules
+from icdgen.importer.rules.rule import TableRule, read_rules
 from icdgen.importer.words import folded
 
 DEFAULT = Path(__file__).with_name("profile.yaml")
@@ -43,7 +43,7 @@ class Profile:
     data: dict[str, Any]
     # What was laid over the profile that comes with icdgen.
     own: dict[str, Any] = field(default_factory=dict)
-    rules: list[Rule] = field(default_factory=list)
+    rules: list[TableRule] = field(default_factory=list)
 
     @cached_property
     def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
@@ -73,7 +73,7 @@ class Profile:
         }
 
     @cached_property
-    def _rules_with_unknown_headings(self) -> list[Rule]:
+    def _rules_with_unknown_headings(self) -> list[TableRule]:
         """Rules whose headings the vocabulary does not find: a row with all of them is
         a heading row.
         """
@@ -83,7 +83,7 @@ class Profile:
             if rule.heading_titles and not self._finds_headings(rule)
         ]
 
-    def _finds_headings(self, rule: Rule) -> bool:
+    def _finds_headings(self, rule: TableRule) -> bool:
         """Return whether the vocabulary of one kind of table finds the heading row of a
         rule.
         """
@@ -225,7 +225,7 @@ class Profile:
     @cached_property
     def phrases(self) -> dict[str, list[re.Pattern[str]]]:
         return {
-            what: [phrase(text) for text in texts]
+            what: [phrase_pattern(text) for text in texts]
             for what, texts in self.data["phrases"].items()
         }
 
@@ -247,7 +247,7 @@ def _node_words(item: dict[str, Any]) -> NodeWords:
     )
 
 
-def phrase(text: str) -> re.Pattern[str]:
+def phrase_pattern(text: str) -> re.Pattern[str]:
     """Return the search pattern of a phrase in descriptions."""
     stand_ins = {
         "unit": r"(?:\[\s*(?P<unit>[^\]]+?)\s*\]|(?P<bare>[^\s.,;)]+(?: units)?))",
@@ -294,16 +294,16 @@ def load(path: Path | None = None) -> Profile:
     """
     if path is None:
         return Profile(plain(source.read(DEFAULT)))
-    return of_tree(source.read(path))
+    return profile_of_tree(source.read(path))
 
 
-def of_tree(tree: Map) -> Profile:
+def profile_of_tree(tree: Map) -> Profile:
     """Return the built-in words, extended by the tree of a profile.
 
     Raises `Findings` for errors of the profile.
     """
     base = plain(source.read(DEFAULT))
-    _check(tree)
+    _check_form(tree)
     own = plain(tree)
     _check_orders(tree, base)
     return Profile(_laid_over(base, own), own, read_rules(tree["rules"]))
@@ -343,7 +343,7 @@ def _laid_over(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     return merged
 
 
-def _check(tree: Map) -> None:
+def _check_form(tree: Map) -> None:
     """Raise `Findings` if the file does not have the form of a profile."""
     if "rules" in tree:
         findings, _ = schema.check(tree, "profile")

@@ -1,5 +1,8 @@
-"""References between tables: lists and messages, fields and enumerations; checks of
-complete messages.
+"""References between the tables of a node: from lists to messages, and from fields to
+enumerations. Checks of complete messages.
+
+The three public functions change the `NodeParts` of a node and add findings. `assemble`
+calls them in the order of this file.
 """
 
 from __future__ import annotations
@@ -13,13 +16,15 @@ from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMe
 from icdgen.importer.words import plain, squeezed, table_name
 
 
-def listed(node: NodeParts, import_findings: list[ImportFinding]) -> None:
-    """Holds list tables and detail tables together: groups, names, what disagrees, what
-    one of them lacks.
+def compare_with_lists(node: NodeParts, import_findings: list[ImportFinding]) -> None:
+    """Compare list tables with the tables of messages.
+
+    Messages take their group, and missing facts, from the list. Contradictions (IMP060)
+    and messages that only one of them has (IMP061, IMP062) are findings.
     """
     rows = [row for list_table in node.lists for row in list_table.rows]
     for message in node.messages:
-        row = _row_of(message, rows)
+        row = _row_for(message, rows)
         if row is None:
             if any(list_table.kind in ("", message.kind) for list_table in node.lists):
                 import_findings.append(ImportFinding("IMP062", f"{message.table.title}: no list table names it", message.table.spot,
@@ -40,7 +45,7 @@ def listed(node: NodeParts, import_findings: list[ImportFinding]) -> None:
             )  # fmt: skip
 
 
-def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
+def _row_for(message: ReadMessage, rows: list[Listed]) -> Listed | None:
     """Return the row of a list for a message, by kind and id, or else by name."""
     free = [
         row
@@ -56,7 +61,8 @@ def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
 def _compare(
     message: ReadMessage, row: Listed, import_findings: list[ImportFinding]
 ) -> None:
-    for key, what in _SAID.items():
+    """Complete a message from its row in a list, and report contradictions."""
+    for key, what in _COMPARED_KEYS.items():
         own, value = getattr(message, key), getattr(row, key)
         if (
             value is None
@@ -82,7 +88,7 @@ def _compare(
         )  # fmt: skip
 
 
-_SAID = {
+_COMPARED_KEYS = {
     "name": "name",
     "length": "length",
     "id": "id",
@@ -91,28 +97,30 @@ _SAID = {
 }
 
 
-def enums(
+def resolve_enumerations(
     node: NodeParts,
     nodes: list[NodeParts],
     everything: list[ReadEnum],
     import_findings: list[ImportFinding],
 ) -> None:
-    """Finds the enumeration of each enum field, and brings it within reach of the node."""
+    """Set the enumeration of each enum field, and copy it to the node if necessary.
+
+    A field whose enumeration cannot be found becomes a `uint`.
+    """
     for message in node.messages:
         for field in message.all_fields:
-            if (
-                field.type == "enum"
-                and not field.enum
-                and (
-                    chosen := _meant(node, everything, message, field, import_findings)
-                )
-            ):
-                field.enum = _within_reach(node, nodes, chosen)
-            elif field.type == "enum" and not field.enum:
+            if field.type != "enum" or field.enum:
+                continue
+            enum = _enumeration_of_field(
+                node, everything, message, field, import_findings
+            )
+            if enum is None:
                 field.type = "uint"
+            else:
+                field.enum = _name_within_reach(node, nodes, enum)
 
 
-def _meant(
+def _enumeration_of_field(
     node: NodeParts,
     everything: list[ReadEnum],
     message: ReadMessage,
@@ -135,13 +143,11 @@ def _meant(
     of_table = [enum for enum in of_number if enum.table is of_number[0].table]
     titled = _by_title(described.enum_title, everything, node)
     is_ambiguous = len(of_table) > 1 and titled not in of_table
-    numbered = (
-        titled
-        if titled in of_table
-        else None
-        if is_ambiguous
-        else next(iter(of_table), None)
-    )
+    numbered = None
+    if titled in of_table:
+        numbered = titled
+    elif of_table and not is_ambiguous:
+        numbered = of_table[0]
     chosen = numbered or titled
     if (
         numbered
@@ -202,7 +208,7 @@ def _by_title(
     return next(itertools.chain(equal, captioned, torn), None)
 
 
-def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> str:
+def _name_within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> str:
     """Return the name of the enumeration in the scope of the node.
 
     If it is out of scope, it is copied to the node.
@@ -216,7 +222,7 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
     return enum.name
 
 
-def complete(
+def check_messages(
     node: NodeParts, head: dict[str, Any], import_findings: list[ImportFinding]
 ) -> None:
     """Report what messages lack and bits without a field; drop messages that an ICD
@@ -226,14 +232,20 @@ def complete(
     """
     most = (1 << head.get("id_bits", DEFAULT_BITS)) - 1
     node.messages = [
-        message for message in node.messages if _is_held(message, most, import_findings)
+        message
+        for message in node.messages
+        if _is_representable(message, most, import_findings)
     ]
 
 
-def _is_held(
+def _is_representable(
     message: ReadMessage, most: int, import_findings: list[ImportFinding]
 ) -> bool:
-    """Return whether an ICD can represent the message. ``most`` is the largest id."""
+    """Return whether an ICD can represent the message, and report what it lacks.
+
+    ``most`` is the largest id. A length that no table states is set to the number of
+    bytes that the fields need.
+    """
 
     def say(
         code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY
@@ -258,7 +270,12 @@ def _is_held(
             "error",
         )
         return False
-    if lacking := _lacking(message):
+    required = {
+        "name": bool(message.name),
+        "kind": bool(message.kind),
+        "id": any(number is not None for number in message.ids),
+    }
+    if lacking := [key for key, is_given in required.items() if not is_given]:
         say("IMP031", f"its rule gives no {' and no '.join(lacking)}; the message was left out",
             "state it under `message:`, or take it with a pattern", "error")  # fmt: skip
         return False
@@ -286,13 +303,3 @@ def _is_held(
             "such bits are reserved; make sure that no row was lost",
         )
     return True
-
-
-def _lacking(message: ReadMessage) -> list[str]:
-    """Required attributes that the rule of a message does not give."""
-    given = {
-        "name": message.name,
-        "kind": message.kind,
-        "id": any(number is not None for number in message.ids),
-    }
-    return [key for key, value in given.items() if not value]

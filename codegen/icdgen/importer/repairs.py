@@ -1,5 +1,7 @@
-"""Damage of the file that a profile names: repaired before rules read the tables, and
-reported each time.
+"""Repair of damage in a document that its profile lists under `damage`.
+
+The cells of tables are corrected before rules read them. Each repair is a note
+(IMP028).
 """
 
 from __future__ import annotations
@@ -7,9 +9,9 @@ from __future__ import annotations
 import re
 
 from icdgen.import_results.findings import ImportFinding, SourcePlace
-from icdgen.importer.document import Cell, SourceRow, SourceTable
+from icdgen.importer.document import SourceCell, SourceRow, SourceTable
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import number
+from icdgen.importer.words import printed_integer
 
 
 def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFinding]:
@@ -32,9 +34,13 @@ def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFindi
                     notes.append(_mended(f"{table.title}: {what}", table.spot))
             elif entry.get("table") == table.label and "group" in entry:
                 for index, row in enumerate(table.rows):
-                    if row.cells and number(row.cells[0].text) == entry["before"]:
+                    if (
+                        row.cells
+                        and printed_integer(row.cells[0].text) == entry["before"]
+                    ):
                         table.rows.insert(
-                            index, SourceRow([Cell(entry["group"])], row.page, row.line)
+                            index,
+                            SourceRow([SourceCell(entry["group"])], row.page, row.line),
                         )
                         what = f"the group heading `{entry['group']}` is put back before {entry['before']}"
                         notes.append(

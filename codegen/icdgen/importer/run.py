@@ -1,4 +1,9 @@
-"""Import of a document: ICD trees and findings, without writing files."""
+"""Import of a document: ICD trees and findings, without writing files.
+
+The path of a manual and a profile go in. A `Result` with the tables, findings and
+certainty comes out, and the tree of an ICD for each node. `commands/import_.py` writes
+the files.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +61,7 @@ class Result:
         # Several rules can read one table, each with a result.
         tables = {
             entry.table.number: entry.table
-            for entry in self.survey.found
+            for entry in self.survey.results
             if entry.what != UNKNOWN
         }
         return Counter(self.sure_of(table) for table in tables.values())
@@ -69,7 +74,7 @@ class Result:
             if t.is_about_table(table.spot.order) and t.code != "IMP035"
         ]
         what = next(
-            (entry.what for entry in self.survey.found if entry.table is table), ""
+            (entry.what for entry in self.survey.results if entry.table is table), ""
         )
         if what == UNKNOWN or any(
             t.severity == "error" or t.sure == DOUBTFUL for t in about
@@ -111,16 +116,19 @@ def apply_rules(
     )
     trees = assemble.assemble(document, interpretation.survey, words, prose)
     if not trees:
-        interpretation.survey.import_findings.append(_nothing(words, tables))
+        interpretation.survey.import_findings.append(_no_message(words, tables))
     return Result(document, tables, interpretation), trees
 
 
-def _nothing(words: profile.Profile, tables: list[SourceTable]) -> ImportFinding:
+def _no_message(words: profile.Profile, tables: list[SourceTable]) -> ImportFinding:
+    """Return the finding for a document in which no rule gives a message."""
     if not tables:
         what = "the document has no table"
         help = "tables are found by their rules, headings and captions; is this the right document?"
+    elif words.rules:
+        what = "no rule gives a message"
+        help = "the other findings say why"
     else:
         what = "no rule gives a message"
         help = "write rules in a profile (--profile): --explore proposes them, --workbench serves a page to write them"
-        help = "the other findings say why" if words.rules else help
     return ImportFinding(NOTHING, what, help=help, severity="error", sure=DOUBTFUL)

@@ -1,16 +1,19 @@
-"""Tables of a document: their places and kinds."""
+"""Tables of a document: their numbers and the text around them, their groups of equal
+headings, and their names in reports.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.importer.document import Box, Document, Heading, SourceTable, Text
+from icdgen.importer.document import Document, Heading, PageBox, SourceTable, TextBlock
 from icdgen.importer.words import table_name
 
 
 def from_document(document: Document) -> list[SourceTable]:
-    """Return the tables of a document, each with its number and the texts above it;
-    those without any text are left out.
+    """Return the tables of a document, each with its number and the texts above it.
+
+    Tables without any text are left out.
     """
     tables: list[SourceTable] = []
     chain: list[Heading] = []
@@ -19,11 +22,11 @@ def from_document(document: Document) -> list[SourceTable]:
         if isinstance(block, Heading):
             chain = [heading for heading in chain if heading.contains(block)] + [block]
             before.append(block.title)
-        elif isinstance(block, Text):
+        elif isinstance(block, TextBlock):
             before.append(block.text)
         elif any(cell.text for row in block.rows for cell in row.cells):
             block.boxes = [
-                Box(box.page, *(round(value, 1) for value in box[1:]))
+                PageBox(box.page, *(round(value, 1) for value in box[1:]))
                 for box in block.boxes
             ]
             block.headings, block.before = [heading.title for heading in chain], before
@@ -35,7 +38,7 @@ def from_document(document: Document) -> list[SourceTable]:
 
 
 def count_runs(tables: list[SourceTable]) -> None:
-    """Tell each table in which run of ascending labels it stands."""
+    """Set `run` of each table: the run of ascending labels that it belongs to."""
     run, last = 1, -1
     for table in tables:
         if table.label is not None:
@@ -44,7 +47,7 @@ def count_runs(tables: list[SourceTable]) -> None:
         table.run = run
 
 
-def kinds(tables: list[SourceTable]) -> list[list[SourceTable]]:
+def group_by_headings(tables: list[SourceTable]) -> list[list[SourceTable]]:
     """Return the tables grouped by headings, the largest group first."""
     groups: dict[tuple[str, ...], list[SourceTable]] = {}
     for table in tables:
@@ -63,8 +66,8 @@ def name_of(table: SourceTable) -> str:
     return table.caption or (table.headings[-1] if table.headings else table.sheet)
 
 
-def texts(table: SourceTable) -> Iterator[str]:
-    """Every text of the table and around it."""
+def texts_in_and_around(table: SourceTable) -> Iterator[str]:
+    """Return every text of the table and around it."""
     yield from (table.caption, *table.headings, *table.before, *table.after)
     for row in table.rows:
         yield from (cell.text for cell in row.cells)

@@ -1,5 +1,7 @@
-"""Every source of tables -> `SourceTable`: documents of all kinds, and folders of table
-files.
+"""Tables of every kind of source: documents, and folders of table files.
+
+The result is the same for all of them: a `Document` and its `SourceTable` objects.
+Structs and lines of bytes in the text of a document are tables as well.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ def read(
     Raises `Findings` for a file from which nothing can be read.
     """
     if table_files.is_folder_of_tables(path):
-        tables = table_files.read(path)
+        tables = table_files.read_tables(path)
         return table_files.document_of(path), tables
     document = reading.read(path, profile, progress, jobs, pages)
     c_structs.in_document(document)

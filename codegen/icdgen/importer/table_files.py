@@ -16,7 +16,13 @@ from typing import Any
 from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map
-from icdgen.importer.document import Box, Cell, Document, SourceRow, SourceTable
+from icdgen.importer.document import (
+    Document,
+    PageBox,
+    SourceCell,
+    SourceRow,
+    SourceTable,
+)
 from icdgen.importer.source_tables import name_of
 from icdgen.importer.words import table_name, table_number
 
@@ -29,7 +35,9 @@ def is_folder_of_tables(path: Path) -> bool:
     return path.is_dir() and next(path.glob(f"*{SUFFIX}"), None) is not None
 
 
-def write(tables: list[SourceTable], folder: Path, document: Document) -> list[Path]:
+def write_tables(
+    tables: list[SourceTable], folder: Path, document: Document
+) -> list[Path]:
     """Write a file for each table and return the paths.
 
     Raises `UserError` if one cannot be written.
@@ -108,7 +116,7 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
-def _cell(cell: Cell) -> str:
+def _cell(cell: SourceCell) -> str:
     spans = [
         f"{key}: {n}"
         for key, n in (("columns", cell.columns), ("rows", cell.rows))
@@ -121,7 +129,7 @@ def _cell(cell: Cell) -> str:
     )
 
 
-def read(folder: Path) -> list[SourceTable]:
+def read_tables(folder: Path) -> list[SourceTable]:
     """Return the tables of a folder in the order of their numbers.
 
     Raises `Findings` for files that are no tables.
@@ -182,7 +190,7 @@ def _wrong_spans(tree: Map) -> list[Finding]:
 
 def _table(tree: Map) -> SourceTable:
     boxes = [
-        Box(int(box[0]), *(float(value) for value in box[1:]))
+        PageBox(int(box[0]), *(float(value) for value in box[1:]))
         for box in tree.get("boxes", ())
     ]
     page: int | None = boxes[0].page if boxes else None
@@ -208,10 +216,10 @@ def _table(tree: Map) -> SourceTable:
     )
 
 
-def _cell_of(value: Any) -> Cell:
+def _cell_of(value: Any) -> SourceCell:
     if isinstance(value, Map):
-        return Cell(value["text"], value.get("columns", 1), value.get("rows", 1))
-    return Cell(value)
+        return SourceCell(value["text"], value.get("columns", 1), value.get("rows", 1))
+    return SourceCell(value)
 
 
 def document_of(folder: Path) -> Document:

@@ -1,4 +1,6 @@
-"""Text as a machine compares it, and text as a page prints it."""
+"""Normalised text: spelling that is equal for texts that mean the same, integers and
+table numbers, and the lines of a wrapped cell as one text.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ _PLAIN = {**str.maketrans({**_LIGATURES, **_BLANKS}), **HYPHENS}
 _WORD = re.compile(r"[A-Za-z0-9%]+")
 SUPERSCRIPTS = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
-# Behind a caption.
+# Mark behind the caption of a table that began on a page before.
 CONTINUED = re.compile(
     r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I
 )
@@ -28,8 +30,8 @@ _NUMBER = re.compile(r"[-+]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)\Z")
 
 
 def plain(text: str) -> str:
-    """Ligatures spelled out, odd blanks and hyphens made ordinary, runs of blanks made
-    one.
+    """Return a text with ligatures spelled out, ordinary blanks and hyphens, and single
+    blanks.
     """
     return " ".join(text.translate(_PLAIN).split())
 
@@ -46,8 +48,9 @@ def folded(text: str) -> tuple[str, ...]:
 
 
 def squeezed(text: str) -> str:
-    """Letters and digits only: equal for texts that differ in spacing, hyphens and
-    case.
+    """Return letters and digits only.
+
+    The result is equal for texts that differ in spacing, hyphens and case.
     """
     return "".join(folded(text))
 
@@ -58,17 +61,17 @@ _GROWING = re.compile(
 )
 
 
-def grows(text: str) -> bool:
+def depends_on_count(text: str) -> bool:
     """Return whether a number depends on a count: ``8 + 6*N``, ``N + 1``."""
     return _GROWING.fullmatch(plain(text).strip("() ")) is not None
 
 
-def growing_squeezed(text: str) -> str:
+def without_blanks_in_counts(text: str) -> str:
     """Return the text without blanks in numbers that depend on a count."""
     return _GROWING.sub(lambda m: "".join(m.group().split()), text)
 
 
-def number(text: str) -> int | None:
+def printed_integer(text: str) -> int | None:
     """Return the integer in a text, decimal or 0x, without a raised footnote mark, or
     None.
     """
@@ -95,7 +98,10 @@ def table_number(printed: str) -> int:
 
 
 def table_name(number: int | None) -> str:
-    """``12``, or ``4-12`` for the tables of chapters; "?" for one without a number."""
+    """Return the printed number of a table: ``12``, or ``4-12`` for tables of chapters.
+
+    It is "?" for a table without a number.
+    """
     if number is None:
         return "?"
     upper, last = divmod(number, _PART)
@@ -117,7 +123,7 @@ def unbroken(
         if (
             texts
             and full[index - 1]
-            and _is(before + line.split(" ", 1)[0], document_words)
+            and _is_word(before + line.split(" ", 1)[0], document_words)
         ):
             texts[-1] += line
         else:
@@ -149,14 +155,13 @@ def join(
             text = text[:-1] + line
         elif len(before) > 1 and before.endswith("-") and after[:1].islower():
             joined = before[:-1] + after
-            text = (
-                text[:-1]
-                if _is(joined, document_words)
-                and not _is(before + after, document_words)
-                else text
-            ) + line
-        elif _holds_on(before, after) or (
-            full and full[index - 1] and _is(before + after, document_words)
+            if _is_word(joined, document_words) and not _is_word(
+                before + after, document_words
+            ):
+                text = text[:-1]
+            text += line
+        elif _breaks_without_blank(before, after) or (
+            full and full[index - 1] and _is_word(before + after, document_words)
         ):
             text += line
         else:
@@ -164,7 +169,7 @@ def join(
     return " ".join(text.replace(_SOFT, "").split())
 
 
-def _holds_on(before: str, after: str) -> bool:
+def _breaks_without_blank(before: str, after: str) -> bool:
     """Return whether a line may break here without a blank.
 
     This is the case after a hyphen or slash in a word, and within a formula.
@@ -174,5 +179,5 @@ def _holds_on(before: str, after: str) -> bool:
     )
 
 
-def _is(word: str, document_words: frozenset[str]) -> bool:
+def _is_word(word: str, document_words: frozenset[str]) -> bool:
     return word.strip(".,;:()[]") in document_words

@@ -162,8 +162,8 @@ def test_table_files_of_every_source_give_the_same(tmp_path, name):
     document, tables = sources.read(tmp_path / name, profile.load())
     assert [cell.text for cell in tables[0].rows[0].cells] == TITLES
     assert tables[0].rows[2].cells[-1].text == "Speed\nof the motor"
-    table_files.write(tables, tmp_path / "tables", document)
-    assert table_files.read(tmp_path / "tables") == tables
+    table_files.write_tables(tables, tmp_path / "tables", document)
+    assert table_files.read_tables(tmp_path / "tables") == tables
 
 
 def test_a_range_that_a_spreadsheet_made_a_date_is_an_error(tmp_path):

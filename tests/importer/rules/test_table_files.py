@@ -73,7 +73,7 @@ def test_files_of_removed_tables_are_deleted(folder):
 def test_a_table_file_that_is_wrong_is_a_finding_with_its_line(tmp_path, text, message):
     (tmp_path / "001.table.yaml").write_text(text, encoding="utf-8")
     with pytest.raises(Findings) as caught:
-        table_files.read(tmp_path)
+        table_files.read_tables(tmp_path)
     assert [(f.code, f.place.line >= 1) for f in caught.value.findings][:1] == [
         ("IMP006", True)
     ]

@@ -12,9 +12,9 @@ import re
 from dataclasses import dataclass
 
 from icdgen.importer.pages.columns import index_of
-from icdgen.importer.pages.draft import Header, PrintedRow
+from icdgen.importer.pages.draft import HeadingRow, PrintedRow
 from icdgen.importer.pages.extract import Word
-from icdgen.importer.pages.lines import Line, lines, words_of
+from icdgen.importer.pages.lines import TextLine, lines, words_of
 from icdgen.importer.words import join, unbroken
 
 _UNIT = r"(?:(?:[Bb]its?|[Bb]ytes?|[Oo]ctets?)\s*)?"
@@ -44,7 +44,7 @@ class Band:
     words: list[Word]
     continues: tuple[bool, ...] = ()  # for each cell, whether it has no rule above it
 
-    def of(self, lines_of_band: list[Line]) -> Band:
+    def of(self, lines_of_band: list[TextLine]) -> Band:
         """Return the part of the band that has these lines."""
         return Band(self.page, self.edges, words_of(lines_of_band))
 
@@ -128,7 +128,7 @@ def aligned(band: Band, edges: list[float]) -> Band:
 
 
 def rows(
-    band: Band, header: Header, document_words: frozenset[str], torn: bool = False
+    band: Band, header: HeadingRow, document_words: frozenset[str], torn: bool = False
 ) -> list[PrintedRow]:
     """Return the rows of a band with the columns of ``header``.
 
@@ -163,7 +163,7 @@ def rows(
     return printed
 
 
-def has_keys(band: Band, header: Header) -> bool:
+def has_keys(band: Band, header: HeadingRow) -> bool:
     """Return whether a line has a key in the key column and words in another column."""
     lines_of_band = lines(band.words)
     key = (
@@ -178,13 +178,13 @@ def has_keys(band: Band, header: Header) -> bool:
     return False
 
 
-def _key_column(header: Header) -> int:
+def _key_column(header: HeadingRow) -> int:
     return next(
         (i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0
     )
 
 
-def _column_of_most_keys(lines_of_band: list[Line], edges: list[float]) -> int:
+def _column_of_most_keys(lines_of_band: list[TextLine], edges: list[float]) -> int:
     """Return the column in which most lines have a key, or the first column."""
     counts = [
         sum(is_key(_text_in(line, edges, column)) for line in lines_of_band)
@@ -193,7 +193,7 @@ def _column_of_most_keys(lines_of_band: list[Line], edges: list[float]) -> int:
     return counts.index(max(counts)) if counts else 0
 
 
-def _is_group(line: Line, edges: list[float], key: int) -> bool:
+def _is_group(line: TextLine, edges: list[float], key: int) -> bool:
     """Return whether the line is a group heading: words other than keys in the column
     of ids.
     """
@@ -207,9 +207,9 @@ def _is_group(line: Line, edges: list[float], key: int) -> bool:
 
 def _around(
     band: Band,
-    lines_of_band: list[Line],
+    lines_of_band: list[TextLine],
     groups: list[int],
-    header: Header,
+    header: HeadingRow,
     document_words: frozenset[str],
 ) -> list[PrintedRow]:
     """Return the rows of a band that contains group headings."""
@@ -233,7 +233,7 @@ def group_row(text: str, width: int, page: int) -> PrintedRow:
     return PrintedRow([text, *[""] * (width - 1)], page=page)
 
 
-def _text_in(line: Line, edges: list[float], column: int) -> str:
+def _text_in(line: TextLine, edges: list[float], column: int) -> str:
     return " ".join(w.text for w in line.words if index_of(w.centre, edges) == column)
 
 
@@ -253,7 +253,7 @@ def _leading(band: Band) -> float:
 
 
 def _stretches(
-    lines_of_band: list[Line], keyed: list[int], leading: float, torn: bool
+    lines_of_band: list[TextLine], keyed: list[int], leading: float, torn: bool
 ) -> list[tuple[int, int]]:
     """Return the range of lines of each row.
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from icdgen.importer.pages import headings
-from icdgen.importer.pages.draft import Draft
-from icdgen.importer.pages.flow import Mark
+from icdgen.importer.pages.draft import TableDraft
+from icdgen.importer.pages.flow import TextItem
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import squeezed
 
-Items = list[Draft | Mark]
+Items = list[TableDraft | TextItem]
 
 
 def parted(items: Items, profile: Profile) -> Items:
@@ -26,7 +26,7 @@ def parted(items: Items, profile: Profile) -> Items:
     while index < len(items):
         item = items[index]
         index += 1
-        if isinstance(item, Mark):
+        if isinstance(item, TextItem):
             in_order.append(item)
             continue
         tables = _parts(item, profile)
@@ -34,17 +34,17 @@ def parted(items: Items, profile: Profile) -> Items:
             tables = [item]
             while (
                 index < len(items)
-                and isinstance(following := items[index], Draft)
+                and isinstance(following := items[index], TableDraft)
                 and _beside(tables[-1], following)
             ):
                 tables.append(following)
                 index += 1
             tables.sort(key=lambda table: table.boxes[0].x0)
-        above: list[list[Mark]] = []
+        above: list[list[TextItem]] = []
         while (
             len(tables) > 1
             and in_order
-            and isinstance(in_order[-1], Mark)
+            and isinstance(in_order[-1], TextItem)
             and (lines := _lines(in_order[-1], len(tables), profile))
         ):
             above.insert(0, lines)
@@ -54,7 +54,7 @@ def parted(items: Items, profile: Profile) -> Items:
     return in_order
 
 
-def _beside(draft: Draft, other: Draft) -> bool:
+def _beside(draft: TableDraft, other: TableDraft) -> bool:
     """Return whether two tables are side by side on one page, and on no other page."""
     if len(draft.boxes) != 1 or len(other.boxes) != 1:
         return False
@@ -65,7 +65,7 @@ def _beside(draft: Draft, other: Draft) -> bool:
     )
 
 
-def _parts(table: Draft, profile: Profile) -> list[Draft]:
+def _parts(table: TableDraft, profile: Profile) -> list[TableDraft]:
     """Return the tables of a table with repeated headings, or an empty list."""
     if table.header is not None or len(table.head) < 2:
         return []
@@ -92,14 +92,14 @@ def _parts(table: Draft, profile: Profile) -> list[Draft]:
         header.printed = [table.head[0].slice(start, width)]
         rows = [row.slice(start, width) for row in table.head[1:]]
         result.append(
-            Draft(
+            TableDraft(
                 list(table.boxes), header, rows=[row for row in rows if any(row.texts)]
             )
         )
     return result
 
 
-def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:
+def _lines(mark: TextItem, count: int, profile: Profile) -> list[TextItem]:
     """Return the parts of a line above tables, one for each table, or an empty list."""
     if len(mark.cells) != count or mark.kind == "heading":
         return []

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from icdgen.importer.document import Block, Heading, SourceTable, Text
+from icdgen.importer.document import Block, Heading, SourceTable, TextBlock
 from icdgen.importer.pages import beside, guessed
-from icdgen.importer.pages.draft import Draft
-from icdgen.importer.pages.flow import Mark
+from icdgen.importer.pages.draft import TableDraft
+from icdgen.importer.pages.flow import TextItem
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import CONTINUED, table_number
 
 FAR = 4  # a caption with this many lines of text before the table does not belong to it
-Items = list[Draft | Mark]
+Items = list[TableDraft | TextItem]
 
 
 def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Block]:
@@ -22,7 +22,7 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
     captions = [
         i
         for i, item in enumerate(items)
-        if isinstance(item, Mark) and item.kind == "caption"
+        if isinstance(item, TextItem) and item.kind == "caption"
     ]
     after = {i: _table_from(items, i, 1) for i in captions}
     before = {i: _table_from(items, i, -1) for i in captions}
@@ -35,10 +35,10 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
     used = set(owner.values())
     blocks: list[Block] = []
     for index, item in enumerate(items):
-        if isinstance(item, Draft):
+        if isinstance(item, TableDraft):
             caption = items[owner[index]] if index in owner else None
             table = item.table()
-            if isinstance(caption, Mark):
+            if isinstance(caption, TextItem):
                 _name(table, caption, profile)
             blocks.append(table)
         elif index not in used:
@@ -46,7 +46,7 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
             blocks.append(
                 Heading(item.number, item.text, page, size=item.size)
                 if is_heading
-                else Text(item.text, page)
+                else TextBlock(item.text, page)
             )
     return blocks
 
@@ -59,7 +59,7 @@ def _table_from(items: Items, index: int, step: int) -> int | None:
     position = index + step
     while 0 <= position < len(items):
         item = items[position]
-        if isinstance(item, Draft):
+        if isinstance(item, TableDraft):
             return position
         if item.kind != "text" or between >= FAR:
             return None
@@ -103,7 +103,7 @@ def _distance(items: Items, caption: int, index: int | None, step: int) -> float
     if index is None:
         return 1000.0
     mark, table = items[caption], items[index]
-    assert isinstance(mark, Mark) and isinstance(table, Draft)
+    assert isinstance(mark, TextItem) and isinstance(table, TableDraft)
     box = table.boxes[0 if step > 0 else -1]
     if box.page != mark.box.page:
         return 500.0
@@ -112,7 +112,7 @@ def _distance(items: Items, caption: int, index: int | None, step: int) -> float
     )
 
 
-def _name(table: SourceTable, mark: Mark, profile: Profile) -> None:
+def _name(table: SourceTable, mark: TextItem, profile: Profile) -> None:
     match = profile.caption.match(mark.text)
     assert match is not None
     table.label = table_number(match["number"])

@@ -7,9 +7,9 @@ from bisect import bisect_left, bisect_right
 
 from icdgen.frozen import NamedTuple
 from icdgen.importer.pages import headings
-from icdgen.importer.pages.draft import Header
+from icdgen.importer.pages.draft import HeadingRow
 from icdgen.importer.pages.extract import Word
-from icdgen.importer.pages.lines import NARROW_GAP, Line, lines, runs, words_of
+from icdgen.importer.pages.lines import NARROW_GAP, TextLine, lines, runs, words_of
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, join
 
@@ -19,12 +19,12 @@ MOST_LINES = 4  # maximum lines of a heading row
 class Columns(NamedTuple):
     """A heading row: its header, the extent of each heading, and its number of lines."""
 
-    header: Header
+    header: HeadingRow
     spans: list[tuple[float, float]]
     lines: int
 
 
-def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | None:
+def find(lines: list[TextLine], profile: Profile, loose: bool = True) -> Columns | None:
     """Return the heading row that begins with the first of ``lines``, or None.
 
     ``loose``: also accept headings of fields without offsets.
@@ -56,7 +56,7 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
     return best
 
 
-def _is_sure(header: Header) -> bool:
+def _is_sure(header: HeadingRow) -> bool:
     """Return whether headings without offsets are unlikely to be prose.
 
     All are known, or all but one of four or more.
@@ -76,7 +76,7 @@ def _text(cell: list[Word]) -> str:
     return join([line.text for line in lines(cell)])
 
 
-def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
+def _in_one_line(line: TextLine, profile: Profile) -> list[list[Word]] | None:
     """Return the cells of a heading row in one line. Return None for any other line.
 
     The gaps between headings may be narrow. A line is a sentence, not a heading row, if
@@ -89,13 +89,13 @@ def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
     for (left, right), (before, after) in zip(
         itertools.pairwise(segments), itertools.pairwise(cells), strict=True
     ):
-        is_one_run = len(runs(Line([before[-1], after[0]]), NARROW_GAP)) == 1
+        is_one_run = len(runs(TextLine([before[-1], after[0]]), NARROW_GAP)) == 1
         if left.is_known != right.is_known and is_one_run:
             return None
     return cells
 
 
-def _clustered(block: list[Line]) -> list[list[Word]]:
+def _clustered(block: list[TextLine]) -> list[list[Word]]:
     """Return the cells of several lines: runs of words that are above each other."""
     cells: list[list[Word]] = []
     for run in sorted(
@@ -115,7 +115,7 @@ def _clustered(block: list[Line]) -> list[list[Word]]:
     return sorted(cells, key=lambda cell: min(w.x0 for w in cell))
 
 
-def side_by_side(block: list[Line]) -> str:
+def side_by_side(block: list[TextLine]) -> str:
     """Return the text of some lines cell by cell, as if no cell was wrapped."""
     if len(block) == 1:
         return block[0].text
@@ -123,7 +123,7 @@ def side_by_side(block: list[Line]) -> str:
 
 
 def boundaries(
-    spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float
+    spans: list[tuple[float, float]], lines: list[TextLine], x0: float, x1: float
 ) -> list[float]:
     """Return the edges of the columns with headings at ``spans``.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from icdgen.importer.document import Box, Cell, SourceRow, SourceTable
+from icdgen.importer.document import PageBox, SourceCell, SourceRow, SourceTable
 
 SNAP = 3.0  # points: closer edges of cells count as one
 # points: maximum difference of the widths of parts of a table on several pages
@@ -44,7 +44,7 @@ class PrintedRow:
 
 
 @dataclass(slots=True)
-class Header:
+class HeadingRow:
     """The heading row of a table: the kind of table, and the role of each cell ("" if
     unknown).
     """
@@ -77,14 +77,14 @@ class Header:
 
 
 @dataclass(slots=True)
-class Draft:
+class TableDraft:
     """A draft of a table.
 
     ``head`` are the rows above the headings, ``rows`` the rows below.
     """
 
-    boxes: list[Box]
-    header: Header | None = None
+    boxes: list[PageBox]
+    header: HeadingRow | None = None
     head: list[PrintedRow] = field(default_factory=list)
     rows: list[PrintedRow] = field(default_factory=list)
     edges: list[float] | None = None
@@ -114,7 +114,9 @@ def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
     """
     edges = _columns(printed)
     rows: list[SourceRow] = []
-    above: dict[int, Cell] = {}  # first column of a cell of the row above -> the cell
+    above: dict[
+        int, SourceCell
+    ] = {}  # first column of a cell of the row above -> the cell
     for row in printed:
         placed = _placed(row, edges)
         is_open = (
@@ -122,8 +124,8 @@ def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
             if len(row.continues) == len(placed)
             else (False,) * len(placed)
         )
-        cells: list[Cell] = []
-        here: dict[int, Cell] = {}
+        cells: list[SourceCell] = []
+        here: dict[int, SourceCell] = {}
         for (cell, column), goes_on in zip(placed, is_open, strict=True):
             upper = above.get(column)
             if goes_on and upper is not None and upper.columns == cell.columns:
@@ -166,23 +168,25 @@ def _columns(rows: list[PrintedRow]) -> list[float]:
     return edges
 
 
-def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
+def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[SourceCell, int]]:
     """Return the cells of a row with their first columns."""
     if not row.edges or len(edges) < 2:
         # A line above the headings spans all columns.
         if len(row.texts) == 1 and len(edges) > 2:
-            return [(Cell(row.texts[0], len(edges) - 1), 0)]
-        return [(Cell(text), index) for index, text in enumerate(row.texts)]
+            return [(SourceCell(row.texts[0], len(edges) - 1), 0)]
+        return [(SourceCell(text), index) for index, text in enumerate(row.texts)]
     shift = _shift(row, edges)
     places = [
         min(range(len(edges)), key=lambda i: abs(edges[i] - x - shift))
         for x in row.edges
     ]
     # The row can begin right of the first columns.
-    placed: list[tuple[Cell, int]] = [(Cell(""), column) for column in range(places[0])]
+    placed: list[tuple[SourceCell, int]] = [
+        (SourceCell(""), column) for column in range(places[0])
+    ]
     for text, start, end in zip(row.texts, places, places[1:], strict=False):
         if end > start:
-            placed.append((Cell(text, end - start), start))
+            placed.append((SourceCell(text, end - start), start))
         # Both sides of the cell are one edge of the table, so that it has no column of
         # its own.
         elif text and placed:

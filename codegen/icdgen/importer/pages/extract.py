@@ -39,7 +39,7 @@ class Word(NamedTuple):
         return (self.top + self.bottom) / 2
 
 
-class Rule(NamedTuple):
+class RulingLine(NamedTuple):
     """A horizontal or vertical ruling line at ``at``, from ``start`` to ``end``."""
 
     at: float
@@ -57,15 +57,15 @@ class Fill(NamedTuple):
 
 
 @dataclass(slots=True)
-class Page:
+class PageContents:
     """Words, ruling lines and shaded areas of a page."""
 
     number: int
     width: float
     height: float
     words: list[Word] = field(default_factory=list)
-    across: list[Rule] = field(default_factory=list)  # horizontal rules
-    down: list[Rule] = field(default_factory=list)  # vertical rules
+    across: list[RulingLine] = field(default_factory=list)  # horizontal rules
+    down: list[RulingLine] = field(default_factory=list)  # vertical rules
     fills: list[Fill] = field(default_factory=list)
     images: int = 0
     unmapped: int = 0  # characters without a meaning
@@ -75,14 +75,14 @@ class Page:
     failed: str = ""  # reason why the page cannot be read
 
 
-def extract(page: Any) -> Page:
+def extract(page: Any) -> PageContents:
     """Return words, rules and shaded areas of a page of pdfplumber."""
     from pdfminer.layout import LTChar, LTCurve, LTImage, LTLine, LTRect
     from pdfplumber.utils.text import extract_words
 
     # Viewers show the crop box (PDF 32000-1, 14.11.2).
     left, top, right, bottom = (float(edge) for edge in page.cropbox)
-    content = Page(page.page_number, right - left, bottom - top)
+    content = PageContents(page.page_number, right - left, bottom - top)
     shift = _Shift(page.mediabox[0] - left, page.mediabox[1] + page.height - top)
     chars = []
     for thing in _drawn(page):
@@ -155,7 +155,7 @@ def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
             "upright": thing.upright, "size": thing.size, "from": thing}  # fmt: skip
 
 
-def _word(content: Page, word: Mapping[str, Any]) -> None:
+def _word(content: PageContents, word: Mapping[str, Any]) -> None:
     text = _text(word)
     if not text:
         return
@@ -230,15 +230,17 @@ def _text(word: Mapping[str, Any]) -> str:
     return plain(text)
 
 
-def _line(content: Page, x0: float, top: float, x1: float, bottom: float) -> None:
+def _line(
+    content: PageContents, x0: float, top: float, x1: float, bottom: float
+) -> None:
     if bottom - top <= THIN and x1 - x0 > bottom - top:
-        content.across.append(Rule((top + bottom) / 2, x0, x1))
+        content.across.append(RulingLine((top + bottom) / 2, x0, x1))
     elif x1 - x0 <= THIN and bottom > top:
-        content.down.append(Rule((x0 + x1) / 2, top, bottom))
+        content.down.append(RulingLine((x0 + x1) / 2, top, bottom))
 
 
 def _rectangle(
-    content: Page, rect: Any, x0: float, top: float, x1: float, bottom: float
+    content: PageContents, rect: Any, x0: float, top: float, x1: float, bottom: float
 ) -> None:
     if x1 - x0 <= THIN or bottom - top <= THIN:
         _line(content, x0, top, x1, bottom)
@@ -247,12 +249,12 @@ def _rectangle(
         content.fills.append(Fill(x0, top, x1, bottom))
     if rect.stroke:
         for y in (top, bottom):
-            content.across.append(Rule(y, x0, x1))
+            content.across.append(RulingLine(y, x0, x1))
         for x in (x0, x1):
-            content.down.append(Rule(x, top, bottom))
+            content.down.append(RulingLine(x, top, bottom))
 
 
-def _curve(content: Page, curve: Any, shift: _Shift) -> None:
+def _curve(content: PageContents, curve: Any, shift: _Shift) -> None:
     """Add the straight pieces of a path, with which some writers draw rules."""
     points = [(x + shift.x, shift.y - y) for x, y in curve.pts]
     for (xa, ya), (xb, yb) in itertools.pairwise(points):

@@ -9,15 +9,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from icdgen.importer import labels
-from icdgen.importer.document import Box
+from icdgen.importer.document import PageBox
 from icdgen.importer.pages import columns, furniture, gutter, headings
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
-from icdgen.importer.pages.extract import Page
+from icdgen.importer.pages.extract import PageContents
 from icdgen.importer.pages.lines import (
     NARROW_GAP,
     WIDE_GAP,
-    Line,
+    TextLine,
     box_around,
     lines,
     runs,
@@ -35,31 +35,31 @@ _CONTINUED = re.compile(
 
 
 @dataclass(slots=True)
-class Piece:
+class TablePiece:
     """Part of a table on one page.
 
     ``columns``: columns of the headings; None without headings.
     """
 
-    box: Box
+    box: PageBox
     bands: list[Band]
     ruled: bool
     columns: Columns | None = None
     # The following attributes are used without vertical rules only.
     head: list[str] = field(default_factory=list)  # lines above the headings
-    lines: list[Line] = field(default_factory=list)  # lines of the body
-    page: Page | None = None  # page of the body
+    lines: list[TextLine] = field(default_factory=list)  # lines of the body
+    page: PageContents | None = None  # page of the body
     top: float = 0.0  # top of the body
     extent: tuple[float, float] = (0.0, 0.0)  # left and right side
 
 
 @dataclass(slots=True)
-class Mark:
+class TextItem:
     """A caption, a heading or a line of text."""
 
     kind: str  # "caption" | "heading" | "text"
     text: str
-    box: Box
+    box: PageBox
     size: float
     number: str = ""
     strong: bool = False  # looks like a heading without a number
@@ -67,10 +67,10 @@ class Mark:
     cells: list[tuple[float, str]] = field(default_factory=list)
 
 
-Item = Piece | Mark
+Item = TablePiece | TextItem
 
 
-def items(pages: list[Page], profile: Profile) -> list[Item]:
+def items(pages: list[PageContents], profile: Profile) -> list[Item]:
     """Return all items of the pages in reading order."""
     ruled = {page.number: regions(page) for page in pages}
     loose = {}
@@ -91,16 +91,19 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
     return in_order
 
 
-def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
+def _is_of_a_table(line: TextLine, near: list[TextLine], profile: Profile) -> bool:
     """Return whether a line in a margin certainly belongs to a table, even if pages
     repeat it.
     """
-    if profile.caption.match(line.text) or labels.begins(line.text, profile):
+    if profile.caption.match(line.text) or labels.begins_message_table(
+        line.text, profile
+    ):
         return True
     if headings.segmented(line.text.split(), profile) is not None:
         return True
     if any(
-        label.what and label.value for label in labels.parse(line.text, profile)[:1]
+        label.what and label.value
+        for label in labels.parse_labels(line.text, profile)[:1]
     ):
         return True
     # It may be one of several lines of headings, which are close together.
@@ -119,7 +122,7 @@ class _Flow:
     continue.
     """
 
-    def __init__(self, profile: Profile, text: Iterable[Line]) -> None:
+    def __init__(self, profile: Profile, text: Iterable[TextLine]) -> None:
         """Determine the size and style of body text from all lines ``text``."""
         self.profile = profile
         sizes: Counter[float] = Counter()
@@ -136,7 +139,9 @@ class _Flow:
         self.size = 0.0
         self.extent = (0.0, 0.0)
 
-    def page(self, page: Page, ruled: list[Region], loose: list[Line]) -> list[Item]:
+    def page(
+        self, page: PageContents, ruled: list[Region], loose: list[TextLine]
+    ) -> list[Item]:
         items_of_page: list[Item] = []
         index = 0
         waiting = list(ruled)
@@ -158,7 +163,7 @@ class _Flow:
                 items_of_page.append(item)
         return items_of_page
 
-    def ruled(self, page: Page, region: Region) -> Piece:
+    def ruled(self, page: PageContents, region: Region) -> TablePiece:
         inside = [w for w in page.words if region.holds(w)]
         cuts = region.cuts()
         bands = []
@@ -169,14 +174,14 @@ class _Flow:
             words = [w for w in inside if top <= w.middle < bottom]
             edges = region.separators(top, bottom)
             bands.append(Band(page.number, edges, words, region.open_above(top, edges)))
-        return Piece(
-            Box(page.number, region.x0, region.top, region.x1, region.bottom),
+        return TablePiece(
+            PageBox(page.number, region.x0, region.top, region.x1, region.bottom),
             bands,
             ruled=True,
         )
 
     def next(
-        self, page: Page, following: list[Line], first: bool
+        self, page: PageContents, following: list[TextLine], first: bool
     ) -> tuple[int, Item | None]:
         """Return the number of lines that belong to the item at the first line, and the
         item.
@@ -210,7 +215,7 @@ class _Flow:
             and len(text) < 80
             and not text.endswith((".", ":", ",", ";"))
         )
-        return 1, Mark(
+        return 1, TextItem(
             kind,
             text,
             box_around(page.number, [line]),
@@ -220,17 +225,19 @@ class _Flow:
             _cells(line),
         )
 
-    def stands_out(self, line: Line) -> bool:
+    def stands_out(self, line: TextLine) -> bool:
         return line.size > self.body_size + 0.6 or line.style != self.body_style
 
-    def is_caption(self, line: Line) -> bool:
+    def is_caption(self, line: TextLine) -> bool:
         match = self.profile.caption.match(line.text)
         # A sentence of the text can begin with `Table 5`, too.
         return match is not None and bool(
             match["mark"] or self.stands_out(line) or not match["title"]
         )
 
-    def caption(self, page: Page, following: list[Line]) -> tuple[int, Mark]:
+    def caption(
+        self, page: PageContents, following: list[TextLine]
+    ) -> tuple[int, TextItem]:
         """Return the number of lines of a caption, and the caption.
 
         Its lines have one size and style, are close together, and are not a sentence.
@@ -250,7 +257,7 @@ class _Flow:
             taken += 1
         text = " ".join(line.text for line in following[:taken])
         cells = _cells(following[0]) if taken == 1 else []
-        return taken, Mark(
+        return taken, TextItem(
             "caption",
             text,
             box_around(page.number, following[:taken]),
@@ -258,7 +265,7 @@ class _Flow:
             cells=cells,
         )
 
-    def head_length(self, following: list[Line]) -> tuple[int, Columns | None]:
+    def head_length(self, following: list[TextLine]) -> tuple[int, Columns | None]:
         """Return the number of lines above the headings of a table that begins here,
         and the headings.
 
@@ -279,7 +286,7 @@ class _Flow:
                 return index, header
             if self.is_caption(line) or self.labelled(following[index:]):
                 break
-            label = labels.leads(line.text, self.profile)
+            label = labels.leading_meaning(line.text, self.profile)
             gap = line.top - following[index - 1].bottom
             if (
                 not label
@@ -292,16 +299,16 @@ class _Flow:
             taken = index + 1
         return taken, None
 
-    def completes(self, above: Line, line: Line) -> bool:
+    def completes(self, above: TextLine, line: TextLine) -> bool:
         """Return whether a line completes the label above it, in a narrow column."""
         if line.top - above.bottom > 0.5 * line.size:
             return False
-        labelled = labels.parse(above.text, self.profile)
+        labelled = labels.parse_labels(above.text, self.profile)
         return bool(labelled) and bool(
-            labels.meaning(f"{labelled[-1].label} {line.text}", self.profile)
+            labels.meaning_of_label(f"{labelled[-1].label} {line.text}", self.profile)
         )
 
-    def labelled(self, following: list[Line]) -> int:
+    def labelled(self, following: list[TextLine]) -> int:
         """Return the number of lines of the first row of a message table that begins
         here, or 0.
 
@@ -314,11 +321,13 @@ class _Flow:
                 > 0.6 * following[0].size
             ):
                 return 0
-            if labels.begins(columns.side_by_side(following[:count]), self.profile):
+            if labels.begins_message_table(
+                columns.side_by_side(following[:count]), self.profile
+            ):
                 return count
         return 0
 
-    def head(self, lines: list[Line]) -> list[str]:
+    def head(self, lines: list[TextLine]) -> list[str]:
         """Return the rows above the headings as text."""
         count = self.labelled(lines) if lines else 0
         return ([columns.side_by_side(lines[:count])] if count else []) + [
@@ -326,12 +335,16 @@ class _Flow:
         ]
 
     def table(
-        self, page: Page, following: list[Line], length: int, header: Columns | None
-    ) -> tuple[int, Piece]:
+        self,
+        page: PageContents,
+        following: list[TextLine],
+        length: int,
+        header: Columns | None,
+    ) -> tuple[int, TablePiece]:
         head = self.head(following[:length])
         if header is None:
             self.open = None
-            return length, Piece(
+            return length, TablePiece(
                 box_around(page.number, following[:length]), [], ruled=False, head=head
             )
         start = length + header.lines
@@ -341,7 +354,7 @@ class _Flow:
             max(line.x1 for line in following[:start]),
         )
         body = self.cells(following[start:end], header)
-        piece = Piece(
+        piece = TablePiece(
             box_around(page.number, following[:end]), [], ruled=False, columns=header, head=head, lines=body, page=page,
             top=following[start - 1].bottom, extent=(x0, x1),
         )  # fmt: skip
@@ -349,7 +362,7 @@ class _Flow:
         self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
         return end, piece
 
-    def cells(self, body: list[Line], columns: Columns) -> list[Line]:
+    def cells(self, body: list[TextLine], columns: Columns) -> list[TextLine]:
         """Return the lines without a word left of all headings, such as ``Channels``.
 
         Such a word labels all rows and belongs to none.
@@ -360,16 +373,16 @@ class _Flow:
             text = " ".join(w.text for w in first)
             if (
                 first[-1].x1 <= columns.spans[0][0]
-                and labels.meaning(text, self.profile) == "fields"
+                and labels.meaning_of_label(text, self.profile) == "fields"
             ):
                 if len(first) < len(line.words):
-                    cell_lines.append(Line(line.words[len(first) :]))
+                    cell_lines.append(TextLine(line.words[len(first) :]))
             else:
                 cell_lines.append(line)
         return cell_lines
 
     def end(
-        self, page: Page, following: list[Line], start: int, header: Columns
+        self, page: PageContents, following: list[TextLine], start: int, header: Columns
     ) -> int:
         """Return the index of the first line after the table."""
         size = following[start].size if start < len(following) else 0
@@ -394,7 +407,7 @@ class _Flow:
         return next(below, end)
 
     def ends(
-        self, following: list[Line], index: int, header: Columns, size: float
+        self, following: list[TextLine], index: int, header: Columns, size: float
     ) -> bool:
         line = following[index]
         in_cell = _begins_in_a_column(line, header.spans)
@@ -415,7 +428,7 @@ class _Flow:
         gap = line.top - following[index - 1].bottom if index else 0
         return gap > 2.2 * line.size and not self.has_key(line)
 
-    def begins_anew(self, following: list[Line], index: int) -> bool:
+    def begins_anew(self, following: list[TextLine], index: int) -> bool:
         """Return whether the line is a heading row.
 
         A line at the height of the line above is a part of a cell.
@@ -428,7 +441,7 @@ class _Flow:
             is not None
         )
 
-    def is_prose(self, following: list[Line], header: Columns) -> bool:
+    def is_prose(self, following: list[TextLine], header: Columns) -> bool:
         """Return whether the first line belongs to a paragraph instead of a table."""
         return (
             self.reads_on(following[0], header.spans)
@@ -436,11 +449,11 @@ class _Flow:
             and not self.is_group(following, header)
         )
 
-    def has_key(self, line: Line) -> bool:
+    def has_key(self, line: TextLine) -> bool:
         first = runs(line, NARROW_GAP)[0]
         return is_key(" ".join(w.text for w in first))
 
-    def is_row(self, line: Line, header: Columns) -> bool:
+    def is_row(self, line: TextLine, header: Columns) -> bool:
         """Return whether the line certainly belongs to a table.
 
         It has a key, continues a cell, or has several cells.
@@ -451,7 +464,7 @@ class _Flow:
             or len(runs(line, WIDE_GAP)) >= min(3, len(header.spans))
         )
 
-    def is_group(self, following: list[Line], header: Columns) -> bool:
+    def is_group(self, following: list[TextLine], header: Columns) -> bool:
         """Return whether a line is a group heading of a list of any width: the next
         line has a key.
         """
@@ -461,7 +474,7 @@ class _Flow:
             and self.has_key(following[1])
         )
 
-    def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
+    def reads_on(self, line: TextLine, spans: list[tuple[float, float]]) -> bool:
         """Return whether text runs across three headings or more, as in a paragraph."""
         for run in runs(line, WIDE_GAP):
             x0, x1 = run[0].x0, run[-1].x1
@@ -471,7 +484,7 @@ class _Flow:
                 return True
         return False
 
-    def continues(self, following: list[Line]) -> bool:
+    def continues(self, following: list[TextLine]) -> bool:
         """Return whether the lines at the top of a page continue the table before."""
         line = following[0]
         if (
@@ -484,12 +497,14 @@ class _Flow:
             return False
         return any(map(self.has_key, following[:8])) or self.is_row(line, self.open)
 
-    def continuation(self, page: Page, following: list[Line]) -> tuple[int, Piece]:
+    def continuation(
+        self, page: PageContents, following: list[TextLine]
+    ) -> tuple[int, TablePiece]:
         assert self.open is not None
         end = max(1, self.end(page, following, 0, self.open))
         body = self.cells(following[:end], self.open)
         top = following[0].top - 1
-        piece = Piece(
+        piece = TablePiece(
             box_around(page.number, following[:end]),
             [],
             ruled=False,
@@ -501,12 +516,12 @@ class _Flow:
         return end, piece
 
 
-def _cells(line: Line) -> list[tuple[float, str]]:
+def _cells(line: TextLine) -> list[tuple[float, str]]:
     """Return the left side and the text of each run of words in a line."""
     return [(run[0].x0, text_of(run)) for run in runs(line, WIDE_GAP)]
 
 
-def _value_column(line: Line) -> float:
+def _value_column(line: TextLine) -> float:
     """Return the left side of the second run of words, which is the value next to a
     label.
     """
@@ -514,13 +529,17 @@ def _value_column(line: Line) -> float:
     return runs_of_line[1][0].x0 if len(runs_of_line) > 1 else line.x0
 
 
-def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
+def _begins_in_a_column(line: TextLine, spans: list[tuple[float, float]]) -> bool:
     """Return whether the line begins at a later column, and therefore continues a cell."""
     return any(abs(line.x0 - a) < 3 for a, _ in spans[2:])
 
 
 def _lowest_rule(
-    page: Page, following: list[Line], start: int, header: Columns, bottom: float
+    page: PageContents,
+    following: list[TextLine],
+    start: int,
+    header: Columns,
+    bottom: float,
 ) -> float:
     """Return the lowest horizontal rule of the table above ``bottom``.
 

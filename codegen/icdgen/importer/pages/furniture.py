@@ -7,8 +7,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable
 from typing import Any
 
-from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import Line
+from icdgen.importer.pages.extract import PageContents
+from icdgen.importer.pages.lines import TextLine
 
 MARGIN = 0.12  # fraction of the height of the page, at top and bottom
 _FIGURES = re.compile("[0-9]+")
@@ -19,10 +19,10 @@ _NUMBERING = re.compile(
 
 
 def without(
-    pages: list[Page],
-    lines: dict[int, list[Line]],
-    keep: Callable[[Line, list[Line]], bool],
-) -> dict[int, list[Line]]:
+    pages: list[PageContents],
+    lines: dict[int, list[TextLine]],
+    keep: Callable[[TextLine, list[TextLine]], bool],
+) -> dict[int, list[TextLine]]:
     """Return the lines of each page without heads and feet.
 
     ``keep`` selects lines that are never removed.
@@ -59,13 +59,13 @@ def without(
     return by_page
 
 
-def _in_margin(line: Line, page: Page) -> bool:
+def _in_margin(line: TextLine, page: PageContents) -> bool:
     return (
         line.middle < MARGIN * page.height or line.middle > (1 - MARGIN) * page.height
     )
 
 
-def _keys(line: Line) -> list[tuple[str, int]]:
+def _keys(line: TextLine) -> list[tuple[str, int]]:
     """Return text and height of a line.
 
     Two roundings of the height allow a small difference.
@@ -76,7 +76,7 @@ def _keys(line: Line) -> list[tuple[str, int]]:
     return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
 
 
-def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
+def _numbers_the_page(line: TextLine, page: PageContents, offset: int | None) -> bool:
     if not _in_margin(line, page):
         return False
     match = _NUMBERING.match(line.text.strip())
@@ -89,7 +89,7 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
     )
 
 
-def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
+def _offset(pages: list[PageContents], lines: dict[int, list[TextLine]]) -> int | None:
     """Return the difference between printed and counted page numbers.
 
     Return None if the pages are not numbered with bare figures.

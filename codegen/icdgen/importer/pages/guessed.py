@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import itertools
 
-from icdgen.importer.pages.draft import Draft, PrintedRow
-from icdgen.importer.pages.flow import Mark
+from icdgen.importer.pages.draft import PrintedRow, TableDraft
+from icdgen.importer.pages.flow import TextItem
 from icdgen.importer.pages.lines import box_around
 
 FEWEST_CELLS = 3
@@ -15,12 +15,14 @@ FEWEST_LINES = 3
 ALIGNED = 4.0  # points
 
 
-def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
+def made(items: list[TableDraft | TextItem]) -> list[TableDraft | TextItem]:
     """Return the items, with such lines as tables, so that they are reported."""
-    out: list[Draft | Mark] = []
-    for is_mark, group in itertools.groupby(items, lambda item: isinstance(item, Mark)):
+    out: list[TableDraft | TextItem] = []
+    for is_mark, group in itertools.groupby(
+        items, lambda item: isinstance(item, TextItem)
+    ):
         run = list(group)
-        marks = [item for item in run if isinstance(item, Mark)]
+        marks = [item for item in run if isinstance(item, TextItem)]
         at = 0
         for start, end, table in _tables(marks) if is_mark else ():
             out += [*run[at:start], table]
@@ -29,7 +31,7 @@ def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
     return out
 
 
-def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
+def _tables(marks: list[TextItem]) -> list[tuple[int, int, TableDraft]]:
     """Return first and last index, and the table, of each run of text lines like a
     table.
     """
@@ -47,7 +49,7 @@ def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
     return tables
 
 
-def _end(marks: list[Mark], start: int) -> int:
+def _end(marks: list[TextItem], start: int) -> int:
     """Return the index after the last line of a table that begins at ``start``."""
     first = marks[start]
     if first.kind != "text" or len(first.cells) < FEWEST_CELLS:
@@ -74,10 +76,10 @@ def _end(marks: list[Mark], start: int) -> int:
     return index
 
 
-def _table(marks: list[Mark]) -> Draft:
+def _table(marks: list[TextItem]) -> TableDraft:
     box = box_around(marks[0].box.page, [mark.box for mark in marks])
     columns = [x for x, _ in marks[0].cells]
-    draft = Draft([box])
+    draft = TableDraft([box])
     for mark in marks:
         cells = [""] * len(columns)
         for x, text in mark.cells:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import WIDE_GAP, Line, lines, runs, words_of
+from icdgen.importer.pages.extract import PageContents
+from icdgen.importer.pages.lines import WIDE_GAP, TextLine, lines, runs, words_of
 from icdgen.importer.pages.rules import Region
 
 NARROWEST = 6.0  # minimum points of white space between the columns
@@ -13,8 +13,8 @@ FULL = 0.8  # minimum width of such a line, as a fraction of the column
 
 
 def parts(
-    page: Page, regions: list[Region], lines_of_page: list[Line]
-) -> list[tuple[list[Region], list[Line]]]:
+    page: PageContents, regions: list[Region], lines_of_page: list[TextLine]
+) -> list[tuple[list[Region], list[TextLine]]]:
     """Return the regions and lines of the page, column by column."""
     words = words_of(lines_of_page)
     middle = _middle(page, regions, lines_of_page)
@@ -30,7 +30,7 @@ def parts(
 
 
 def _middle(
-    page: Page, regions: list[Region], lines_of_page: list[Line]
+    page: PageContents, regions: list[Region], lines_of_page: list[TextLine]
 ) -> float | None:
     """Return the position of the gap between two columns of text.
 
@@ -59,6 +59,6 @@ def _middle(
     return middle if len(full) >= FEWEST else None
 
 
-def _is_text(line: Line) -> bool:
+def _is_text(line: TextLine) -> bool:
     words = [word for word in line.words if any(c.islower() for c in word.text)]
     return len(words) >= WORDS and len(runs(line, WIDE_GAP)) == 1

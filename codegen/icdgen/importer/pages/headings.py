@@ -5,19 +5,19 @@ from __future__ import annotations
 from itertools import pairwise
 
 from icdgen.frozen import NamedTuple
-from icdgen.importer.pages.draft import Header
+from icdgen.importer.pages.draft import HeadingRow
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import folded, number
+from icdgen.importer.words import folded, printed_integer
 
 
-class Segment(NamedTuple):
+class HeadingSegment(NamedTuple):
     """Consecutive words of a line, and whether they are a known heading."""
 
     words: list[int]  # indices
     is_known: bool
 
 
-def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | None:
+def match(cells: list[str], profile: Profile, loose: bool = False) -> HeadingRow | None:
     """Return the heading row that these cells form, or None.
 
     ``loose``: fields may have no column of offsets.
@@ -25,7 +25,7 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
     texts = [folded(cell) for cell in cells]
     # A row with a number is a row of values.
     if sum(bool(text) for text in texts) < 2 or any(
-        number(cell) is not None for cell in cells
+        printed_integer(cell) is not None for cell in cells
     ):
         return None
     best, most = None, 0.0
@@ -43,7 +43,7 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
             1 for text, role in zip(texts, given, strict=True)
             if text and not role and profile.labels.get(tuple(sorted(text))) != "fields"
         )  # fmt: skip
-        header = Header(kind, given, cells)
+        header = HeadingRow(kind, given, cells)
         has_offsets = kind != "fields" or header.has_offsets
         if not has_offsets and not loose:
             continue
@@ -74,15 +74,15 @@ def _roles(
     return given
 
 
-def segmented(words: list[str], profile: Profile) -> list[Segment] | None:
+def segmented(words: list[str], profile: Profile) -> list[HeadingSegment] | None:
     """Return the headings that the words form regardless of gaps, or None.
 
     A word that belongs to no known heading is a segment of its own.
     """
-    best: tuple[int, list[Segment]] = (0, [])
+    best: tuple[int, list[HeadingSegment]] = (0, [])
     flat = [folded(word) for word in words]
     for kind, titles in profile.known_headings.items():
-        segments: list[Segment] = []
+        segments: list[HeadingSegment] = []
         index, hits = 0, 0
         while index < len(words):
             # The longest heading first, as one heading can begin with another.
@@ -91,11 +91,13 @@ def segmented(words: list[str], profile: Profile) -> list[Segment] | None:
                     part for text in flat[index : index + length] for part in text
                 )
                 if chunk in titles:
-                    segments.append(Segment(list(range(index, index + length)), True))
+                    segments.append(
+                        HeadingSegment(list(range(index, index + length)), True)
+                    )
                     index, hits = index + length, hits + 1
                     break
             else:
-                segments.append(Segment([index], False))
+                segments.append(HeadingSegment([index], False))
                 index += 1
         header = match(
             [" ".join(words[i] for i in segment.words) for segment in segments],
@@ -107,11 +109,11 @@ def segmented(words: list[str], profile: Profile) -> list[Segment] | None:
     return best[1] or None
 
 
-def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
+def repeats(cells: list[str], header: HeadingRow, profile: Profile) -> bool:
     """Return whether the cells repeat the headings, or some of them, as on a new page."""
     given = [tuple(folded(cell)) for cell in cells if cell.strip()]
     titles = [folded(title) for title in header.titles if title.strip()]
-    if not given or any(number(cell) is not None for cell in cells):
+    if not given or any(printed_integer(cell) is not None for cell in cells):
         return False
     if given == titles or (all(text in titles for text in given) and len(given) >= 2):
         return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from icdgen.importer.document import Box
+from icdgen.importer.document import PageBox
 from icdgen.importer.pages.extract import SMALL, Word
 from icdgen.importer.words import SUPERSCRIPTS
 
@@ -15,7 +15,7 @@ WIDE_GAP = 0.9  # between cells of a body: justified text has blanks of twice th
 TOUCH = 0.12  # fraction of the type size: closer words are parts of one word
 
 
-class Line:
+class TextLine:
     """Words of one line, from left to right."""
 
     __slots__ = ("words", "x0", "x1", "top", "bottom", "size", "style")
@@ -39,7 +39,7 @@ class Line:
         return f"Line({self.text!r} at {self.x0:.0f},{self.top:.0f})"
 
 
-def lines(words: Iterable[Word]) -> list[Line]:
+def lines(words: Iterable[Word]) -> list[TextLine]:
     """Return the lines from top to bottom.
 
     Words of a line overlap vertically by more than half the height of the lower one.
@@ -63,7 +63,9 @@ def lines(words: Iterable[Word]) -> list[Line]:
             best[2].append(word)
             tallest = max(best[2], key=lambda w: w.size)
             best[0], best[1] = tallest.top, tallest.bottom
-    return sorted((Line(group[2]) for group in groups), key=lambda line: line.middle)
+    return sorted(
+        (TextLine(group[2]) for group in groups), key=lambda line: line.middle
+    )
 
 
 def text_of(words: list[Word]) -> str:
@@ -94,15 +96,15 @@ def text_of(words: list[Word]) -> str:
     return text
 
 
-def words_of(lines_of_words: Iterable[Line]) -> list[Word]:
+def words_of(lines_of_words: Iterable[TextLine]) -> list[Word]:
     """Return the words of several lines."""
     return [word for line in lines_of_words for word in line.words]
 
 
-def box_around(page: int, things: Sequence[Line | Box]) -> Box:
+def box_around(page: int, things: Sequence[TextLine | PageBox]) -> PageBox:
     """Return the smallest box around objects on one page."""
     x0, top = min(thing.x0 for thing in things), min(thing.top for thing in things)
-    return Box(
+    return PageBox(
         page,
         x0,
         top,
@@ -111,7 +113,7 @@ def box_around(page: int, things: Sequence[Line | Box]) -> Box:
     )
 
 
-def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:
+def runs(line: TextLine, gap: float = 0.6) -> list[list[Word]]:
     """Return the words of a line in runs.
 
     ``gap`` is the minimum distance of two runs, as a fraction of the type size.

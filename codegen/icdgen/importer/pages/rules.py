@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from icdgen.importer.pages.extract import Page, Rule, Word
+from icdgen.importer.pages.extract import PageContents, RulingLine, Word
 
 SNAP = 1.8  # points: closer parallel rules count as one
 REACH = 4.0  # points: rules with a smaller gap meet
@@ -27,8 +27,8 @@ class Region:
     top: float
     x1: float
     bottom: float
-    across: list[Rule] = field(default_factory=list)
-    down: list[Rule] = field(default_factory=list)
+    across: list[RulingLine] = field(default_factory=list)
+    down: list[RulingLine] = field(default_factory=list)
 
     def holds(self, word: Word) -> bool:
         """Return whether a word is inside the region."""
@@ -87,7 +87,7 @@ def distinct(values: list[float], snap: float = SNAP) -> list[float]:
     return separate
 
 
-def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
+def _lengths(rules: list[RulingLine]) -> list[tuple[float, float]]:
     """Return each height with the total length of rules at it."""
     lengths: dict[float, float] = {}
     for rule in joined(rules):
@@ -95,8 +95,8 @@ def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
     return list(lengths.items())
 
 
-def _joined_spans(rules: list[Rule]) -> list[Rule]:
-    spans: list[Rule] = []
+def _joined_spans(rules: list[RulingLine]) -> list[RulingLine]:
+    spans: list[RulingLine] = []
     for rule in sorted(rules, key=lambda r: r.start):
         if spans and rule.start <= spans[-1].end + SNAP:
             spans[-1] = spans[-1]._replace(end=max(spans[-1].end, rule.end))
@@ -105,9 +105,9 @@ def _joined_spans(rules: list[Rule]) -> list[Rule]:
     return spans
 
 
-def joined(rules: list[Rule]) -> list[Rule]:
+def joined(rules: list[RulingLine]) -> list[RulingLine]:
     """Return the rules, with collinear pieces that touch joined."""
-    groups: list[list[Rule]] = []
+    groups: list[list[RulingLine]] = []
     for rule in sorted(rules, key=lambda r: (r.at, r.start)):
         if groups and rule.at - groups[-1][0].at <= SNAP:
             groups[-1].append(rule._replace(at=groups[-1][0].at))
@@ -116,7 +116,7 @@ def joined(rules: list[Rule]) -> list[Rule]:
     return [rule for group in groups for rule in _joined_spans(group)]
 
 
-def regions(page: Page) -> list[Region]:
+def regions(page: PageContents) -> list[Region]:
     """Return the ruled regions of the page that have columns: a vertical rule inside."""
     across, down = joined(page.across), joined(page.down)
     parent = list(range(len(across) + len(down)))
@@ -136,7 +136,7 @@ def regions(page: Page) -> list[Region]:
             if down[j].start - REACH <= flat.at <= down[j].end + REACH:
                 parent[root(i)] = root(len(across) + j)
     _sides(down, len(across), parent, root)
-    groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
+    groups: dict[int, tuple[list[RulingLine], list[RulingLine]]] = {}
     for i, rule in enumerate([*across, *down]):
         # The index is a boolean: 0 for horizontal rules, 1 for vertical ones.
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
@@ -234,7 +234,7 @@ def _goes_on(above: Region, below: Region) -> bool:
 
 
 def _sides(
-    down: list[Rule], first: int, parent: list[int], root: Callable[[int], int]
+    down: list[RulingLine], first: int, parent: list[int], root: Callable[[int], int]
 ) -> None:
     """Join the sides of a table whose top and bottom are on other pages, and rules
     between them.
@@ -279,14 +279,16 @@ def _outermost(regions: list[Region]) -> list[Region]:
     ]  # fmt: skip
 
 
-def row_marks(page: Page, x0: float, x1: float) -> list[float]:
+def row_marks(page: PageContents, x0: float, x1: float) -> list[float]:
     """Return heights with a rule, or the edge of a shaded row, over most of the width."""
     # A tall area is a background and not a row.
     shallow = [
         fill for fill in page.fills if fill.bottom - fill.top < 0.5 * page.height
     ]
     edges = [
-        Rule(y, fill.x0, fill.x1) for fill in shallow for y in (fill.top, fill.bottom)
+        RulingLine(y, fill.x0, fill.x1)
+        for fill in shallow
+        for y in (fill.top, fill.bottom)
     ]
     heights = []
     for rules in (page.across, edges):

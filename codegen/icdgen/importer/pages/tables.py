@@ -9,40 +9,40 @@ from icdgen.importer import labels
 from icdgen.importer.document import Block
 from icdgen.importer.pages import bands, captions, columns, headings
 from icdgen.importer.pages.bands import Band
-from icdgen.importer.pages.draft import Draft, Header, PrintedRow
-from icdgen.importer.pages.flow import Item, Mark, Piece
-from icdgen.importer.pages.lines import Line, lines, words_of
+from icdgen.importer.pages.draft import HeadingRow, PrintedRow, TableDraft
+from icdgen.importer.pages.flow import Item, TablePiece, TextItem
+from icdgen.importer.pages.lines import TextLine, lines, words_of
 from icdgen.importer.pages.rules import row_marks
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import CONTINUED, squeezed
 
 
 @dataclass
-class Builder:
+class TableBuilder:
     """Assembles items to drafts, in one pass."""
 
     profile: Profile
     document_words: frozenset[str]
     is_part: bool = False  # whether only some pages of the document are read
-    out: list[Draft | Mark] = field(default_factory=list)
+    out: list[TableDraft | TextItem] = field(default_factory=list)
     # Drafts are compared by their content and therefore have no hash.
     # Id of a draft -> its pieces without vertical rules.
-    loose_pieces: dict[int, list[Piece]] = field(default_factory=dict)
+    loose_pieces: dict[int, list[TablePiece]] = field(default_factory=dict)
 
     def run(self, items: list[Item]) -> list[Block]:
         """Return headings, text and tables with their captions."""
         for item in items:
-            if isinstance(item, Piece):
+            if isinstance(item, TablePiece):
                 self.piece(item)
             else:
                 self.out.append(item)
         # Columns are found from all pieces of a table, which are known only now.
         for draft in self.out:
-            if isinstance(draft, Draft) and id(draft) in self.loose_pieces:
+            if isinstance(draft, TableDraft) and id(draft) in self.loose_pieces:
                 self.cut(draft, self.loose_pieces[id(draft)])
         return captions.attached(self.out, self.profile, self.is_part)
 
-    def piece(self, piece: Piece) -> None:
+    def piece(self, piece: TablePiece) -> None:
         draft = self.continued(piece)
         if draft is None:
             draft = self.begin(piece)
@@ -53,19 +53,19 @@ class Builder:
         else:
             self.loose(draft, piece)
 
-    def begin(self, piece: Piece) -> Draft:
-        draft = Draft([piece.box])
+    def begin(self, piece: TablePiece) -> TableDraft:
+        draft = TableDraft([piece.box])
         self.out.append(draft)
         return draft
 
-    def continued(self, piece: Piece) -> Draft | None:
+    def continued(self, piece: TablePiece) -> TableDraft | None:
         """Return the draft that this piece continues, or None."""
         between = 0
         number = None
-        torn: list[Mark] = []
-        last: Mark | None = None  # last line of text in between
+        torn: list[TextItem] = []
+        last: TextItem | None = None  # last line of text in between
         for item in reversed(self.out):
-            if isinstance(item, Draft):
+            if isinstance(item, TableDraft):
                 break
             match = (
                 self.profile.caption.match(item.text)
@@ -75,7 +75,7 @@ class Builder:
             if match and (CONTINUED.search(item.text) or self.repeated(item)):
                 number = match["number"]
                 continue
-            if item.kind == "text" and labels.leads(item.text, self.profile):
+            if item.kind == "text" and labels.leading_meaning(item.text, self.profile):
                 torn.insert(0, item)  # a row above the headings, after a page break
                 continue
             if item.kind != "text" or item.size > 8.6:
@@ -119,7 +119,7 @@ class Builder:
                 self.out.pop()
         return draft
 
-    def is_group(self, draft: Draft, mark: Mark) -> bool:
+    def is_group(self, draft: TableDraft, mark: TextItem) -> bool:
         """Return whether a line below a list is the heading of the next page's first
         group.
         """
@@ -133,18 +133,20 @@ class Builder:
         )
         return mark.strong or (touches and len(mark.cells) == 1)
 
-    def repeated(self, mark: Mark) -> bool:
+    def repeated(self, mark: TextItem) -> bool:
         """Return whether an earlier caption has the same number and title."""
         return any(
-            other is not mark and isinstance(other, Mark) and other.kind == "caption"
+            other is not mark and isinstance(other, TextItem) and other.kind == "caption"
             and squeezed(other.text) == squeezed(mark.text)
             for other in self.out
         )  # fmt: skip
 
-    def first_is_id(self, piece: Piece) -> bool:
+    def first_is_id(self, piece: TablePiece) -> bool:
         """Return whether the piece begins the table of a message, with its id."""
         if not piece.ruled:
-            return bool(piece.head) and labels.begins(piece.head[0], self.profile)
+            return bool(piece.head) and labels.begins_message_table(
+                piece.head[0], self.profile
+            )
         first = next((band for band in piece.bands if band.words), None)
         if first is None:
             return False
@@ -152,9 +154,9 @@ class Builder:
             " ".join(t for t in first.texts(self.document_words) if t),
             lines(first.words)[0].text,
         )
-        return any(labels.begins(text, self.profile) for text in texts)
+        return any(labels.begins_message_table(text, self.profile) for text in texts)
 
-    def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
+    def fits(self, draft: TableDraft, piece: TablePiece, follows: bool) -> bool:
         """Return whether the columns of the piece match the draft."""
         header = draft.header
         if not piece.ruled:
@@ -175,7 +177,7 @@ class Builder:
             return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
         return abs(box.width - last.width) < 8
 
-    def header_of(self, piece: Piece) -> Header | None:
+    def header_of(self, piece: TablePiece) -> HeadingRow | None:
         for band in piece.bands[:3]:
             header = headings.match(
                 band.texts(self.document_words), self.profile, loose=True
@@ -188,7 +190,7 @@ class Builder:
 
     # Tables with vertical rules.
 
-    def ruled(self, draft: Draft, piece: Piece) -> None:
+    def ruled(self, draft: TableDraft, piece: TablePiece) -> None:
         waiting = list(piece.bands)
         fresh = True  # no row of this piece has been read yet
         while waiting:
@@ -225,7 +227,7 @@ class Builder:
                 self.body(draft, band, torn=fresh and len(draft.boxes) > 1)
                 fresh = False
 
-    def below_headings(self, draft: Draft, band: Band) -> Band | None:
+    def below_headings(self, draft: TableDraft, band: Band) -> Band | None:
         """Return the remainder of a band that begins with the repeated headings, or
         None.
         """
@@ -241,7 +243,7 @@ class Builder:
                 return band.of(lines_of_band[count:])
         return None
 
-    def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
+    def lower_half(self, draft: TableDraft, texts: list[str]) -> HeadingRow | None:
         """Return the complete headings if a page break separates their two lines,
         otherwise None.
         """
@@ -255,12 +257,14 @@ class Builder:
         )
         return both_lines if both_lines and both_lines.known > header.known else None
 
-    def is_new(self, draft: Draft, texts: list[str]) -> bool:
+    def is_new(self, draft: TableDraft, texts: list[str]) -> bool:
         """Return whether a band is the first of another message within the same rules."""
         has_more = draft.header is not None or len(draft.head) > 0
-        return has_more and labels.begins(" ".join(t for t in texts if t), self.profile)
+        return has_more and labels.begins_message_table(
+            " ".join(t for t in texts if t), self.profile
+        )
 
-    def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
+    def header(self, draft: TableDraft, band: Band, waiting: list[Band]) -> bool:
         """Set the heading row if the band contains it or its upper half.
 
         Return whether it does.
@@ -309,20 +313,20 @@ class Builder:
     def labelled(self, rows: list[PrintedRow]) -> int:
         """Return the number of values with a known label."""
         labelled = (
-            labels.parse(" ".join(filter(None, row.lines)), self.profile)
+            labels.parse_labels(" ".join(filter(None, row.lines)), self.profile)
             for row in rows
         )
         return sum(
             1 for parts in labelled for label in parts if label.what and label.value
         )
 
-    def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
+    def split(self, band: Band) -> tuple[list[TextLine], HeadingRow, Band] | None:
         """Split a band without rules between its rows: lines above the headings,
         headings, remainder.
         """
         lines_of_band = lines(band.words)
         for start in range(min(8, len(lines_of_band))):
-            best: tuple[int, Header] | None = None
+            best: tuple[int, HeadingRow] | None = None
             for count in range(1, min(4, len(lines_of_band) - start) + 1):
                 header = headings.match(
                     band.of(lines_of_band[start : start + count]).texts(
@@ -342,7 +346,7 @@ class Builder:
                 )
         return None
 
-    def body(self, draft: Draft, band: Band, torn: bool) -> None:
+    def body(self, draft: TableDraft, band: Band, torn: bool) -> None:
         assert draft.header is not None and draft.edges is not None
         header = draft.header
         if len(band.edges) < len(draft.edges):
@@ -360,14 +364,14 @@ class Builder:
 
     # Tables without vertical rules.
 
-    def loose(self, draft: Draft, piece: Piece) -> None:
+    def loose(self, draft: TableDraft, piece: TablePiece) -> None:
         draft.head += [PrintedRow([text], page=piece.box.page) for text in piece.head]
         if piece.columns is not None and draft.header is None:
             draft.header = piece.columns.header
         if draft.header is not None:
             self.loose_pieces.setdefault(id(draft), []).append(piece)
 
-    def cut(self, draft: Draft, pieces: list[Piece]) -> None:
+    def cut(self, draft: TableDraft, pieces: list[TablePiece]) -> None:
         """Add the rows of pieces without vertical rules, with columns found from all
         their lines.
         """
@@ -397,7 +401,7 @@ class Builder:
                     draft.rows += rows
 
 
-def _bands(piece: Piece, edges: list[float]) -> list[Band]:
+def _bands(piece: TablePiece, edges: list[float]) -> list[Band]:
     """Return the bands of a piece, separated by rules or shading."""
     if not piece.lines or piece.page is None:
         return []

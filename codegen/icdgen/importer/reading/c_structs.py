@@ -22,12 +22,12 @@ from icdgen.errors import UserError
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import (
     Block,
-    Cell,
     Document,
     Heading,
+    SourceCell,
     SourceRow,
     SourceTable,
-    Text,
+    TextBlock,
 )
 from icdgen.importer.reading.c_text import CText, Definition
 from icdgen.importer.reading.utf8 import utf8_text
@@ -70,7 +70,7 @@ class Unreadable(Exception):
 
 
 @dataclass
-class Member:
+class StructMember:
     """A member of a struct and its offset.
 
     ``bit`` is set for bit fields, ``count`` for arrays.
@@ -87,10 +87,10 @@ class Member:
 
 
 @dataclass
-class Layout:
+class StructLayout:
     """The members of a struct, its size and its alignment in bytes, and its padding."""
 
-    members: list[Member] = field(default_factory=list)
+    members: list[StructMember] = field(default_factory=list)
     size: int = 0
     alignment: int = 1
     padding: list[str] = field(default_factory=list)
@@ -118,13 +118,13 @@ def in_document(document: Document) -> None:
     Text that is not valid C stays text.
     """
     blocks: list[Block] = []
-    waiting: list[Text] = []
+    waiting: list[TextBlock] = []
     for block in document.blocks:
         blocks.append(block)
-        begins = isinstance(block, Text) and re.match(
+        begins = isinstance(block, TextBlock) and re.match(
             r"(?:typedef\s+)?(?:\w+\s+)?struct\b[^;]*$", block.text.strip()
         )
-        if isinstance(block, Text) and (waiting or begins):
+        if isinstance(block, TextBlock) and (waiting or begins):
             waiting.append(block)
             text = "\n".join(line.text for line in waiting)
             if (
@@ -179,7 +179,7 @@ def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
         raise Unreadable(
             message, "declare its types in the same file, and take out macros"
         ) from None
-    reader = _Reader(source, c_ast)
+    reader = _DeclarationReader(source, c_ast)
     reader.take_definitions(tree)
     for declaration in tree.ext:
         # Types of the prelude, which the file may declare, too: `scalar` knows their
@@ -206,7 +206,7 @@ def _wrong_line(source: CText, c_parser: Any) -> int:
     return 1
 
 
-class _Reader:
+class _DeclarationReader:
     """Makes tables of the declarations of a file; ``ast`` is pycparser's module of
     nodes.
     """
@@ -383,15 +383,15 @@ class _Reader:
         self, caption: str, line: int, rows: list[list[str]], texts: list[str]
     ) -> None:
         above = self.source.above(line)
-        self.blocks += [Text(text, line=line) for text in (above, *texts) if text]
+        self.blocks += [TextBlock(text, line=line) for text in (above, *texts) if text]
         self.blocks.append(
             SourceTable(
                 caption=caption,
-                rows=[SourceRow(list(map(Cell, row)), line=line) for row in rows],
+                rows=[SourceRow(list(map(SourceCell, row)), line=line) for row in rows],
             )
         )
 
-    def layout(self, node: Any) -> Layout:
+    def layout(self, node: Any) -> StructLayout:
         """Return the layout of a struct.
 
         Raise `Unreadable` if it is not a sequence of bytes.
@@ -421,8 +421,8 @@ class _Reader:
         finally:
             self.opened.pop()
 
-    def computed_layout(self, node: Any, definition: Definition) -> Layout:
-        layout = Layout()
+    def computed_layout(self, node: Any, definition: Definition) -> StructLayout:
+        layout = StructLayout()
         # Bytes to which members are aligned at most.
         most = 1 if definition.is_packed else definition.most
         at = 0  # bits used so far
@@ -466,7 +466,7 @@ class _Reader:
         layout.size = self.aligned(at, 8 * layout.alignment, layout, "") // 8
         return layout
 
-    def bit_field(self, declaration: Any) -> tuple[Member, int]:
+    def bit_field(self, declaration: Any) -> tuple[StructMember, int]:
         """Return a bit field at bit 0, and the size of its type in bits."""
         name = declaration.name or ""
         kind, size = self.scalar(declaration.type)
@@ -488,9 +488,9 @@ class _Reader:
         kind = "int" if kind == "int" else "uint"
         members = self.members_of(declaration.type)
         line = declaration.coord.line if declaration.coord is not None else None
-        return Member(0, width, kind, name, 0, 0, members, line), size
+        return StructMember(0, width, kind, name, 0, 0, members, line), size
 
-    def aligned(self, at: int, boundary: int, layout: Layout, name: str) -> int:
+    def aligned(self, at: int, boundary: int, layout: StructLayout, name: str) -> int:
         """Return the next multiple of a number of bits.
 
         Skipped bytes are recorded as padding.
@@ -503,7 +503,7 @@ class _Reader:
             )
         return at + padding
 
-    def member(self, declaration: Any) -> tuple[list[Member], int, int]:
+    def member(self, declaration: Any) -> tuple[list[StructMember], int, int]:
         """Return the members of a declaration, and its size and alignment in bytes.
 
         Offsets count from the beginning of the declaration.
@@ -568,7 +568,7 @@ class _Reader:
         for n in counts:
             count *= n
         shown = {"char": "char", "bool": f"uint{size}"}.get(name, f"{name}{size}")
-        place = Member(
+        place = StructMember(
             0,
             size,
             shown,

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from icdgen.frozen import NamedTuple
-from icdgen.importer.document import Block, SourceTable, Text
+from icdgen.importer.document import Block, SourceTable, TextBlock
 
 
 class Caption(NamedTuple):
@@ -44,7 +44,7 @@ def attach_captions(blocks: Sequence[Block | Caption]) -> list[Block]:
     for index, block in enumerate(blocks):
         if isinstance(block, Caption):
             if index not in used:
-                result.append(Text(block.text, block.page, block.line))
+                result.append(TextBlock(block.text, block.page, block.line))
             continue
         if isinstance(block, SourceTable) and index in owner:
             caption = blocks[owner[index]]

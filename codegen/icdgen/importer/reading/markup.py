@@ -16,12 +16,12 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
 from icdgen.importer.document import (
     Block,
-    Cell,
     Document,
     Heading,
+    SourceCell,
     SourceRow,
     SourceTable,
-    Text,
+    TextBlock,
 )
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
@@ -166,7 +166,7 @@ def _row_group(elements: list[Any]) -> list[SourceRow]:
     for index, row in enumerate(elements):
         left = len(elements) - index
         cells = [
-            Cell(
+            SourceCell(
                 _cell_text(cell),
                 max(_span(cell, "colspan", _MOST_COLUMNS), 1),
                 # A row span of 0 extends to the end of the group.
@@ -247,7 +247,7 @@ def _paragraph(text: str, profile: Profile) -> Iterator[Block | Caption]:
             text,
         )
     else:
-        yield Text(text)
+        yield TextBlock(text)
 
 
 def read_docx(path: Path, profile: Profile) -> Document:
@@ -339,12 +339,12 @@ def _is_of(mark: Any, name: str) -> bool:
 def _word_rows(table: Any) -> list[SourceRow]:
     """Return the rows of a Word table. Vertically merged cells have a row span."""
     rows: list[SourceRow] = []
-    above: dict[int, Cell] = {}  # column -> the cell that may go on
+    above: dict[int, SourceCell] = {}  # column -> the cell that may go on
     for row in table._tbl.tr_lst:
         cells = []
-        here: dict[int, Cell] = {}
+        here: dict[int, SourceCell] = {}
         column = row.grid_before if hasattr(row, "grid_before") else 0
-        cells += [Cell("") for _ in range(column)]
+        cells += [SourceCell("") for _ in range(column)]
         for tc in row.tc_lst:
             span = tc.grid_span
             if tc.vMerge == "continue" and column in above:
@@ -352,7 +352,7 @@ def _word_rows(table: Any) -> list[SourceRow]:
                 here[column] = above[column]
             else:
                 lines = (line for p in tc.p_lst for line in p.text.split("\n"))
-                cell = Cell("\n".join(filter(None, map(plain, lines))), span)
+                cell = SourceCell("\n".join(filter(None, map(plain, lines))), span)
                 cells.append(cell)
                 here[column] = cell
             column += span

@@ -21,7 +21,7 @@ from icdgen.errors import UserError
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import Document
 from icdgen.importer.pages import flow, tables
-from icdgen.importer.pages.extract import Page, extract
+from icdgen.importer.pages.extract import PageContents, extract
 from icdgen.importer.profile import Profile
 
 FEW = 12  # pages; below this, starting processes costs more than it saves
@@ -59,7 +59,7 @@ def read(
             progress(len(pages), count, seen)
     _look_over(pages, document, name)
     items = flow.items(pages, profile)
-    document.blocks = tables.Builder(
+    document.blocks = tables.TableBuilder(
         profile, _known(pages), is_part=only is not None
     ).run(items)
     return document
@@ -112,7 +112,7 @@ def _refused(name: str, message: str, help: str) -> Findings:
     return Findings([Finding("IMP003", message, Place(name), help)])
 
 
-def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
+def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[PageContents]:
     count = len(wanted)
     # macOS and Windows lack `sched_getaffinity`.
     available = (
@@ -160,7 +160,7 @@ def _end_worker() -> None:
     _open_file = None
 
 
-def _work(number: int) -> Page:
+def _work(number: int) -> PageContents:
     assert _open_file is not None
     page = _open_file.pages[number]
     try:
@@ -168,7 +168,7 @@ def _work(number: int) -> Page:
         return extract(page)
     except Exception as error:  # one broken page must not cost the others
         # The size of A4 in points.
-        return Page(
+        return PageContents(
             number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200]
         )
     finally:
@@ -198,7 +198,7 @@ def _weigh(page: Any) -> None:
             raise ValueError(f"its contents are more than {MOST_CONTENTS:,} bytes")
 
 
-def _look_over(pages: list[Page], document: Document, name: str) -> None:
+def _look_over(pages: list[PageContents], document: Document, name: str) -> None:
     """Report pages without text and with unreadable characters.
 
     Raises `Findings` if the document has no text.
@@ -220,7 +220,7 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         ]
 
 
-def _of_page(page: Page) -> Iterator[ImportFinding]:
+def _of_page(page: PageContents) -> Iterator[ImportFinding]:
     """Report the parts of a page that cannot be read."""
     if page.failed:
         help = "its content is missing from the ICD"
@@ -247,7 +247,7 @@ def _of_page(page: Page) -> Iterator[ImportFinding]:
         yield ImportFinding("IMP012", what, help="compare what was read with the page")
 
 
-def _captions(page: Page, profile: Profile) -> int:
+def _captions(page: PageContents, profile: Profile) -> int:
     """Return about how many tables begin on the page, for the display of progress."""
     heads = {word.rstrip(".") for word in profile.data["captions"]}
     pairs = pairwise(word.text for word in page.words)
@@ -257,7 +257,7 @@ def _captions(page: Page, profile: Profile) -> int:
     )
 
 
-def _known(pages: list[Page]) -> frozenset[str]:
+def _known(pages: list[PageContents]) -> frozenset[str]:
     """Return all words of the document that are not broken at the end of a line."""
     return frozenset(
         word.text.strip(".,;:()[]") for page in pages for word in page.words

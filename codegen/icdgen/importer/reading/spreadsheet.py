@@ -18,12 +18,12 @@ from icdgen.errors import UserError
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import (
     Block,
-    Cell,
     Document,
     Heading,
+    SourceCell,
     SourceRow,
     SourceTable,
-    Text,
+    TextBlock,
 )
 from icdgen.importer.reading.utf8 import utf8_text
 
@@ -31,7 +31,7 @@ CODE = "IMP002"
 # Of a sheet: sheets that are formatted to their end have a million rows.
 MOST_ROWS, MOST_COLUMNS = 100_000, 1_000
 # Number of the row, counted from 1, and the cells that begin in it.
-Cells = list[tuple[int, list[Cell]]]
+Cells = list[tuple[int, list[SourceCell]]]
 
 
 def read_csv(path: Path) -> Document:
@@ -54,7 +54,10 @@ def read_csv(path: Path) -> Document:
         start = 1
         for row in reader:
             rows.append(
-                (start, [Cell(cell.strip().replace("\r\n", "\n")) for cell in row])
+                (
+                    start,
+                    [SourceCell(cell.strip().replace("\r\n", "\n")) for cell in row],
+                )
             )
             # A row has several lines if a quoted cell contains line ends.
             start = reader.line_num + 1
@@ -164,7 +167,7 @@ class _Sheet:
                 if (row, column) in covered:
                     continue
                 columns, rows = spans.get((row, column), (1, 1))
-                cells.append(Cell(self.text(row, column), columns, rows))
+                cells.append(SourceCell(self.text(row, column), columns, rows))
             result.append((row, cells))
         return result
 
@@ -241,7 +244,7 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
             and not open_rows
             and (cells[0].text or len(cells) > 1)
         ):
-            blocks.append(Text(filled[0], line=number))
+            blocks.append(TextBlock(filled[0], line=number))
         else:
             table.append(SourceRow(cells, line=number))
         open_rows = max([open_rows, *(cell.rows for cell in cells if cell.text)])

@@ -11,12 +11,12 @@ from pathlib import Path
 from icdgen.importer import labels
 from icdgen.importer.document import (
     Block,
-    Cell,
     Document,
     Heading,
+    SourceCell,
     SourceRow,
     SourceTable,
-    Text,
+    TextBlock,
 )
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
@@ -32,7 +32,7 @@ def read(path: Path, profile: Profile) -> Document:
     name = str(path)
     text = utf8_text(path, "save the text as UTF-8")
     document = Document(name)
-    reader = _Reader(profile, name)
+    reader = _TextReader(profile, name)
     # Not `splitlines`, which would also split at form feeds.
     for number, words in enumerate(re.split("\r\n|[\n\r]", text), 1):
         reader.line(words.rstrip(" "), number)
@@ -41,7 +41,7 @@ def read(path: Path, profile: Profile) -> Document:
     return document
 
 
-class _Reader:
+class _TextReader:
     def __init__(self, profile: Profile, name: str) -> None:
         self.profile, self.name = profile, name
         self.blocks: list[Block | Caption] = []
@@ -83,12 +83,12 @@ class _Reader:
                 Heading(heading["number"], heading["text"], self.page, number)
             )
         else:
-            self.blocks.append(Text(plain(text), self.page, number))
+            self.blocks.append(TextBlock(plain(text), self.page, number))
 
     def row(self, cells: list[str], number: int) -> None:
-        if labels.begins(" ".join(filter(None, cells)), self.profile):
+        if labels.begins_message_table(" ".join(filter(None, cells)), self.profile):
             self.close()  # a message's table begins behind the one before it
-        self.rows.append(SourceRow(list(map(Cell, cells)), self.page, number))
+        self.rows.append(SourceRow(list(map(SourceCell, cells)), self.page, number))
 
     def close(self) -> None:
         """End the table."""

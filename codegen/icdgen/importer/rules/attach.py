@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from icdgen.importer.model import Found, ReadMessage
+from icdgen.importer.model import ReadMessage, TableResult
 from icdgen.importer.rules.bit_order import Order, bits_of, run_of
-from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.fields import FieldDraft
 from icdgen.importer.rules.language import decimal, normalised
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part, known_kind
+from icdgen.importer.rules.parts import TablePart, known_kind
 from icdgen.importer.words import squeezed
 
 # Roles that bits share with the field they divide.
@@ -27,7 +27,9 @@ _GROUP = (
 _STATED = ("kind", "length")
 
 
-def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) -> None:
+def attach(
+    parts: list[TablePart], messages: list[TablePart], order: Order, notes: Notes
+) -> None:
     """Give enumerations, lookup tables and bits to the fields that their `of` names."""
     for part in parts:
         # An enumeration with a name of its own belongs to no field: `lists` reads it.
@@ -55,8 +57,8 @@ def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) 
 
 
 def _hosts(
-    name: str, part: Part, parts: list[Part], messages: list[Part]
-) -> list[tuple[Part, Draft]]:
+    name: str, part: TablePart, parts: list[TablePart], messages: list[TablePart]
+) -> list[tuple[TablePart, FieldDraft]]:
     """Return the fields of this name in the message that the part names, or in all
     messages.
 
@@ -81,7 +83,7 @@ def _hosts(
     return fields
 
 
-def _lookup(part: Part, field: Draft, notes: Notes) -> None:
+def _lookup(part: TablePart, field: FieldDraft, notes: Notes) -> None:
     points = [[raw, decimal(text)] for raw, text in part.pairs]
     if any(physical is None for _, physical in points):
         notes.error(
@@ -99,7 +101,9 @@ def _lookup(part: Part, field: Draft, notes: Notes) -> None:
     ]
 
 
-def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) -> None:
+def _divide(
+    part: TablePart, host: TablePart, field: FieldDraft, order: Order, notes: Notes
+) -> None:
     """Put the fields of bits in the place of the field that they divide."""
     # Tables of bits count from the least significant bit of the value, wherever the
     # value stands in the frame.
@@ -153,12 +157,14 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
     host.drafts[index : index + 1] = pieces
 
 
-def check_index(index: list[Part], results: list[Found], notes: Notes) -> None:
+def check_index(
+    index: list[TablePart], results: list[TableResult], notes: Notes
+) -> None:
     """Complete messages from the index, and report what it contradicts, lists without a
     table, or lacks.
     """
     messages = [
-        result.thing for result in results if isinstance(result.thing, ReadMessage)
+        result.content for result in results if isinstance(result.content, ReadMessage)
     ]
     for entry in index:
         id, name = entry.number("id"), normalised(entry.name)
@@ -186,7 +192,7 @@ def check_index(index: list[Part], results: list[Found], notes: Notes) -> None:
 
 
 def _complete(
-    message: ReadMessage, entry: Part, id: int | None, name: str, notes: Notes
+    message: ReadMessage, entry: TablePart, id: int | None, name: str, notes: Notes
 ) -> None:
     if not message.name:
         message.name = name

@@ -7,33 +7,33 @@ from collections import defaultdict
 from icdgen.importer.descriptions import Described
 from icdgen.importer.model import (
     Extent,
-    Found,
     ReadEnum,
     ReadField,
     ReadMember,
     ReadMessage,
     ReadStruct,
+    TableResult,
 )
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
-from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.fields import FieldDraft
 from icdgen.importer.rules.language import normalised
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part, known_kind
+from icdgen.importer.rules.parts import TablePart, known_kind
 from icdgen.importer.rules.split_fields import joined_parts
 from icdgen.importer.words import squeezed
 
 
-class Builder:
+class MessageBuilder:
     """Builds messages of parts; ``order`` is the node's."""
 
     def __init__(self, profile: Profile, order: Order, notes: Notes) -> None:
         self.profile, self.order, self.notes = profile, order, notes
         self.enums: dict[str, ReadEnum] = {}
-        self.enums_found: list[Found] = []
+        self.enum_results: list[TableResult] = []
 
-    def build(self, parts: list[Part]) -> list[Found]:
+    def build(self, parts: list[TablePart]) -> list[TableResult]:
         """Return the messages and enumerations in the order of the tables."""
         messages = [
             part for part in parts if part.rule.what in ("message", "registers")
@@ -45,8 +45,8 @@ class Builder:
         results = []
         for part in messages:
             message = self.message(part)
-            results.append(Found(message.table, "message", message))
-        results += self.enums_found
+            results.append(TableResult(message.table, "message", message))
+        results += self.enum_results
         results += [
             lists.enumeration_of(part)
             for part in parts
@@ -54,7 +54,7 @@ class Builder:
         ]
         return sorted(results, key=lambda result: result.table.number)
 
-    def place(self, part: Part) -> None:
+    def place(self, part: TablePart) -> None:
         """Put the pieces of split fields together and bring bits into the node's order."""
         is_register = part.rule.what == "registers"
         length = (
@@ -65,13 +65,13 @@ class Builder:
             part.drafts, self.order, is_register, length, self.notes, part.rule
         )
 
-    def continued(self, parts: list[Part]) -> list[Part]:
+    def continued(self, parts: list[TablePart]) -> list[TablePart]:
         """Return the messages, with consecutive tables of one message joined.
 
         Such tables have one rule, id and kind.
         """
-        merged: list[Part] = []
-        last: Part | None = None
+        merged: list[TablePart] = []
+        last: TablePart | None = None
         for part in parts:
             # Only consecutive tables are joined. A later table with the same id is a
             # description of its own.
@@ -93,7 +93,7 @@ class Builder:
                 )
         return merged
 
-    def message(self, part: Part) -> ReadMessage:
+    def message(self, part: TablePart) -> ReadMessage:
         """Return the message of a part."""
         table = part.table
         kind = known_kind(
@@ -124,7 +124,7 @@ class Builder:
         self.check_announced_formulas(message, part)
         return message
 
-    def check_announced_formulas(self, message: ReadMessage, part: Part) -> None:
+    def check_announced_formulas(self, message: ReadMessage, part: TablePart) -> None:
         """Report formulas that give another value than the words before them announce:
         one finding for a table.
         """
@@ -146,9 +146,9 @@ class Builder:
                     part.rule.place,
                 )
 
-    def fields(self, message: ReadMessage, part: Part) -> None:
+    def fields(self, message: ReadMessage, part: TablePart) -> None:
         """Give the message its fields, reserved bits and structs."""
-        groups: dict[str, list[Draft]] = defaultdict(list)
+        groups: dict[str, list[FieldDraft]] = defaultdict(list)
         seen: set[str] = set()
         for draft in part.drafts:
             if self.profile.is_reserved(draft.name):
@@ -164,7 +164,7 @@ class Builder:
             self.group(message, name, drafts, part)
         message.fields.sort(key=lambda field: field.at)
 
-    def check_name(self, draft: Draft, part: Part, seen: set[str]) -> None:
+    def check_name(self, draft: FieldDraft, part: TablePart, seen: set[str]) -> None:
         """Report names that look like a mistake of a rule."""
         key = squeezed(draft.name)
         if not any(c.isalpha() for c in draft.name) or key in seen:
@@ -180,7 +180,7 @@ class Builder:
             )
         seen.add(key)
 
-    def field(self, draft: Draft, part: Part) -> ReadField:
+    def field(self, draft: FieldDraft, part: TablePart) -> ReadField:
         """Return the field of a draft."""
         field = ReadField(
             draft.name,
@@ -223,7 +223,7 @@ class Builder:
             field.type = "uint"
         return field
 
-    def enumeration(self, draft: Draft, part: Part) -> str:
+    def enumeration(self, draft: FieldDraft, part: TablePart) -> str:
         """Return the name of the enumeration with the members of the field.
 
         Fields with one name and equal members share an enumeration.
@@ -242,13 +242,13 @@ class Builder:
                 own = self.enums[name] = ReadEnum(
                     name, members, draft.table or part.table
                 )
-                self.enums_found.append(Found(own.table, "enumeration", own))
+                self.enum_results.append(TableResult(own.table, "enumeration", own))
             if own.members == members:
                 return name
         return draft.name
 
     def group(
-        self, message: ReadMessage, name: str, drafts: list[Draft], part: Part
+        self, message: ReadMessage, name: str, drafts: list[FieldDraft], part: TablePart
     ) -> None:
         """A struct that is repeated: as often as the frame has room for it, as a field
         counts, or so many times.
@@ -311,7 +311,7 @@ class Builder:
         message.fields.append(array)
 
 
-def _is_same_message(first: Part, second: Part) -> bool:
+def _is_same_message(first: TablePart, second: TablePart) -> bool:
     keys = ("kind", "id", "set_id", "get_id")
     same = all(first.given.get(key) == second.given.get(key) for key in keys)
     has_id = any(first.given.get(key) for key in keys[1:])
@@ -323,5 +323,5 @@ def _is_same_message(first: Part, second: Part) -> bool:
     )
 
 
-def _overlap(first: list[Draft], second: list[Draft]) -> bool:
+def _overlap(first: list[FieldDraft], second: list[FieldDraft]) -> bool:
     return any(a.at < b.end and b.at < a.end for a in first for b in second)

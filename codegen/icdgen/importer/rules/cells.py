@@ -17,7 +17,7 @@ from icdgen.importer.rules.language import (
 )
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rows import DataRow, one_line
-from icdgen.importer.rules.rule import Column, Rule
+from icdgen.importer.rules.rule import ColumnRule, TableRule
 
 
 @dataclass
@@ -45,7 +45,7 @@ class RoleReader:
 
     def __init__(
         self,
-        rule: Rule,
+        rule: TableRule,
         table: SourceTable,
         titles: list[str],
         words: frozenset[str],
@@ -92,7 +92,7 @@ class RoleReader:
         self,
         row: DataRow,
         given: dict[str, str],
-        columns: list[tuple[Column, list[str]]],
+        columns: list[tuple[ColumnRule, list[str]]],
     ) -> None:
         """Add the roles of the columns to ``given``; report columns that give one role
         different texts.
@@ -116,12 +116,12 @@ class RoleReader:
                 sources[role] = column.key
             _add(given, taken)
 
-    def columns(self, rows: list[DataRow]) -> list[tuple[Column, list[str]]]:
+    def columns(self, rows: list[DataRow]) -> list[tuple[ColumnRule, list[str]]]:
         """Return the entries of `columns` with their headings; report missing columns
         and columns without a role.
         """
         rule, table, titles = self.rule, self.table, self.titles
-        entries: list[tuple[Column, list[str]]] = []
+        entries: list[tuple[ColumnRule, list[str]]] = []
         used: set[str] = set()
         shown = ", ".join(f"`{title}`" for title in titles if title)
         for column in (*rule.columns, *rule.lines):
@@ -324,7 +324,7 @@ class RoleReader:
     def check_line(
         self,
         row: DataRow,
-        column: Column,
+        column: ColumnRule,
         name: str,
         line: str,
         roles: dict[str, str],
@@ -360,7 +360,7 @@ def _add(given: dict[str, str], further: dict[str, str]) -> None:
         given["text"] = "; ".join(texts)
 
 
-def find_columns(column: Column, titles: list[str]) -> list[str]:
+def find_columns(column: ColumnRule, titles: list[str]) -> list[str]:
     """Return the headings of the columns of an entry of `columns`, or none if one is
     missing.
     """

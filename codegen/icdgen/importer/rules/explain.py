@@ -9,9 +9,9 @@ from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.cells import find_columns
 from icdgen.importer.rules.interpret import Interpretation
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.parts import TablePart
 from icdgen.importer.rules.rows import read_rows
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 
 SHOWN = 60  # characters of a cell
 
@@ -54,7 +54,7 @@ def explain(interpretation: Interpretation, number: int) -> str:
     return "\n".join(line.rstrip() for line in lines)
 
 
-def _columns(rule: Rule, table: SourceTable) -> list[str]:
+def _columns(rule: TableRule, table: SourceTable) -> list[str]:
     # Read again with notes of its own, which are discarded: they are among the findings
     # already.
     titles, rows = read_rows(rule, table, Notes())
@@ -73,7 +73,7 @@ def _columns(rule: Rule, table: SourceTable) -> list[str]:
     return lines
 
 
-def _part(part: Part) -> list[str]:
+def _part(part: TablePart) -> list[str]:
     given = ", ".join(f"{role} = `{text[:SHOWN]}`" for role, text in part.given.items())
     lines = [f"    {part.rule.what}: {given}" if given else f"    {part.rule.what}"]
     lines += [f"      value {value}: {name[:SHOWN]}" for value, name in part.pairs]

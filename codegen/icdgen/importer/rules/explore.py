@@ -13,7 +13,7 @@ from typing import Any
 
 from icdgen.icd.fmt.scalars import quoted_if_needed
 from icdgen.importer.document import SourceTable
-from icdgen.importer.source_tables import kinds, name_of
+from icdgen.importer.source_tables import group_by_headings, name_of
 from icdgen.importer.words import plain
 from icdgen.wording import count
 
@@ -25,7 +25,7 @@ def report(tables: list[SourceTable], document: str) -> str:
     """Return a profile to be completed: a block for each kind with its tables, sample
     cells, and a rule.
     """
-    groups = kinds(tables)
+    groups = group_by_headings(tables)
     counted = f"{count(len(tables), 'table')} of {count(len(groups), 'kind')}"
     lines = [
         f"# {document}: {counted}, a rule for each. A table without a rule is not imported.",
@@ -105,7 +105,7 @@ def _title(title: str) -> str:
 
 def as_json(tables: list[SourceTable], document: str) -> str:
     """Return the kinds of tables for programs."""
-    entries = [_kind_as_json(group) for group in kinds(tables)]
+    entries = [_kind_as_json(group) for group in group_by_headings(tables)]
     return json.dumps(
         {"document": document, "kinds": entries}, indent=2, ensure_ascii=False
     )

@@ -26,7 +26,7 @@ from icdgen.importer.rules.language import (
     whole_number,
 )
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number
@@ -42,7 +42,7 @@ _MEMBER = re.compile(
 
 
 @dataclass
-class Draft:
+class FieldDraft:
     """Field before references are resolved. ``bits`` is the size of one element."""
 
     name: str
@@ -86,7 +86,7 @@ class FieldReader:
 
     def __init__(
         self,
-        rule: Rule,
+        rule: TableRule,
         table: SourceTable,
         profile: Profile,
         order: Order,
@@ -103,7 +103,7 @@ class FieldReader:
         self.next = 0  # where a field without a position stands
         self.subject = ""  # name of the field, or text of the row, that is being read
 
-    def read(self, roles: Roles) -> list[Draft]:
+    def read(self, roles: Roles) -> list[FieldDraft]:
         """Return the field of a row; several for padding in several places; none, with
         a finding, if it cannot be read.
         """
@@ -133,7 +133,7 @@ class FieldReader:
         draft = self.read_field(roles)
         return [draft] if draft is not None else []
 
-    def read_field(self, roles: Roles) -> Draft | None:
+    def read_field(self, roles: Roles) -> FieldDraft | None:
         """Return the field; None, with a finding, if something that it needs is
         missing.
         """
@@ -227,7 +227,7 @@ class FieldReader:
                 "is it an array? `set: [{where: {name: ...}, bits: 16, count: 3}]`, or `type: bytes`",
             )
             return None
-        draft = Draft(
+        draft = FieldDraft(
             name,
             at,
             bits,
@@ -369,7 +369,9 @@ class FieldReader:
         text = roles.get("text")
         described = Described(rest=text)
         if self.profile.reads_descriptions:
-            described = descriptions.read(text, self.profile, is_enum=kind == "enum")
+            described = descriptions.read_description(
+                text, self.profile, is_enum=kind == "enum"
+            )
         for problem in described.problems:
             self.warn(
                 "IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page"
@@ -393,7 +395,9 @@ class FieldReader:
                 )
         formula = roles.get("formula")
         if formula.casefold() not in _EMPTY:
-            scaled = formulas.per_step(formula, descriptions.names(self.profile))
+            scaled = formulas.formula_of_step(
+                formula, descriptions.value_names(self.profile)
+            )
             if scaled is None:
                 self.error(
                     "IMP040",
@@ -431,7 +435,7 @@ class FieldReader:
         return described
 
     def facts(
-        self, draft: Draft, numbers: dict[str, int], where: str, spot: SourcePlace
+        self, draft: FieldDraft, numbers: dict[str, int], where: str, spot: SourcePlace
     ) -> None:
         """Limits, members, arrays of open length, parts."""
         roles = draft.roles
@@ -506,7 +510,7 @@ class FieldReader:
                 members.append((value, name))
         return members
 
-    def check_range(self, draft: Draft, where: str, spot: SourcePlace) -> None:
+    def check_range(self, draft: FieldDraft, where: str, spot: SourcePlace) -> None:
         """Report a range that the raw values of an unsigned number do not reach: an
         offset taken for a bias shows there.
         """

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import SourceTable
-from icdgen.importer.model import BACKGROUND, UNKNOWN, Found, ReadMessage, Survey
+from icdgen.importer.model import BACKGROUND, UNKNOWN, ReadMessage, Survey, TableResult
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
@@ -25,17 +25,21 @@ from icdgen.importer.rules.language import (
     whole_number,
 )
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.parts import TablePart
 from icdgen.importer.rules.rows import read_rows
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 from icdgen.importer.rules.selection import (
     Choice,
     choose,
     heading_rows,
-    texts_of,
+    texts_of_rows,
     why_not,
 )
-from icdgen.importer.source_tables import count_runs, kinds, texts
+from icdgen.importer.source_tables import (
+    count_runs,
+    group_by_headings,
+    texts_in_and_around,
+)
 
 _IDS = ("id", "set_id", "get_id")
 _HEX = re.compile(r"\b(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*[hH])\b")
@@ -46,11 +50,11 @@ class Interpretation:
     """Result of applying the rules of a profile to the tables of a document."""
 
     choices: list[Choice]
-    parts: list[Part]
+    parts: list[TablePart]
     survey: Survey
     # Number of the table -> roles that texts around it give.
     attributes: dict[int, dict[str, str]]
-    rules: list[Rule]
+    rules: list[TableRule]
 
 
 def interpret(
@@ -68,13 +72,13 @@ class _Interpreter:
     def __init__(self, tables: list[SourceTable], profile: Profile) -> None:
         self.tables, self.profile = tables, profile
         self.notes = Notes()
-        self.parts: list[Part] = []
+        self.parts: list[TablePart] = []
         self.attributes: dict[int, dict[str, str]] = {}
-        self.found: list[Found] = []
+        self.list_results: list[TableResult] = []
         words = (
             word.strip(".,;:()[]")
             for table in tables
-            for text in texts(table)
+            for text in texts_in_and_around(table)
             for word in text.split()
         )
         # A word that a cell breaks at a hyphen is joined if it stands elsewhere in the
@@ -90,7 +94,9 @@ class _Interpreter:
                 if rule.what != "ignore":
                     self.read(rule, choice.table)
         self.check_use(choices)
-        results = build.Builder(self.profile, self.order, self.notes).build(self.parts)
+        results = build.MessageBuilder(self.profile, self.order, self.notes).build(
+            self.parts
+        )
         attach.check_index(
             [part for part in self.parts if part.rule.what == "index"],
             results,
@@ -99,14 +105,14 @@ class _Interpreter:
         self.check_orders(results)
         self.notes.finish(self.profile.rules)
         survey = Survey(import_findings=[*extra, *self.notes.import_findings])
-        things: dict[int, list[Found]] = {}
-        for result in [*self.found, *results]:
-            things.setdefault(result.table.number, []).append(result)
+        results_by_table: dict[int, list[TableResult]] = {}
+        for result in [*self.list_results, *results]:
+            results_by_table.setdefault(result.table.number, []).append(result)
         for choice in choices:
             table = choice.table
             ignored = bool(choice.rules) and choice.rules[-1].what == "ignore"
-            own = things.get(table.number)
-            survey.found += own or [Found(table, _what(choice, ignored), None)]
+            own = results_by_table.get(table.number)
+            survey.results += own or [TableResult(table, _what(choice, ignored), None)]
         self.report_unread(choices, survey)
         self.report_without_table(choices, survey)
         return Interpretation(
@@ -115,7 +121,7 @@ class _Interpreter:
 
     # One table.
 
-    def read(self, rule: Rule, table: SourceTable) -> None:
+    def read(self, rule: TableRule, table: SourceTable) -> None:
         """Add the parts that a rule reads from a table."""
         titles, rows = read_rows(rule, table, self.notes)
         if not rule.columns and not rule.lines:
@@ -128,7 +134,7 @@ class _Interpreter:
         if rule.what in ("list", "loggable"):
             listed = role_reader.read(rows)
             is_list = rule.what == "list"
-            self.found.append(
+            self.list_results.append(
                 lists.list_of(rule, table, given, listed, self.notes)
                 if is_list
                 else lists.log_of(rule, table, listed, self.notes)
@@ -139,7 +145,7 @@ class _Interpreter:
             role: text for role, text in given.items() if role not in MESSAGE_ROLES
         }
         reader = FieldReader(rule, table, self.profile, self.order, self.notes)
-        parts: dict[tuple[str, ...], Part] = {}
+        parts: dict[tuple[str, ...], TablePart] = {}
         of_message = set(MESSAGE_ROLES)
         if rule.what in ("message", "registers", "bits"):
             of_message.remove("enumeration")  # the name of the enumeration of a field
@@ -156,7 +162,7 @@ class _Interpreter:
                 own.get(role, "")
                 for role in ("message", "id", "set_id", "get_id", "of", "enumeration")
             )
-            part = parts.setdefault(key, Part(rule, table, dict(message)))
+            part = parts.setdefault(key, TablePart(rule, table, dict(message)))
             self.check_rows_agree(part, own)
             part.given.update(own)
             part.stated_in_rows.update(own)
@@ -168,10 +174,10 @@ class _Interpreter:
             and {"message", "id", "set_id"} & set(message)
             and rule.what in ("message", "registers")
         ):
-            parts[()] = Part(rule, table, message)  # without parameters
+            parts[()] = TablePart(rule, table, message)  # without parameters
         self.parts += parts.values()
 
-    def check_rows_agree(self, part: Part, own: dict[str, str]) -> None:
+    def check_rows_agree(self, part: TablePart, own: dict[str, str]) -> None:
         """Report a row that gives a message another kind or length than an earlier row
         of the table.
         """
@@ -191,7 +197,7 @@ class _Interpreter:
                 )
 
     def disagree(
-        self, rule: Rule, where: str, spot: SourcePlace, role: str, values: str
+        self, rule: TableRule, where: str, spot: SourcePlace, role: str, values: str
     ) -> None:
         """Report two values of a role of one message."""
         self.notes.error(
@@ -203,7 +209,7 @@ class _Interpreter:
             rule.place,
         )
 
-    def row(self, part: Part, roles: Roles, reader: FieldReader) -> None:
+    def row(self, part: TablePart, roles: Roles, reader: FieldReader) -> None:
         """Add what one row gives."""
         what = part.rule.what
         if what == "index":
@@ -230,7 +236,7 @@ class _Interpreter:
             return
         part.drafts += reader.read(roles)
 
-    def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
+    def around(self, rule: TableRule, table: SourceTable) -> dict[str, str]:
         """Return the roles that the rule states, or that texts around the table and its
         rows contain.
 
@@ -281,7 +287,7 @@ class _Interpreter:
 
     def check_sources_agree(
         self,
-        rule: Rule,
+        rule: TableRule,
         table: SourceTable,
         source: str,
         roles: dict[str, str],
@@ -304,7 +310,7 @@ class _Interpreter:
                 values = f"`{given[role]}` in its {used}, `{value}` in its {source}"
                 self.disagree(rule, table.title, table.spot, role, values)
 
-    def texts(self, rule: Rule, table: SourceTable, source: str) -> list[str]:
+    def texts(self, rule: TableRule, table: SourceTable, source: str) -> list[str]:
         """Return the texts of a source, the nearest first.
 
         For rows, these are each row, then the rows above the headings as one text.
@@ -315,7 +321,7 @@ class _Interpreter:
                 [cell_text(c.text, words) for c in row.cells] for row in table.rows
             )
             texts = [" | ".join(filter(None, row)) for row in cells]
-            head = heading_rows(rule, texts_of(table, rule.transpose))
+            head = heading_rows(rule, texts_of_rows(table, rule.transpose))
             texts.append(
                 " | ".join(filter(None, texts[: head.start] if head else texts))
             )
@@ -330,7 +336,7 @@ class _Interpreter:
         return [normalised(text) for text in texts]
 
     def doubt(
-        self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str
+        self, rule: TableRule, table: SourceTable, roles: dict[str, str], left: str
     ) -> None:
         """Report an id that is a plain number where the same text has a hexadecimal
         one.
@@ -383,15 +389,15 @@ class _Interpreter:
                         correction.place,
                     )
 
-    def check_orders(self, results: list[Found]) -> None:
+    def check_orders(self, results: list[TableResult]) -> None:
         """Report fields whose bits depend on a byte or bit order that the profile does
         not state.
         """
         fields = [
             f
             for result in results
-            if isinstance(result.thing, ReadMessage)
-            for f in result.thing.all_fields
+            if isinstance(result.content, ReadMessage)
+            for f in result.content.all_fields
         ]
         numbers = [
             f for f in fields if f.type in ("uint", "int", "enum", "float", "bool")
@@ -425,7 +431,7 @@ class _Interpreter:
     def report_unread(self, choices: list[Choice], survey: Survey) -> None:
         """List the tables without a rule by kind, and what rules ignore."""
         unread = {c.table.number for c in choices if not c.rules}
-        for group in kinds(self.tables):
+        for group in group_by_headings(self.tables):
             tables = [table for table in group if table.number in unread]
             if not tables:
                 continue
@@ -508,7 +514,7 @@ class _Interpreter:
                     ids_with_table |= ids
 
 
-def _is_equal(rule: Rule, role: str, first: str, second: str) -> bool:
+def _is_equal(rule: TableRule, role: str, first: str, second: str) -> bool:
     """Return whether two texts give a role the same value: the same number, or words
     with one meaning.
     """

@@ -8,31 +8,31 @@ import re
 
 from icdgen.importer.document import SourceTable
 from icdgen.importer.model import (
-    Found,
     Listed,
-    LogBit,
     ReadEnum,
     ReadList,
     ReadLog,
+    ReadLogBit,
     ReadMember,
+    TableResult,
 )
 from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import normalised, whole_number
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part, known_kind
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.parts import TablePart, known_kind
+from icdgen.importer.rules.rule import TableRule
 
 _MASK = re.compile(r"(?:0x)?(?:[0-9A-Fa-f]{2}\s*)+\Z")
 _IDS = ("id", "set_id", "get_id")
 
 
 def list_of(
-    rule: Rule,
+    rule: TableRule,
     table: SourceTable,
     given: dict[str, str],
     rows: list[Roles],
     notes: Notes,
-) -> Found:
+) -> TableResult:
     """Return the list of messages that a table is."""
     kind = known_kind(given.get("kind", ""), table.title, table.spot, rule, notes)
     result = ReadList(kind, normalised(given.get("node", "")), [])
@@ -71,10 +71,12 @@ def list_of(
                 spot,
             )
         )
-    return Found(table, "list", result)
+    return TableResult(table, "list", result)
 
 
-def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> Found:
+def log_of(
+    rule: TableRule, table: SourceTable, rows: list[Roles], notes: Notes
+) -> TableResult:
     """Return the frames that can be logged, by the bit of the mask."""
     log = ReadLog([])
     for roles in rows:
@@ -93,18 +95,18 @@ def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> F
                 rule.place,
             )
             continue
-        log.bits.append(LogBit(bit, frame, roles.get("message")))
-    return Found(table, "loggable frames", log)
+        log.bits.append(ReadLogBit(bit, frame, roles.get("message")))
+    return TableResult(table, "loggable frames", log)
 
 
-def enumeration_of(part: Part) -> Found:
+def enumeration_of(part: TablePart) -> TableResult:
     """Return the enumeration that a table prints under a name of its own."""
     members = [
         ReadMember(value, name, text)
         for (value, name), text in zip(part.pairs, part.texts, strict=True)
     ]
     table = part.table
-    return Found(
+    return TableResult(
         table,
         "enumeration",
         ReadEnum(normalised(part.given["enumeration"]), members, table),
@@ -112,7 +114,7 @@ def enumeration_of(part: Part) -> Found:
 
 
 def _number(
-    rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Notes
+    rule: TableRule, table: SourceTable, roles: Roles, role: str, notes: Notes
 ) -> int | None:
     text = roles.get(role)
     value = whole_number(text, rule.base) if text else None

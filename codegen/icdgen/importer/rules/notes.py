@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 from icdgen.diagnostics import Place
 from icdgen.import_results.findings import DOUBTFUL, LIKELY, ImportFinding, SourcePlace
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 
 MOST_EXAMPLES = 4
 
 
 @dataclass
-class Group:
+class FindingGroup:
     """Findings with the same cause: the first one, and the places and examples of the
     others.
     """
@@ -60,7 +60,7 @@ class Notes:
     """
 
     single: list[ImportFinding] = field(default_factory=list)
-    groups: dict[tuple[object, ...], Group] = field(default_factory=dict)
+    groups: dict[tuple[object, ...], FindingGroup] = field(default_factory=dict)
     dropped: dict[tuple[str, str], list[str]] = field(
         default_factory=lambda: defaultdict(list)
     )
@@ -114,7 +114,7 @@ class Notes:
             import_finding.help,
             import_finding.place,
         )
-        self.groups.setdefault(key, Group(import_finding)).add(
+        self.groups.setdefault(key, FindingGroup(import_finding)).add(
             import_finding.spot, example
         )
 
@@ -126,11 +126,11 @@ class Notes:
             *(group.as_import_finding() for group in self.groups.values()),
         ]
 
-    def drop(self, rule: Rule, operation: str, text: str) -> None:
+    def drop(self, rule: TableRule, operation: str, text: str) -> None:
         """Count a row that the rule drops on purpose."""
         self.dropped[rule.name, operation].append(text)
 
-    def finish(self, rules: list[Rule]) -> None:
+    def finish(self, rules: list[TableRule]) -> None:
         """Add a note for each rule and operation that dropped rows."""
         places = {rule.name: rule.place for rule in rules}
         for (name, operation), texts in self.dropped.items():

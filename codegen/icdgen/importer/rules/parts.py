@@ -8,24 +8,24 @@ from dataclasses import dataclass, field
 
 from icdgen.import_results.findings import SourcePlace
 from icdgen.importer.document import SourceTable
-from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.fields import FieldDraft
 from icdgen.importer.rules.language import KINDS, whole_number
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 
 
 @dataclass
-class Part:
+class TablePart:
     """Fields or values of one message, enumeration, lookup table, index entry or set of
     bits in one table.
     """
 
-    rule: Rule
+    rule: TableRule
     table: SourceTable
     given: dict[str, str]  # roles of the message
     # Roles of the message that cells of the table give.
     stated_in_rows: dict[str, str] = field(default_factory=dict)
-    drafts: list[Draft] = field(default_factory=list)
+    drafts: list[FieldDraft] = field(default_factory=list)
     # Values with members, or with points.
     pairs: list[tuple[int, str]] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)  # descriptions of the members
@@ -51,7 +51,7 @@ class Part:
 
 
 def known_kind(
-    text: str, where: str, spot: SourcePlace, rule: Rule, notes: Notes
+    text: str, where: str, spot: SourcePlace, rule: TableRule, notes: Notes
 ) -> str:
     """Return the kind of a message; empty, with a finding, if the word of the document
     is not translated.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from icdgen.import_results.findings import SourcePlace
 from icdgen.importer.rules import positions
 from icdgen.importer.rules.bit_order import Bit, Order, bits_of_register
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 
 
 class PlaceReader:
@@ -17,7 +17,7 @@ class PlaceReader:
 
     def __init__(
         self,
-        rule: Rule,
+        rule: TableRule,
         order: Order,
         error: Callable[[str, str, SourcePlace, str], None],
     ) -> None:

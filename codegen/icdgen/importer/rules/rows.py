@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from icdgen.importer.document import Cell, Slot, SourceRow, SourceTable
+from icdgen.importer.document import Slot, SourceCell, SourceRow, SourceTable
 from icdgen.importer.rules.language import cell_text, normalised
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.rule import Rule
-from icdgen.importer.rules.selection import heading_rows, texts_of
+from icdgen.importer.rules.rule import TableRule
+from icdgen.importer.rules.selection import heading_rows, texts_of_rows
 
 
 @dataclass
@@ -28,7 +28,7 @@ class DataRow:
 
     values: dict[str, str]
     source: SourceRow
-    cells: dict[str, Cell] = field(default_factory=dict)
+    cells: dict[str, SourceCell] = field(default_factory=dict)
     ranges: dict[str, tuple[int, int]] = field(default_factory=dict)
     roles: dict[str, str] = field(default_factory=dict)
     is_short: bool = False
@@ -40,10 +40,10 @@ class DataRow:
 
 
 def read_rows(
-    rule: Rule, table: SourceTable, notes: Notes
+    rule: TableRule, table: SourceTable, notes: Notes
 ) -> tuple[list[str], list[DataRow]]:
     """Return the headings and the rows of a table that a rule selected."""
-    texts = texts_of(table, rule.transpose)
+    texts = texts_of_rows(table, rule.transpose)
     head = heading_rows(rule, texts)
     assert head is not None
     grid = table.grid()
@@ -95,7 +95,7 @@ def _numbered(title: str, before: list[str]) -> str:
     return f"{title}.{count + 1}" if count and title else title
 
 
-def _completed(rule: Rule, titles: list[str], slots: list[Slot]) -> list[Slot]:
+def _completed(rule: TableRule, titles: list[str], slots: list[Slot]) -> list[Slot]:
     """Return the cells of a row.
 
     If the row has one cell less than headings, an empty cell is added in the column
@@ -110,7 +110,7 @@ def _completed(rule: Rule, titles: list[str], slots: list[Slot]) -> list[Slot]:
         return slots
     return [
         *slots[:at],
-        Slot(Cell(""), at, True),
+        Slot(SourceCell(""), at, True),
         *(slot._replace(column=slot.column + 1) for slot in slots[at:]),
     ]
 
@@ -188,7 +188,7 @@ def _transposed(
     return titles, data_rows
 
 
-def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
+def _operated(rule: TableRule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
     joined: list[DataRow] = []
     section = ""
     for row in rows:

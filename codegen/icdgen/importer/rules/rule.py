@@ -40,7 +40,7 @@ _MERGED = (
 
 
 @dataclass(frozen=True)
-class Column:
+class ColumnRule:
     """An entry of `columns`: its columns, and the patterns for their cells."""
 
     key: str
@@ -71,7 +71,7 @@ class Correction:
 
 
 @dataclass
-class Rule:
+class TableRule:
     """Rule for tables of one kind.
 
     Every key is described in ``docs/reference/import-rules.md``.
@@ -89,8 +89,8 @@ class Rule:
     # Source -> patterns, all of them used.
     sources: dict[str, list[Pattern]] = field(default_factory=dict)
     optional: set[str] = field(default_factory=set)  # sources that may match nothing
-    columns: list[Column] = field(default_factory=list)
-    lines: list[Column] = field(default_factory=list)
+    columns: list[ColumnRule] = field(default_factory=list)
+    lines: list[ColumnRule] = field(default_factory=list)
     melt: Pattern | None = None
     each: dict[str, str] = field(default_factory=dict)
     map: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -164,14 +164,14 @@ class Rule:
         ]
 
 
-def read_rules(tree: Seq) -> list[Rule]:
+def read_rules(tree: Seq) -> list[TableRule]:
     """Return the rules of a profile whose structure was checked.
 
     Raises `Findings` with everything that is wrong in them.
     """
     findings: list[Finding] = []
     by_name: dict[str, Map] = {}
-    rules: list[Rule] = []
+    rules: list[TableRule] = []
     for index, own in enumerate(tree, 1):
         name = own.get("rule", f"rule {index}")
         merged = own
@@ -204,7 +204,7 @@ def read_rules(tree: Seq) -> list[Rule]:
                 )
             )
         by_name[name] = merged
-        rules.append(_Reader(findings).read(merged, name, own.place))
+        rules.append(_RuleReader(findings).read(merged, name, own.place))
     if findings:
         raise Findings(findings)
     return rules
@@ -229,15 +229,15 @@ def _laid_over(base: Map, own: Map) -> Map:
     return merged
 
 
-class _Reader:
-    """Makes a `Rule` of a mapping and adds what is wrong in it to ``findings``."""
+class _RuleReader:
+    """Makes a `TableRule` of a mapping and adds what is wrong in it to ``findings``."""
 
     def __init__(self, findings: list[Finding]) -> None:
         self.findings = findings
 
-    def read(self, tree: Map, name: str, place: Place) -> Rule:
+    def read(self, tree: Map, name: str, place: Place) -> TableRule:
         """Return the rule; what cannot be read of it is left out, with a finding."""
-        rule = Rule(name, place, tree.get("what", "message"))
+        rule = TableRule(name, place, tree.get("what", "message"))
         rule.head_rows, rule.transpose = (
             tree.get("head_rows", 1),
             tree.get("transpose", False),
@@ -254,7 +254,7 @@ class _Reader:
         for key in ("columns", "lines"):
             entries = tree.get(key) or Map(place)
             getattr(rule, key).extend(
-                Column(c, self.patterns(v, entries.at(c)), entries.key_at(c))
+                ColumnRule(c, self.patterns(v, entries.at(c)), entries.key_at(c))
                 for c, v in entries.items()
             )
         if "melt" in tree:
@@ -290,7 +290,7 @@ class _Reader:
         self.used(rule, tree)
         return rule
 
-    def conditions(self, rule: Rule, tree: Map) -> None:
+    def conditions(self, rule: TableRule, tree: Map) -> None:
         rule.head = str(tree.get("head", ""))
         for title in re.split(r"\s\|\s", rule.head):
             if title.startswith("~"):
@@ -305,7 +305,7 @@ class _Reader:
             if key in tree
         }
 
-    def message(self, rule: Rule, tree: Map) -> None:
+    def message(self, rule: TableRule, tree: Map) -> None:
         for key, value in tree.items():
             source = key.rstrip("?")
             if source in SOURCES:
@@ -322,7 +322,7 @@ class _Reader:
                 f"write {', '.join(KINDS)}",
             )
 
-    def belongs(self, rule: Rule) -> None:
+    def belongs(self, rule: TableRule) -> None:
         """Check that a table of values or bits says to which field it belongs."""
         owners = {
             "enumeration": {"of", "enumeration"},
@@ -336,7 +336,7 @@ class _Reader:
                 "add `message: {of: FIELD}`, or a pattern with `{of}`",
             )
 
-    def used(self, rule: Rule, tree: Map) -> None:
+    def used(self, rule: TableRule, tree: Map) -> None:
         """Check that rules of this kind use the roles that the rule gives."""
         if rule.what not in ROLES_OF:
             return
@@ -427,7 +427,7 @@ class _Reader:
             )
             self.add(f"unknown role `{role}`", place, help)
 
-    def together(self, rule: Rule, tree: Map) -> None:
+    def together(self, rule: TableRule, tree: Map) -> None:
         """Check combinations of keys."""
         if rule.what == "ignore":
             used = [
@@ -486,7 +486,7 @@ class _Reader:
         self.findings.append(Finding(CODE, message, place, help))
 
 
-def roles_of_message(rule: Rule) -> Iterator[str]:
+def roles_of_message(rule: TableRule) -> Iterator[str]:
     """Return the roles of a message that any key of the rule may give."""
     yield from (role for role in rule.literals if role in MESSAGE_ROLES)
     sources = (pattern for patterns in rule.sources.values() for pattern in patterns)

@@ -9,7 +9,7 @@ from itertools import pairwise, zip_longest
 
 from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.language import normalised
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 
 # rows in which the headings are looked for: titles and notes stand above them
 SEARCHED = 6
@@ -21,11 +21,11 @@ class Choice:
     """The rules that apply to a table, and the reason why each rule before does not."""
 
     table: SourceTable
-    rules: list[Rule] = field(default_factory=list)
-    reasons: list[tuple[Rule, str]] = field(default_factory=list)
+    rules: list[TableRule] = field(default_factory=list)
+    reasons: list[tuple[TableRule, str]] = field(default_factory=list)
 
 
-def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
+def texts_of_rows(table: SourceTable, transpose: bool) -> list[list[str]]:
     """Return the texts of the cells of each row.
 
     If the headings are on the left, return the texts of each column.
@@ -42,7 +42,7 @@ def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
     return [list(column) for column in zip(*padded, strict=True)]
 
 
-def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
+def heading_rows(rule: TableRule, texts: list[list[str]]) -> range | None:
     """Return the indices of the heading rows, or None if no row matches.
 
     The range is empty for a rule without headings. Some sources print headings in two
@@ -65,7 +65,7 @@ def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
     return None
 
 
-def titles_wanted(rule: Rule) -> list[str]:
+def titles_wanted(rule: TableRule) -> list[str]:
     """Return the cells of `head`."""
     return [normalised(title) for title in re.split(r"\s\|\s", rule.head)]
 
@@ -83,7 +83,7 @@ def _first_difference(wanted: list[str], row: list[str]) -> int | None:
     return None
 
 
-def why_not(rule: Rule, table: SourceTable) -> str:
+def why_not(rule: TableRule, table: SourceTable) -> str:
     """Why a rule does not apply to a table, its `nth` aside; empty if it does."""
     if rule.pages is not None and not (
         table.page is not None and rule.pages[0] <= table.page <= rule.pages[1]
@@ -107,7 +107,7 @@ def why_not(rule: Rule, table: SourceTable) -> str:
                 else "; there is none"
             )
             return f"`{source}` does not match{shown}"
-    texts_by_row = texts_of(table, rule.transpose)
+    texts_by_row = texts_of_rows(table, rule.transpose)
     if heading_rows(rule, texts_by_row) is not None:
         return ""
     wanted = titles_wanted(rule)
@@ -126,7 +126,7 @@ def _agreement(wanted: list[str], row: list[str]) -> int:
     )
 
 
-def choose(rules: list[Rule], tables: list[SourceTable]) -> list[Choice]:
+def choose(rules: list[TableRule], tables: list[SourceTable]) -> list[Choice]:
     """Decide for each table: the first rule that fits, and rules before it that leave
     the table to others (`also`).
     """

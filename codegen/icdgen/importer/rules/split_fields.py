@@ -8,27 +8,27 @@ from itertools import pairwise
 
 from icdgen.importer.rules import bit_order
 from icdgen.importer.rules.bit_order import Bit, Order
-from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.fields import FieldDraft
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.rule import TableRule
 
 
 def joined_parts(
-    drafts: list[Draft],
+    drafts: list[FieldDraft],
     order: Order,
     is_register: bool,
     length: int,
     notes: Notes,
-    rule: Rule,
-) -> list[Draft]:
+    rule: TableRule,
+) -> list[FieldDraft]:
     """Join parts of one name with consecutive bit numbers to fields (``CB5`` to
     ``CB1``, ``D15`` to ``D0``).
 
     Each field gets the number of its first bit in the node's order, or an order of its
     own if it is no run of bits there.
     """
-    fields: list[Draft] = []
-    pieces: dict[str, list[Draft]] = {}
+    fields: list[FieldDraft] = []
+    pieces: dict[str, list[FieldDraft]] = {}
     for draft in drafts:
         if draft.part is None:
             fields.append(draft)
@@ -94,7 +94,7 @@ def joined_parts(
     return sorted(placed, key=lambda draft: draft.at)
 
 
-def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:
+def _bits(piece: FieldDraft, order: Order, is_register: bool, length: int) -> list[Bit]:
     if is_register:
         return bit_order.bits_of_register(
             piece.at, piece.size, length, order.byte_order

@@ -37,7 +37,7 @@ def serve(session: Session, port: int = 0) -> ThreadingHTTPServer:
 def handler(session: Session) -> type[BaseHTTPRequestHandler]:
     """A request handler for one session."""
 
-    class Handler(BaseHTTPRequestHandler):
+    class WorkbenchHandler(BaseHTTPRequestHandler):
         server_version, sys_version = "icdgen", ""
 
         def do_GET(self) -> None:
@@ -155,4 +155,4 @@ def handler(session: Session) -> type[BaseHTTPRequestHandler]:
         def log_message(self, format: str, *arguments: Any) -> None:
             """Requests are not logged: the terminal shows the address only."""
 
-    return Handler
+    return WorkbenchHandler

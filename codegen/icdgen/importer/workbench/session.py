@@ -16,11 +16,11 @@ from icdgen.import_results.findings import ImportFinding
 from icdgen.importer import profile, run
 from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.model import ReadMessage
-from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.fields import FieldDraft
 from icdgen.importer.rules.language import ROLES, ROLES_OF, normalised
-from icdgen.importer.rules.parts import Part
-from icdgen.importer.rules.selection import heading_rows, texts_of
-from icdgen.importer.source_tables import kinds, name_of
+from icdgen.importer.rules.parts import TablePart
+from icdgen.importer.rules.selection import heading_rows, texts_of_rows
+from icdgen.importer.source_tables import group_by_headings, name_of
 from icdgen.importer.workbench import rule_text
 from icdgen.importer.workbench.valid_rules import read_profile
 
@@ -91,7 +91,7 @@ class Session:
             rules = rule_text.rules_of(self.text)
             import_findings = self.result.import_findings
             applied = self.rules_by_table()
-            groups = kinds(self.tables)
+            groups = group_by_headings(self.tables)
             return {
                 "document": Path(self.document.file).name,
                 "profile": str(self.path),
@@ -167,7 +167,7 @@ class Session:
             "fields": sum(len(part.drafts) for part in parts),
         }  # fmt: skip
 
-    def parts(self, table: SourceTable) -> list[Part]:
+    def parts(self, table: SourceTable) -> list[TablePart]:
         """Parts that rules read from a table."""
         return [
             part
@@ -175,11 +175,11 @@ class Session:
             if part.table.number == table.number
         ]
 
-    def enumerations(self, part: Part) -> dict[str, str]:
+    def enumerations(self, part: TablePart) -> dict[str, str]:
         """Name of a field of a message -> name of its enumeration in the ICD."""
         messages = [
             message
-            for _, message in self.result.survey.of(ReadMessage)
+            for _, message in self.result.survey.results_of(ReadMessage)
             if message.name == part.name and message.table.number == part.table.number
         ]
         return {
@@ -224,7 +224,7 @@ class Session:
         for choice in self.result.interpretation.choices:
             if choice.table.number == table.number and choice.rules:
                 head = heading_rows(
-                    choice.rules[-1], texts_of(table, choice.rules[-1].transpose)
+                    choice.rules[-1], texts_of_rows(table, choice.rules[-1].transpose)
                 )
                 if head is not None and not choice.rules[-1].transpose:
                     return head.start if head else -1
@@ -338,7 +338,7 @@ class Session:
                     "save the profile, which writes the file",
                 )
             text = _decoded(contents, self.path)
-            profile.of_tree(source.parse(contents, str(self.path)))
+            profile.profile_of_tree(source.parse(contents, str(self.path)))
             self.change_text(text, [None] * len(rule_text.rules_of(text)))
             self.disk, self.saved = contents, text
 
@@ -406,7 +406,7 @@ def _finding(import_finding: ImportFinding) -> dict[str, Any]:
     }
 
 
-def _message(part: Part, enumerations: dict[str, str]) -> dict[str, Any]:
+def _message(part: TablePart, enumerations: dict[str, str]) -> dict[str, Any]:
     fields = [
         {"at": draft.at, "bits": draft.bits, "name": draft.name, "type": draft.kind, "size": draft.size,
          "unit": draft.described.unit, "formula": draft.described.formula,
@@ -421,7 +421,7 @@ def _message(part: Part, enumerations: dict[str, str]) -> dict[str, Any]:
     }
 
 
-def _repetition(draft: Draft, drafts: list[Draft]) -> dict[str, Any] | None:
+def _repetition(draft: FieldDraft, drafts: list[FieldDraft]) -> dict[str, Any] | None:
     """Return the group, the count and the stride in bits of a repeated field; None for
     a single field.
     """

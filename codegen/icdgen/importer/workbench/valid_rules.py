@@ -48,7 +48,7 @@ def read_profile(
     while True:
         tree = source.parse(text.encode("utf-8"), name)
         try:
-            words = profile.of_tree(tree)
+            words = profile.profile_of_tree(tree)
         except Findings as error:
             wrong = _by_rule(tree, error.findings)
         else:
