@@ -19,7 +19,7 @@ READERS = {"v20": mavlink.MavLink2(), "v10": mavlink.MavLink1()}
 
 @pytest.fixture(scope="module")
 def rover():
-    reader = kinds.of(FILES / "rover.xml")
+    reader = kinds.reader_of_file(FILES / "rover.xml")
     assert isinstance(reader, mavlink.MavLink2)
     return run.read(FILES / "rover.xml", reader)
 
@@ -172,7 +172,7 @@ def test_many_files_are_refused(tmp_path):
 def test_version_1_has_ids_of_a_byte_and_no_extensions(tmp_path):
     for name in ("rover.xml", "rover_common.xml"):
         shutil.copy(FILES / name, tmp_path)
-    read = run.read(tmp_path / "rover.xml", kinds.get("mavlink1"))
+    read = run.read(tmp_path / "rover.xml", kinds.reader_of_kind("mavlink1"))
     (tree,) = read.trees.values()
     assert [message["name"] for message in tree["messages"]] == [
         "HEARTBEAT"

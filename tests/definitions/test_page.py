@@ -86,14 +86,16 @@ def test_the_program_in_rust_prints_what_the_page_shows(tmp_path):
 
 def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "probe.xml").write_text(blocks("xml")[0])
-    read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
+    read = run.read(tmp_path / "probe.xml", kinds.reader_of_kind("xtce"))
     (tree,) = read.trees.values()
     assert ends_as_shown(emit.canonical_yaml({"messages": tree["messages"]}), 2)
 
 
 def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "beacon.ksy").write_text(blocks("ksy")[0])
-    read = run.read(tmp_path / "beacon.ksy", kinds.of(tmp_path / "beacon.ksy"))
+    read = run.read(
+        tmp_path / "beacon.ksy", kinds.reader_of_file(tmp_path / "beacon.ksy")
+    )
     (tree,) = read.trees.values()
     assert ends_as_shown(emit.canonical_yaml({"messages": tree["messages"]}), 3)
     assert read.definitions.import_findings == []
@@ -101,7 +103,9 @@ def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
 
 def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "meter.json").write_text(blocks("json")[0])
-    read = run.read(tmp_path / "meter.json", kinds.of(tmp_path / "meter.json"))
+    read = run.read(
+        tmp_path / "meter.json", kinds.reader_of_file(tmp_path / "meter.json")
+    )
     (tree,) = read.trees.values()
     assert ends_as_shown(emit.canonical_yaml({"messages": tree["messages"]}), 4)
 
@@ -114,7 +118,9 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(
         ("link.xml", "mission.xml", "heater.xml"), blocks("xml")[1:], strict=True
     ):
         (tmp_path / name).write_text(text)
-    read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
+    read = run.read(
+        tmp_path / "heater.xml", kinds.reader_of_file(tmp_path / "heater.xml")
+    )
     (tree,) = read.trees.values()
     text_of_tree = emit.canonical_yaml(
         {key: tree[key] for key in ("structs", "messages")}

@@ -37,7 +37,7 @@ def test_another_package_adds_a_kind_by_an_entry_point(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
     file = tmp_path / "a.txt"
     file.write_text("%lines\nFirst\n2nd")
-    reader = kinds.of(file)
+    reader = kinds.reader_of_file(file)
     assert reader is not None and reader.name == "lines" and "lines" in kinds.names()
     read = run.read(file, reader)
     assert [message["name"] for message in read.trees["lines"]["messages"]] == [

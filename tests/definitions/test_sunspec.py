@@ -26,7 +26,7 @@ MODELS = json.loads((FILES / "charger.json").read_text())
 
 @pytest.fixture(scope="module")
 def charger():
-    reader = kinds.of(FILES / "charger.json")
+    reader = kinds.reader_of_file(FILES / "charger.json")
     assert isinstance(reader, sunspec.SunSpec)
     return run.read(FILES / "charger.json", reader)
 

@@ -30,7 +30,7 @@ def lander():
 
 
 def imported(name):
-    reader = kinds.of(FILES / name)
+    reader = kinds.reader_of_file(FILES / name)
     assert isinstance(reader, xtce.Xtce)
     return run.read(FILES / name, reader)
 

@@ -57,7 +57,7 @@ def main(arguments: list[str]) -> int:
 def _imported(files: list[Path], folder: Path) -> Icd:
     folder.mkdir()
     paths = []
-    for read in run.read_set([(path, kinds.get("xtce")) for path in files]):
+    for read in run.read_set([(path, kinds.reader_of_kind("xtce")) for path in files]):
         for name, tree in read.trees.items():
             paths.append(folder / f"{name}.yaml")
             paths[-1].write_text(emit.canonical_yaml(tree), encoding="utf-8")

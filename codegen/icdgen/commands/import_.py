@@ -224,7 +224,7 @@ def _definitions(
     """
     from icdgen.definitions import kinds
 
-    requested = kinds.get(kind) if kind is not None else None
+    requested = kinds.reader_of_kind(kind) if kind is not None else None
     definitions: dict[Path, tuple[Path, DefinitionReader]] = {}
     for path in files:
         if path.is_dir():
@@ -238,7 +238,7 @@ def _definitions(
                     f"there is no definition{of_kind} in the folder {path}", help
                 )
         else:
-            reader = requested or kinds.of(path)
+            reader = requested or kinds.reader_of_file(path)
             if reader is None and len(files) == 1:
                 return []
             if reader is None:

@@ -1,4 +1,9 @@
-"""Readers of CAN databases (DBC, KCD, SYM and ARXML), based on cantools."""
+"""Readers of CAN databases (DBC, KCD, SYM and ARXML), based on cantools.
+
+Each bus of a database becomes a network of messages. cantools drops some content of a
+file without a warning, and rejects a whole DBC file for others: `can_accounting` and
+`dbc` report the former and repair the latter.
+"""
 
 from __future__ import annotations
 
@@ -208,13 +213,10 @@ def _network(
 ) -> Network:
     # With both frame formats on a bus, bit 31 of the id marks extended frames.
     formats = {bool(message.is_extended_frame) for message in messages}
-    id_bits = (
-        CAN_BOTH
-        if len(formats) > 1
-        else CAN_EXTENDED
-        if True in formats
-        else CAN_STANDARD
-    )
+    if len(formats) > 1:
+        id_bits = CAN_BOTH
+    else:
+        id_bits = CAN_EXTENDED if True in formats else CAN_STANDARD
     order = frames.usual(
         signal_place(signal) for message in messages for signal in message.signals
     )
@@ -371,7 +373,9 @@ def signal_place(signal: Any) -> frames.FrameBits:
 def _field(
     message: Any, signal: Any, signals: list[Any], enums: Enumerations, to: Definitions
 ) -> Item:
-    kind = "float" if signal.is_float else "int" if signal.is_signed else "uint"
+    kind = "int" if signal.is_signed else "uint"
+    if signal.is_float:
+        kind = "float"
     start = (
         ""
         if signal.raw_initial is None

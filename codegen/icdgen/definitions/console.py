@@ -1,4 +1,7 @@
-"""Report about an imported definition, as text and as JSON."""
+"""Report about imported definitions, as text and as JSON.
+
+`import_results/report.py` has the parts that imports of documents share.
+"""
 
 from __future__ import annotations
 

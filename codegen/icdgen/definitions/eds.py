@@ -1,6 +1,8 @@
 """Reader of electronic data sheets (SEDS, CCSDS 876.0-B-1).
 
 Containers become messages, as space packets if they begin with a primary header.
+`eds_sheets` resolves the names of a file, `eds_interfaces` chooses the containers,
+`eds_layout` reads their entries and `eds_types` the types of the entries.
 """
 
 from __future__ import annotations

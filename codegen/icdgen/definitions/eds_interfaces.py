@@ -1,5 +1,8 @@
 """Interfaces of data sheets: containers that components send, with direction and
 identifying number.
+
+The packages of a data sheet go in. Containers that no interface sends are returned as
+well, so that `eds` can report them.
 """
 
 from __future__ import annotations
@@ -107,7 +110,9 @@ class Interfaces:
         """Return the type that an attribute names, or None if it is not defined."""
         try:
             reference = self.sheets.attribute(of, key)
-            return self.sheets.find("type", reference, of) if reference else None
+            return (
+                self.sheets.find_element("type", reference, of) if reference else None
+            )
         except NotSupported:
             return None  # reported when the container is read
 
@@ -272,7 +277,7 @@ class Interfaces:
             )
             for base in bases:
                 try:
-                    declared = self.sheets.find(
+                    declared = self.sheets.find_element(
                         "interface", self.sheets.attribute(base, "type"), base
                     )
                 except NotSupported:

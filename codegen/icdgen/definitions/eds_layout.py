@@ -1,5 +1,9 @@
 """Containers of electronic data sheets as sequences of fields, with inheritance,
 nesting and constraints.
+
+An `EdsLayout` reads one container. Its `fields` are the fields of the ICD, and its
+`header` is the primary header of a space packet if the container begins with one.
+`eds_types` has the fields of types, `eds_parts` the constants.
 """
 
 from __future__ import annotations
@@ -120,7 +124,7 @@ class EdsLayout(Container[EdsPart]):
         chain = [container]
         while base := self.sheets.attribute(chain[-1], "baseType"):
             self.types.step()
-            ancestor = self.sheets.find("type", base, chain[-1])
+            ancestor = self.sheets.find_element("type", base, chain[-1])
             if ancestor.tag != CONTAINER:
                 raise NotSupported(
                     f"it is based on `{line(base, 60)}`, which is not a container"
@@ -277,13 +281,15 @@ class EdsLayout(Container[EdsPart]):
 
         Raises `NotSupported` if an array is too large or too deep.
         """
-        type_ = self.sheets.find("type", self.sheets.attribute(entry, "type"), entry)
+        type_ = self.sheets.find_element(
+            "type", self.sheets.attribute(entry, "type"), entry
+        )
         count, depth = self._count(entry, "ArrayDimensions/Dimension", name), 0
         while type_.tag == ARRAY:
             self.types.step()
             count *= self._count(type_, "DimensionList/Dimension", name)
             type_, depth = (
-                self.sheets.find(
+                self.sheets.find_element(
                     "type", self.sheets.attribute(type_, "dataTypeRef"), type_
                 ),
                 depth + 1,
@@ -304,7 +310,9 @@ class EdsLayout(Container[EdsPart]):
         count = 1
         for element in owner.iterfind(path):
             if index := self.sheets.attribute(element, "indexTypeRef"):
-                count *= self._indices(self.sheets.find("type", index, element), name)
+                count *= self._indices(
+                    self.sheets.find_element("type", index, element), name
+                )
             else:
                 count *= whole(
                     self.sheets.attribute(element, "size"),

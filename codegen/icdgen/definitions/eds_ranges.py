@@ -1,4 +1,8 @@
-"""Value ranges of electronic data sheets, and the limits of fields."""
+"""Value ranges of electronic data sheets, and the limits of fields.
+
+Ends of ranges are exact fractions, included or not. They become `min`, `max`, `above`
+and `below` of an ICD field if they lie within the values of its type.
+"""
 
 from __future__ import annotations
 
@@ -106,13 +110,9 @@ def limited(item: Item, bits: int, of: Range) -> Item:
             (of.low, "min" if of.is_low_in else "above"),
             (of.high, "max" if of.is_high_in else "below"),
         ):
-            number = (
-                None
-                if end is None
-                else end.numerator
-                if end.denominator == 1
-                else _double(end)
-            )
+            if end is None:
+                continue
+            number = end.numerator if end.denominator == 1 else _double(end)
             # YAML 1.1 requires a point in floats: PyYAML reads ``1e+22`` as text.
             if number is not None and "e" not in str(number) and len(str(number)) < 30:
                 result[key] = number

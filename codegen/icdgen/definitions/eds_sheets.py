@@ -211,7 +211,7 @@ class Sheets:
             text = f"{of}`{line(what, 100)}` is in `{Path(first).name}` and otherwise in `{Path(other).name}`"
             self.to.warn(TWICE, text, "the first one is taken")
 
-    def find(self, kind: str, reference: str, seen_from: Element) -> Element:
+    def find_element(self, kind: str, reference: str, seen_from: Element) -> Element:
         """Return the type or interface that a reference names, with aliases resolved.
 
         Raises `NotSupported` if it is undefined, or if an alias refers to itself.

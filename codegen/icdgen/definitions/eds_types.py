@@ -82,7 +82,7 @@ class EdsTypes(ReadingState):
         """
         chain = [type_]
         while chain[-1].tag == SUBRANGE:
-            base = self.sheets.find(
+            base = self.sheets.find_element(
                 "type", self.sheets.attribute(chain[-1], "baseType"), chain[-1]
             )
             if base in chain or len(chain) >= _DEEPEST:

@@ -165,7 +165,7 @@ class KaitaiLayout(Container[KaitaiPart]):
             raise NotSupported(
                 f"the type `{line(str(name_of_type), 60)}` has parameters"
             )
-        inner = scope.type.find(str(name_of_type))
+        inner = scope.type.find_type(str(name_of_type))
         if any(inner is other for other in within):
             circle = " -> ".join(other.name for other in (*within, inner))
             raise NotSupported(
@@ -245,7 +245,7 @@ class KaitaiLayout(Container[KaitaiPart]):
         linear = counted(expression)
         if linear is None:
             raise NotSupported(why)
-        of = scope.find(linear[0])
+        of = scope.find_part(linear[0])
         if (
             of.item.get("type") != "uint"
             or "count" in of.item
@@ -516,7 +516,7 @@ class KaitaiLayout(Container[KaitaiPart]):
         other values have their own branch. Raises `Undecided` if the value is not in
         ``decided``, `NotSupported` if the field is not an integer.
         """
-        part = scope.find(of.path)
+        part = scope.find_part(of.path)
         item = part.item
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotSupported(f"it depends on `{of.path}`, which is not an integer")
@@ -641,7 +641,7 @@ class KaitaiLayout(Container[KaitaiPart]):
         if linear is None:
             return False
         try:
-            part = scope.find(linear[0])
+            part = scope.find_part(linear[0])
         except NotSupported:
             return False
         item = part.item

@@ -113,7 +113,7 @@ class TypeScope:
     outer: TypeScope | None = None
     names: dict[str, KaitaiPart | TypeScope] = field(default_factory=dict)
 
-    def find(self, path: str) -> KaitaiPart:
+    def find_part(self, path: str) -> KaitaiPart:
         """Return the part at a path such as ``_parent.header.length``.
 
         Raises `NotSupported` if no preceding part has it.

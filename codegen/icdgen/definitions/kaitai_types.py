@@ -71,7 +71,7 @@ class KaitaiType:
         """Computed values, and attributes at a stated position (`pos`)."""
         return mapping(self.body, "instances")
 
-    def find(self, reference: str) -> KaitaiType:
+    def find_type(self, reference: str) -> KaitaiType:
         """Return the type that a reference names in this type or an enclosing one.
 
         Raises `NotSupported` if it is missing.

@@ -1,4 +1,8 @@
-"""Kinds of definitions, their readers, and the detection of the kind of a file."""
+"""Kinds of definitions, their readers, and the detection of the kind of a file.
+
+A reader is loaded only when it is needed. `model.DefinitionReader` is the interface
+that readers implement, also those of plug-ins.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +46,7 @@ def names() -> list[str]:
     return [*_BUILT_IN, *sorted(_plug_ins())]
 
 
-def get(name: str) -> DefinitionReader:
+def reader_of_kind(name: str) -> DefinitionReader:
     """Return the reader of a kind.
 
     Raises `UserError` if the kind is unknown or its reader cannot be loaded.
@@ -62,7 +66,7 @@ def get(name: str) -> DefinitionReader:
         ) from None
 
 
-def of(path: Path) -> DefinitionReader | None:
+def reader_of_file(path: Path) -> DefinitionReader | None:
     """Return the reader that recognizes a file by its beginning, or else by its suffix.
 
     Returns None for manuals and unreadable files.
@@ -75,7 +79,7 @@ def of(path: Path) -> DefinitionReader | None:
     if start.startswith(b"%PDF"):  # a manual, which other modules import
         return None
     text = start.decode("utf-8-sig", "replace")
-    readers = [get(name) for name in names()]
+    readers = [reader_of_kind(name) for name in names()]
     # The suffix decides only if no reader recognizes the content.
     by_suffix = (
         reader for reader in readers if path.suffix.lower() == f".{reader.name}"
@@ -97,7 +101,7 @@ def within(folder: Path) -> list[tuple[Path, DefinitionReader]]:
         )
         for name in sorted(files):
             path = Path(where, name)
-            if path.is_file() and (reader := of(path)) is not None:
+            if path.is_file() and (reader := reader_of_file(path)) is not None:
                 definitions.append((path, reader))
     return sorted(definitions, key=lambda pair: pair[0])
 

@@ -1,5 +1,8 @@
 """Reader of MAVLink dialects: messages and enumerations of an XML file and its
 includes, with the framing of version 2 or 1.
+
+Fields are in the order of transmission (largest type first, then extensions), and the
+framing contains CRC_EXTRA of each message, as pymavlink computes it.
 """
 
 from __future__ import annotations
@@ -293,11 +296,14 @@ def _field(element: Element) -> _Field:
     Raises `NotSupported` if MAVLink has no such type.
     """
     match = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
+    type_ = match[1] if match else ""
     # As in pymavlink, `array` means `int8_t`, and the suffix `_t` is optional.
-    type_ = (
-        "uint8_t" if match and match[1] == _VERSION_FIELD else match[1] if match else ""
-    )
-    type_ = "int8_t" if type_ == "array" else type_ if type_ in _BITS else f"{type_}_t"
+    if type_ == _VERSION_FIELD:
+        type_ = "uint8_t"
+    elif type_ == "array":
+        type_ = "int8_t"
+    elif type_ not in _BITS:
+        type_ = f"{type_}_t"
     if match is None or type_ not in _BITS:
         raise NotSupported(
             f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`"
@@ -338,13 +344,10 @@ def _icd_field(
             "type": "text",
             **summary(_text(element)),
         }
-    kind = (
-        "float"
-        if field.type in ("float", "double")
-        else "uint"
-        if field.type[0] == "u"
-        else "int"
-    )
+    if field.type in ("float", "double"):
+        kind = "float"
+    else:
+        kind = "uint" if field.type[0] == "u" else "int"
     bits = _BITS[field.type]
     item: Item = {"bits": bits, "name": field.name, "type": kind}
     item |= {"count": field.elements} if field.elements else {}
@@ -538,4 +541,6 @@ def _number(text: str) -> Any:
     # With the base 0, `int` rejects decimal numbers with zeros in front.
     value = int(match[1], 0) if "x" in match[1].lower() else int(match[1])
     power = int(match[3] or 0)
-    return value << power if match[2] == "<<" else value**power if match[2] else value
+    if match[2] == "<<":
+        return value << power
+    return value**power if match[2] else value

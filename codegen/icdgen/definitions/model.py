@@ -1,5 +1,8 @@
 """Common result of all readers: ICDs as mappings with the keys of the YAML format, and
 findings.
+
+A reader returns `Definitions` with a `Network` for each node. `run` settles them
+(`settle`) and makes trees of them.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 """Messages of space packets (CCSDS 133.0-B) and of frames without a header: ids, and
 the common header.
+
+Readers of XTCE and of electronic data sheets pass containers with their layout
+(`Sent`). `fill` adds them to a network as messages.
 """
 
 from __future__ import annotations
@@ -37,7 +40,9 @@ class PrimaryHeader(NamedTuple):
     @property
     def kind(self) -> str | None:
         """Direction of the packet, or None if the header does not fix it."""
-        return None if self.type is None else TELECOMMAND if self.type else TELEMETRY
+        if self.type is None:
+            return None
+        return TELECOMMAND if self.type else TELEMETRY
 
 
 class Sent(Protocol):

@@ -1,6 +1,8 @@
 """Import of definitions from files to trees of ICDs with findings.
 
-No file is written.
+Files with their readers go in. A `ReadDefinitions` for each file or set of files comes
+out, with content that `icdgen check` accepts. No file is written; that is the task of
+`commands/import_.py`.
 """
 
 from __future__ import annotations

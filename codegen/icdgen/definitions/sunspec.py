@@ -474,7 +474,9 @@ def _summary(of: dict[str, Any]) -> dict[str, str]:
     """
     label, text = _text(of, "label"), _text(of, "desc")
     is_contained = label.casefold() in text.casefold()
-    return summary(text if is_contained else f"{label}. {text}" if text else label)
+    if not text:
+        return summary(label)
+    return summary(text if is_contained else f"{label}. {text}")
 
 
 def _list(of: dict[str, Any], key: str) -> Iterator[dict[str, Any]]:

@@ -1,4 +1,8 @@
-"""Names, texts and numbers of definitions in the spelling of an ICD."""
+"""Names, texts and numbers of definitions in the spelling of an ICD.
+
+All readers use these functions, so that names and summaries have the same form whatever
+the kind of the definition.
+"""
 
 from __future__ import annotations
 

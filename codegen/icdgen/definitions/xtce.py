@@ -2,6 +2,9 @@
 messages.
 
 Containers that begin with the primary header of a space packet become packets.
+`xtce_files` groups files into databases, `xtce_names` resolves references,
+`xtce_layout` reads the entries of a container and `xtce_types` the types of the
+entries.
 """
 
 from __future__ import annotations

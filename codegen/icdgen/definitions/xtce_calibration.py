@@ -1,4 +1,8 @@
-"""Numbers and calibrations of XTCE: polynomials as formulas, splines as lookup tables."""
+"""Numbers and calibrations of XTCE: polynomials as formulas, splines as lookup tables.
+
+Coefficients stay decimal text until they are written, so that the ICD has the digits of
+the source. Raises `ValueError` for calibrations that an ICD cannot represent.
+"""
 
 from __future__ import annotations
 
@@ -135,13 +139,9 @@ def _number(text: str) -> int | float | str:
 
     Numbers with an exponent or over 30 characters stay text.
     """
-    return (
-        text
-        if "e" in text.lower() or len(text) > 30
-        else float(text)
-        if "." in text
-        else int(text)
-    )
+    if "e" in text.lower() or len(text) > 30:
+        return text
+    return float(text) if "." in text else int(text)
 
 
 def number(text: str, what: str) -> int:
@@ -203,12 +203,14 @@ def formula(terms: dict[int, str]) -> str:
         return ""
     for power, value in sorted(terms.items(), reverse=True):
         size, raw = _binary(value.lstrip("-")), "raw" if power == 1 else f"raw^{power}"
-        part = size if not power else raw if size == "1" else f"{raw}*{size}"
-        text += (
-            f"{' - ' if value[0] == '-' else ' + '}{part}"
-            if text
-            else ("-" if value[0] == "-" else "") + part
-        )
+        if not power:
+            part = size
+        else:
+            part = raw if size == "1" else f"{raw}*{size}"
+        if text:
+            text += (" - " if value[0] == "-" else " + ") + part
+        else:
+            text = ("-" if value[0] == "-" else "") + part
     return text or "raw*0"
 
 

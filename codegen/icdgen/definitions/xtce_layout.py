@@ -1,5 +1,8 @@
 """Layout of XTCE containers: their own, inherited and included entries, and the values
 that restrict them.
+
+An `XtceLayout` reads one container or command and returns its fields with `laid_out`.
+`xtce_types` has the fields of types, `xtce_parts` entries of variable length.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Named elements of XTCE files: nested systems, and the resolution of references."""
+"""Named elements of XTCE files: nested systems, and the resolution of references.
+
+A reference is resolved from the system in which it stands outwards, as in a file
+system; an absolute path begins with a slash.
+"""
 
 from __future__ import annotations
 
@@ -118,7 +122,9 @@ class XtceNames:
         """
         chain = [element]
         while (base := chain[-1].find("BaseMetaCommand")) is not None:
-            parent = self.find("command", base.get("metaCommandRef", ""), chain[-1])
+            parent = self.find_element(
+                "command", base.get("metaCommandRef", ""), chain[-1]
+            )
             if any(parent is command for command in chain):
                 raise NotSupported("commands are based on each other in a circle")
             chain.append(parent)
@@ -153,7 +159,9 @@ class XtceNames:
         if command is None or base_command is None:
             return None
         return self.container_of(
-            self.find("command", base_command.get("metaCommandRef", ""), command)
+            self.find_element(
+                "command", base_command.get("metaCommandRef", ""), command
+            )
         )
 
     def container(self, reference: str, seen_from: Element) -> Element:
@@ -165,17 +173,17 @@ class XtceNames:
         """
         if seen_from.tag == "CommandContainer":
             try:
-                return self.find("command container", reference, seen_from)
+                return self.find_element("command container", reference, seen_from)
             except NotSupported:
                 pass  # containers of telemetry may be parts of commands
-        return self.find("container", reference, seen_from)
+        return self.find_element("container", reference, seen_from)
 
     def type_of(self, reference: str, seen_from: Element) -> Element:
         """Return the type that a parameter, an argument or another type refers to.
 
         Raises `NotSupported` if it does not exist.
         """
-        return self.find(
+        return self.find_element(
             "argument type" if "Argument" in seen_from.tag else "parameter type",
             reference,
             seen_from,
@@ -194,7 +202,7 @@ class XtceNames:
         words = reference.split("/")
         for length in range(len(words), 0, -1):
             try:
-                return self.find(
+                return self.find_element(
                     "parameter", "/".join(words[:length]), seen_from
                 ), tuple(words[length:])
             except NotSupported:
@@ -204,7 +212,7 @@ class XtceNames:
             _TOGETHER if "/" in reference else "",
         )
 
-    def find(self, kind: str, reference: str, seen_from: Element) -> Element:
+    def find_element(self, kind: str, reference: str, seen_from: Element) -> Element:
         """Return the element that a reference names.
 
         Raises `NotSupported` if no such element exists.

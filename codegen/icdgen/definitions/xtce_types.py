@@ -1,5 +1,9 @@
 """Types of XTCE parameters and arguments as fields: encodings, calibrations, labels and
 limits.
+
+`XtceTypes.field_type` is the entry point. It returns the field without its position,
+which `xtce_layout` adds. A calibration that is not supported leaves the raw value
+(IMP078).
 """
 
 from __future__ import annotations
@@ -193,11 +197,8 @@ class XtceTypes(ReadingState):
             # encoding differ: 8 bits, unsigned.
             bits = number(_attribute(chain, "sizeInBits", "32"), "a size")
             is_signed = _attribute(chain, "signed", "true") == "true"
-            return _numbers(
-                "float" if kind == "Float" else "int" if is_signed else "uint",
-                bits,
-                BIG,
-            )
+            type_ = "int" if is_signed else "uint"
+            return _numbers("float" if kind == "Float" else type_, bits, BIG)
         if (
             encoding.get("bitOrder", "mostSignificantBitFirst")
             != "mostSignificantBitFirst"
@@ -362,13 +363,10 @@ class XtceTypes(ReadingState):
         """
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
-            keys = (
-                _time(field_type.item, chain)
-                if is_time
-                else {}
-                if encoding is None
-                else calibration(encoding)
-            )
+            if is_time:
+                keys = _time(field_type.item, chain)
+            else:
+                keys = {} if encoding is None else calibration(encoding)
         except ValueError as error:
             self.raw_only(
                 where, str(error), "its raw values are imported, without the unit"
@@ -471,13 +469,9 @@ def special_values(element: Element) -> Item:
             and text
             and (value in ("nan", "inf", "-inf") or NUMBER.match(value))
         ):
-            number = (
-                value
-                if value[-1] in "nf"
-                else float(value)
-                if set(value) & set(".e")
-                else int(value)
-            )
+            number: float | str = value
+            if value[-1] not in "nf":  # neither `nan` nor `inf`
+                number = float(value) if set(value) & set(".e") else int(value)
             result.append({"value": number, "meaning": text})
     return {"special": result[:_MOST_NAMED]} if result else {}
 
@@ -662,8 +656,9 @@ def _unit(chain: list[Element]) -> dict[str, str]:
         except ValueError:
             exponent = 1.0
         if text:
-            parts += "/" if exponent < 0 and parts else "." if parts else ""
-            exponent = abs(exponent) if parts else exponent
+            if parts:
+                parts += "/" if exponent < 0 else "."
+                exponent = abs(exponent)
             parts += text if exponent == 1 else f"{text}^{exponent:g}"
     return unit(parts)
 

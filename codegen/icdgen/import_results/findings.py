@@ -25,13 +25,11 @@ class SourcePlace(NamedTuple):
         """Place such as ``page 12`` or ``types.xml, line 3``; empty for the whole
         document.
         """
-        within = (
-            f"page {self.page}"
-            if self.page is not None
-            else f"line {self.line}"
-            if self.line is not None
-            else ""
-        )
+        within = ""
+        if self.page is not None:
+            within = f"page {self.page}"
+        elif self.line is not None:
+            within = f"line {self.line}"
         return ", ".join(filter(None, (self.file, within)))
 
 

@@ -82,13 +82,10 @@ def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
             f"{count(len(messages), 'message')} with {count(fields, 'field')}, "
             f"{count(len(enums), 'enumeration')} with {count(members, 'member')}"
         )
-        state = (
-            "written"
-            if target.changes is None
-            else "unchanged"
-            if target.same
-            else "updated"
-        )
+        if target.changes is None:
+            state = "written"
+        else:
+            state = "unchanged" if target.same else "updated"
         if dry and state != "unchanged":
             state = f"would be {state}{' with --update' if target.refused else ''}"
         lines.append(f"{target.path}: {state}; {what}")

@@ -551,13 +551,9 @@ class _DeclarationReader:
                 )
             result = []
             for index in range(total):
-                prefix = (
-                    f"{declaration.name}[{index}]."
-                    if counts
-                    else f"{declaration.name}."
-                    if declaration.name
-                    else ""
-                )
+                prefix = f"{declaration.name}." if declaration.name else ""
+                if counts:
+                    prefix = f"{declaration.name}[{index}]."
                 for member in layout.members:
                     byte, name = member.byte + index * layout.size, prefix + member.name
                     line = declaration.coord.line
@@ -616,13 +612,11 @@ class _DeclarationReader:
             for word in spelled.split()
             if word not in ("int", "signed", "unsigned")
         ]
-        sign = (
-            "unsigned "
-            if "unsigned" in spelled.split()
-            else "signed "
-            if words == ["char"] and "signed" in spelled.split()
-            else ""
-        )
+        sign = ""
+        if "unsigned" in spelled.split():
+            sign = "unsigned "
+        elif words == ["char"] and "signed" in spelled.split():
+            sign = "signed "
         key = (sign + " ".join(words or ["int"])).strip()
         if key not in _SIZES:
             raise Unreadable(

@@ -66,10 +66,12 @@ def _columns(rule: TableRule, table: SourceTable) -> list[str]:
             )
     lines = [f"    {len(rows)} rows below the headings"]
     for title in filter(None, titles):
-        given = roles.get(title) or (
-            "ignored" if title in rule.ignore else "melted" if rule.melt else "no role"
-        )
-        lines.append(f"    column `{title}`: {given}")
+        use = roles.get(title)
+        if not use and title in rule.ignore:
+            use = "ignored"
+        elif not use:
+            use = "melted" if rule.melt else "no role"
+        lines.append(f"    column `{title}`: {use}")
     return lines
 
 
@@ -91,11 +93,9 @@ def _part(part: TablePart) -> list[str]:
 
 
 def _finding(import_finding: ImportFinding) -> str:
-    row = (
-        f" (line {import_finding.spot.line})"
-        if import_finding.spot.line
-        else f" (page {import_finding.spot.page})"
-        if import_finding.spot.page
-        else ""
-    )
-    return f"  {import_finding.severity}[{import_finding.code}]{row}: {import_finding.message}"
+    place = ""
+    if import_finding.spot.line:
+        place = f" (line {import_finding.spot.line})"
+    elif import_finding.spot.page:
+        place = f" (page {import_finding.spot.page})"
+    return f"  {import_finding.severity}[{import_finding.code}]{place}: {import_finding.message}"

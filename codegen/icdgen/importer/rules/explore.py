@@ -46,13 +46,9 @@ def _block(group: list[SourceTable]) -> list[str]:
         " ..." if len(group) > MOST_NUMBERS else ""
     )
     pages = sorted({table.page for table in group if table.page is not None})
-    where = (
-        f", pages {pages[0]} to {pages[-1]}"
-        if len(pages) > 1
-        else f", page {pages[0]}"
-        if pages
-        else ""
-    )
+    where = f", page {pages[0]}" if pages else ""
+    if len(pages) > 1:
+        where = f", pages {pages[0]} to {pages[-1]}"
     lines = [
         f"  # {len(group)} table{'s' if len(group) != 1 else ''}: {numbers}{where}"
     ]
@@ -92,15 +88,11 @@ def _title(title: str) -> str:
     """A heading within `head`: an empty cell is any cell, and one that begins like a
     pattern is quoted.
     """
-    return (
-        "*"
-        if not title
-        else (
-            f"~^{re.escape(title)}$"
-            if title.startswith("~") or " | " in title
-            else title
-        )
-    )
+    if not title:
+        return "*"
+    if title.startswith("~") or " | " in title:
+        return f"~^{re.escape(title)}$"
+    return title
 
 
 def as_json(tables: list[SourceTable], document: str) -> str:

@@ -479,7 +479,9 @@ class FieldReader:
         text = roles.get("part")
         if text:
             # `L` and `H` name the low and the high part.
-            first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
+            first = {"l": 0, "h": 1}.get(text.lower())
+            if first is None:
+                first = int(text)
             draft.part = first, int(roles.get("last_part") or first)
 
     def members(

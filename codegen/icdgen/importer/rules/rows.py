@@ -170,13 +170,9 @@ def _transposed(
             values = {}
             for name, slots in zip(titles, rows, strict=False):
                 texts = [slot.cell.text for slot in slots[column:end] if slot.is_origin]
-                values[name] = (
-                    texts[0]
-                    if len(texts) == 1
-                    else f"{texts[0]}:{texts[-1]}"
-                    if texts
-                    else ""
-                )
+                values[name] = texts[0] if texts else ""
+                if len(texts) > 1:
+                    values[name] = f"{texts[0]}:{texts[-1]}"
             data_rows.append(
                 DataRow(
                     values,
