@@ -243,9 +243,11 @@ def in_sequence(fields: list[Item]) -> list[Item]:
     first: Item | None = None
     for field_item in fields:
         if first is not None:
-            rest = {key: value for key, value in field_item.items() if key != "at"}
             place = {"at": first["at"], "after": result[-1]["name"]}
-            field_item = replace_keys(field_item, {**place, **rest})
+            without_place = {
+                key: value for key, value in field_item.items() if key != "at"
+            }
+            field_item = replace_keys(field_item, {**place, **without_place})
         elif "up_to" in field_item:
             first = field_item
         result.append(field_item)

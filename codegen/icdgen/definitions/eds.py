@@ -138,7 +138,7 @@ class _Message:
         self.container, self.layout, self.more = sending.container, layout, more
         self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
         self.line = sheets.line(sending.container)
-        self.told = layout.constants
+        self.constants = layout.constants
         self.front = layout.front()
         # The type flag of the header takes precedence over the direction of the
         # interface.

@@ -138,8 +138,10 @@ def _range_of_constraint(
 ) -> eds_ranges.Range:
     """Return the range of a `RangeConstraint`, or of the type of a `TypeConstraint`."""
     if constraint.tag == "RangeConstraint":
-        return eds_ranges.said(sheets, constraint)
-    type_ = sheets.find("type", sheets.attribute(constraint, "type"), constraint)
+        return eds_ranges.stated_range(sheets, constraint)
+    type_ = sheets.find_element(
+        "type", sheets.attribute(constraint, "type"), constraint
+    )
     return types.field_type(type_, type_, f"`{type_.get('name', '')}`").range
 
 

@@ -72,7 +72,7 @@ class Range(NamedTuple):
 ALL = Range()
 
 
-def said(sheets: Sheets, element: Element) -> Range:
+def stated_range(sheets: Sheets, element: Element) -> Range:
     """Return the range of a `MinMaxRange` in an element, or `ALL` without one.
 
     Raises `NotSupported` for an undefined design parameter.

@@ -304,7 +304,7 @@ class EdsTypes(ReadingState):
             for bounds in (
                 inner for inner in element if inner.tag in ("Range", "ValidRange")
             ):
-                result = result.within(eds_ranges.said(self.sheets, bounds))
+                result = result.within(eds_ranges.stated_range(self.sheets, bounds))
         return result
 
     def _meaning(

@@ -496,10 +496,9 @@ class KaitaiLayout(Container[KaitaiPart]):
         }
         of = masked(switch.get("switch-on"))
         value, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
+        chosen = str(cases["_"]) if "_" in cases else None
         if value is not None:
             chosen = types[value]
-        else:
-            chosen = str(cases["_"]) if "_" in cases else None
         if is_new and chosen is not None:
             self.labels.append(
                 BranchLabel(chosen, "other" if value is None else f"{value}")

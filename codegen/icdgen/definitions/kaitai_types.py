@@ -95,7 +95,7 @@ class KaitaiType:
         Raises `NotSupported` if this and the enclosing types lack it.
         """
         *path, name = reference.split("::")
-        scope: KaitaiType | None = self.find("::".join(path)) if path else self
+        scope: KaitaiType | None = self.find_type("::".join(path)) if path else self
         while scope is not None:
             enumeration = mapping(scope.body, "enums").get(name)
             if isinstance(enumeration, Map):

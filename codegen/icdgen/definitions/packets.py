@@ -51,9 +51,11 @@ class Sent(Protocol):
     name: str
     kind: str
     header: PrimaryHeader | None  # None for a container without a primary header
-    # Key in `told` and bits of the first part, if a header can use it as id:
+    # Key in `constants` and bits of the first part, if a header can use it as id:
     front: tuple[Hashable, int] | None
-    told: dict[Hashable, int]  # constants by part: candidates for the discriminator
+    constants: dict[
+        Hashable, int
+    ]  # constants by part: candidates for the discriminator
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """Return the ICD message from the bit ``start`` on.
@@ -206,7 +208,11 @@ def _add_without_header(
         discriminator = _discriminator(same_kind)
         numbered = []
         for number, container in enumerate(same_kind, 1):
-            id = container.told[discriminator] if discriminator is not None else number
+            id = (
+                container.constants[discriminator]
+                if discriminator is not None
+                else number
+            )
             widest = max(widest, id.bit_length())
             if discriminator is None:
                 numbered.append(container.name)
@@ -252,17 +258,17 @@ def _discriminator(containers: list[Sent]) -> Hashable | None:
     """
     common = [
         key
-        for key in (containers[0].told if containers else ())
-        if all(key in container.told for container in containers)
+        for key in (containers[0].constants if containers else ())
+        if all(key in container.constants for container in containers)
     ]
     end = 1 << _MOST_ID_BITS
     fits = [
         key
         for key in common
-        if all(0 <= container.told[key] < end for container in containers)
+        if all(0 <= container.constants[key] < end for container in containers)
     ]
     return max(
         fits,
-        key=lambda key: len({container.told[key] for container in containers}),
+        key=lambda key: len({container.constants[key] for container in containers}),
         default=None,
     )

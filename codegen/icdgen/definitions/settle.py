@@ -112,7 +112,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
                 _degrade(network, line, finding, to)
             if not refused and not has_changed:
                 break
-    _declare_structs(network)
+    _remove_unused_structs(network)
     named = {
         id(line.item): line
         for line in lines.values()
@@ -301,7 +301,7 @@ def _remove(items: list[Item], item: Item) -> None:
     items[:] = [other for other in items if other is not item]
 
 
-def _declare_structs(network: Network) -> None:
+def _remove_unused_structs(network: Network) -> None:
     """Remove structs and enumerations that no message uses."""
     by_name = {struct["name"]: struct for struct in network.structs}
     needed: set[str] = set()

@@ -141,7 +141,7 @@ class _Candidate:
         self.is_base = is_base
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
         self.name = name_of(element)
-        self.told: dict[Hashable, int] = {
+        self.constants: dict[Hashable, int] = {
             required.reference: layout.fix_value(required)
             for required in layout.required_values
         }

@@ -197,8 +197,9 @@ class XtceTypes(ReadingState):
             # encoding differ: 8 bits, unsigned.
             bits = number(_attribute(chain, "sizeInBits", "32"), "a size")
             is_signed = _attribute(chain, "signed", "true") == "true"
-            type_ = "int" if is_signed else "uint"
-            return _numbers("float" if kind == "Float" else type_, bits, BIG)
+            if kind == "Float":
+                return _numbers("float", bits, BIG)
+            return _numbers("int" if is_signed else "uint", bits, BIG)
         if (
             encoding.get("bitOrder", "mostSignificantBitFirst")
             != "mostSignificantBitFirst"

@@ -1,4 +1,8 @@
-"""Findings of an import, with their places in the source."""
+"""Findings of an import, with their places in the source.
+
+An `ImportFinding` is about the source and has a certainty. A `Finding` of
+`diagnostics`, in contrast, is about an ICD.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +38,7 @@ class SourcePlace(NamedTuple):
 
 
 class ImportFinding(NamedTuple):
-    """Finding of an import. ``sure`` is how certain the importer is of what it did."""
+    """Finding of an import. ``sure`` is the certainty of the result that it is about."""
 
     code: str
     message: str
@@ -46,8 +50,9 @@ class ImportFinding(NamedTuple):
     also: tuple[SourcePlace, ...] = ()  # further places with the same cause
 
     def is_about_table(self, order: int | None) -> bool:
-        """Whether the finding, or another place with the same cause, is in the table
-        with this number (from 0).
+        """Return whether the finding is about a table, by its number from 0.
+
+        Places with the same cause count as well.
         """
         return self.spot.order == order or any(
             spot.order == order for spot in self.also

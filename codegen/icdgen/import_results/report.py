@@ -1,4 +1,7 @@
-"""Reports of an import of a manual or of definitions."""
+"""Reports of an import of a manual or of definitions, as text and for JSON.
+
+`importer/console.py` and `definitions/console.py` use these parts.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Files of an import: new, or updated.
 
-No file is written before all are ready.
+Trees of ICDs with their paths go in. No file is written before all are ready.
 """
 
 from __future__ import annotations

@@ -180,13 +180,10 @@ def _merge_items(
             changes.append(f"- {where}{kind} {_title(kind, _plain(child.value))}")
     # The order of the new items is used if it does not contradict the order of the old
     # ones.
-    ascending = all(a < b for a, b in pairwise(placed.values()))
-    return [
-        child
-        for _, child in (
-            placed_items if ascending else sorted(placed_items, key=lambda m: m[0])
-        )
-    ]
+    is_ascending = all(a < b for a, b in pairwise(placed.values()))
+    if not is_ascending:
+        placed_items.sort(key=lambda placed_item: placed_item[0])
+    return [child for _, child in placed_items]
 
 
 def _merge(

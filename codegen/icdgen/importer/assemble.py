@@ -67,7 +67,10 @@ def _parts_by_node(
     ]
     nodes = {key: _new_node(key, profile) for key, _ in used if key}
     if used and not nodes:
-        nodes = {"": _new_node(_document_name(document), profile)}
+        # Neither the document nor the profile names a node.
+        words = re.findall("[A-Za-z0-9]+", Path(document.file).stem)
+        name = " ".join(words[:3]) or "device"
+        nodes = {"": _new_node(name, profile)}
     first = next(iter(nodes), "")
     for key, content in used:
         nodes.get(key, nodes[first]).add_content(content)
@@ -174,11 +177,6 @@ def _new_node(key: str, profile: Profile) -> NodeParts:
     if not name or not name[0].isalpha():
         name = f"node{name}"[:40]
     return NodeParts(name, key, shared)
-
-
-def _document_name(document: Document) -> str:
-    words = re.findall("[A-Za-z0-9]+", Path(document.file).stem)
-    return " ".join(words[:3]) or "device"
 
 
 def _include_shared_nodes(nodes: list[NodeParts]) -> None:

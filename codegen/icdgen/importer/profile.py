@@ -1,5 +1,9 @@
 """Profiles: the rules for the tables of a document, and the words by which its tables
 are found.
+
+A profile is a YAML file. `load` lays it over `profile.yaml`, the built-in words, checks
+it and returns a `Profile`. `rules/rule.py` has the rules, and
+`docs/reference/import-rules.md` describes all keys.
 """
 
 from __future__ import annotations
@@ -123,12 +127,10 @@ class Profile:
     @cached_property
     def heading_words(self) -> frozenset[str]:
         """All words of all headings."""
-        return frozenset(
-            word
-            for titles in self.known_headings.values()
-            for heading in titles
-            for word in heading
-        )
+        words: set[str] = set()
+        for headings in self.known_headings.values():
+            words.update(*headings)
+        return frozenset(words)
 
     @cached_property
     def needs(self) -> dict[str, list[tuple[str, ...]]]:
@@ -255,12 +257,8 @@ def phrase_pattern(text: str) -> re.Pattern[str]:
         "table": r"(?P<table>(?:Table|Tab\.|Tbl\.)\s*[0-9]+(?:[-.][0-9]+)*)(?:\s*[:–—-]\s*(?P<title>[^.;()]*))?",
         "title": r"(?P<title>[^.;()]+)",
     }
-    return re.compile(_pattern(text, stand_ins), re.I)
-
-
-def _pattern(text: str, stand_ins: dict[str, str]) -> str:
     escaped = re.escape(text).replace(r"\ ", r"\s+")
-    return _PLACEHOLDER.sub(lambda m: stand_ins.get(m.group(1), ".+?"), escaped)
+    return re.compile(_PLACEHOLDER.sub(lambda m: stand_ins[m.group(1)], escaped), re.I)
 
 
 def find(name: str | None) -> Path | None:

@@ -1,4 +1,8 @@
-"""Assignment of captions to tables, and conversion to the blocks of a document."""
+"""Assignment of captions to tables, and conversion to the blocks of a document.
+
+Drafts and text in reading order go in. Whether captions are above or below their tables
+is decided once for the document, from the distances.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Columns of tables without vertical rules, from the headings and the white space."""
+"""Columns of tables without vertical rules, from the headings and the white space.
+
+`find_headings` finds a heading row and the horizontal extent of each heading.
+`boundaries` returns the edges of columns between them, which no word of the table
+should cross.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +29,9 @@ class Columns(NamedTuple):
     lines: int
 
 
-def find(lines: list[TextLine], profile: Profile, loose: bool = True) -> Columns | None:
+def find_headings(
+    lines: list[TextLine], profile: Profile, loose: bool = True
+) -> Columns | None:
     """Return the heading row that begins with the first of ``lines``, or None.
 
     ``loose``: also accept headings of fields without offsets.

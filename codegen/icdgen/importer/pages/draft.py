@@ -1,4 +1,8 @@
-"""Drafts of tables: rows as printed on the page, and their conversion to tables."""
+"""Drafts of tables: rows as printed on the page, and their conversion to tables.
+
+`tables` fills a `TableDraft` while it reads the pages. `TableDraft.table` returns the
+`SourceTable`, with cells that span rows or columns.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Headings, captions, text and pieces of tables from all pages, in reading order."""
+"""Headings, captions, text and pieces of tables from all pages, in reading order.
+
+The words and ruling lines of pages go in (`extract`). The items that come out are
+assembled to tables over page breaks by `tables`.
+"""
 
 from __future__ import annotations
 
@@ -87,7 +91,7 @@ def items(pages: list[PageContents], profile: Profile) -> list[Item]:
         for regions_of, lines_of in gutter.parts(
             page, ruled[page.number], lines_of_page[page.number]
         ):
-            in_order += flow.page(page, regions_of, lines_of)
+            in_order += flow.read_page(page, regions_of, lines_of)
     return in_order
 
 
@@ -120,6 +124,9 @@ def _is_of_a_table(line: TextLine, near: list[TextLine], profile: Profile) -> bo
 class _Flow:
     """Reader of consecutive pages, with the columns of a table that the next page may
     continue.
+
+    ``following`` are the lines of a page from the current line up to the next ruled
+    table. The methods that read an item return how many of them it takes.
     """
 
     def __init__(self, profile: Profile, text: Iterable[TextLine]) -> None:
@@ -139,9 +146,10 @@ class _Flow:
         self.size = 0.0
         self.extent = (0.0, 0.0)
 
-    def page(
+    def read_page(
         self, page: PageContents, ruled: list[Region], loose: list[TextLine]
     ) -> list[Item]:
+        """Return the items of a page, from its ruled regions and all other lines."""
         items_of_page: list[Item] = []
         index = 0
         waiting = list(ruled)
@@ -149,7 +157,7 @@ class _Flow:
             if waiting and (
                 index >= len(loose) or waiting[0].top <= loose[index].middle
             ):
-                items_of_page.append(self.ruled(page, waiting.pop(0)))
+                items_of_page.append(self.ruled_piece(page, waiting.pop(0)))
                 # A ruled table is between: nothing below it continues the table above.
                 self.open = None
                 continue
@@ -157,13 +165,13 @@ class _Flow:
             upto = index
             while upto < len(loose) and loose[upto].middle < limit:
                 upto += 1
-            taken, item = self.next(page, loose[index:upto], not items_of_page)
+            taken, item = self.next_item(page, loose[index:upto], not items_of_page)
             index += taken
             if item is not None:
                 items_of_page.append(item)
         return items_of_page
 
-    def ruled(self, page: PageContents, region: Region) -> TablePiece:
+    def ruled_piece(self, page: PageContents, region: Region) -> TablePiece:
         inside = [w for w in page.words if region.holds(w)]
         cuts = region.cuts()
         bands = []
@@ -180,7 +188,7 @@ class _Flow:
             ruled=True,
         )
 
-    def next(
+    def next_item(
         self, page: PageContents, following: list[TextLine], first: bool
     ) -> tuple[int, Item | None]:
         """Return the number of lines that belong to the item at the first line, and the
@@ -198,12 +206,12 @@ class _Flow:
         )
         if self.is_caption(line) and not goes_on:
             self.open = None
-            return self.caption(page, following)
+            return self.read_caption(page, following)
         length, header = self.head_length(following)
         if header is not None or length:
-            return self.table(page, following, length, header)
-        if first and self.continues(following):
-            return self.continuation(page, following)
+            return self.read_table(page, following, length, header)
+        if first and self.continues_table(following):
+            return self.read_continuation(page, following)
         self.open = None
         kind, number, text = "text", "", line.text
         heading = _HEADING.match(line.text)
@@ -235,7 +243,7 @@ class _Flow:
             match["mark"] or self.stands_out(line) or not match["title"]
         )
 
-    def caption(
+    def read_caption(
         self, page: PageContents, following: list[TextLine]
     ) -> tuple[int, TextItem]:
         """Return the number of lines of a caption, and the caption.
@@ -271,27 +279,27 @@ class _Flow:
 
         Return ``(0, None)`` if no table begins here.
         """
-        header = columns.find(following, self.profile)
+        header = columns.find_headings(following, self.profile)
         if header is not None:
             return 0, header
-        first = self.labelled(following)
+        first = self.lines_of_first_row(following)
         if not first:
             return 0, None
         at = _value_column(following[0])
         taken = first
         for index in range(first, min(14, len(following))):
             line = following[index]
-            header = columns.find(following[index:], self.profile)
+            header = columns.find_headings(following[index:], self.profile)
             if header is not None:
                 return index, header
-            if self.is_caption(line) or self.labelled(following[index:]):
+            if self.is_caption(line) or self.lines_of_first_row(following[index:]):
                 break
             label = labels.leading_meaning(line.text, self.profile)
             gap = line.top - following[index - 1].bottom
             if (
                 not label
                 and (line.x0 < at - 3 or gap > 1.5 * line.size)
-                and not self.completes(following[index - 1], line)
+                and not self.completes_label(following[index - 1], line)
             ):
                 break
             if label == "description":
@@ -299,7 +307,7 @@ class _Flow:
             taken = index + 1
         return taken, None
 
-    def completes(self, above: TextLine, line: TextLine) -> bool:
+    def completes_label(self, above: TextLine, line: TextLine) -> bool:
         """Return whether a line completes the label above it, in a narrow column."""
         if line.top - above.bottom > 0.5 * line.size:
             return False
@@ -308,7 +316,7 @@ class _Flow:
             labels.meaning_of_label(f"{labelled[-1].label} {line.text}", self.profile)
         )
 
-    def labelled(self, following: list[TextLine]) -> int:
+    def lines_of_first_row(self, following: list[TextLine]) -> int:
         """Return the number of lines of the first row of a message table that begins
         here, or 0.
 
@@ -327,33 +335,33 @@ class _Flow:
                 return count
         return 0
 
-    def head(self, lines: list[TextLine]) -> list[str]:
+    def rows_above_headings(self, lines: list[TextLine]) -> list[str]:
         """Return the rows above the headings as text."""
-        count = self.labelled(lines) if lines else 0
+        count = self.lines_of_first_row(lines) if lines else 0
         return ([columns.side_by_side(lines[:count])] if count else []) + [
             line.text for line in lines[count:]
         ]
 
-    def table(
+    def read_table(
         self,
         page: PageContents,
         following: list[TextLine],
         length: int,
         header: Columns | None,
     ) -> tuple[int, TablePiece]:
-        head = self.head(following[:length])
+        head = self.rows_above_headings(following[:length])
         if header is None:
             self.open = None
             return length, TablePiece(
                 box_around(page.number, following[:length]), [], ruled=False, head=head
             )
         start = length + header.lines
-        end = self.end(page, following, start, header)
+        end = self.end_of_table(page, following, start, header)
         x0, x1 = (
             min(line.x0 for line in following[:start]),
             max(line.x1 for line in following[:start]),
         )
-        body = self.cells(following[start:end], header)
+        body = self.without_row_label(following[start:end], header)
         piece = TablePiece(
             box_around(page.number, following[:end]), [], ruled=False, columns=header, head=head, lines=body, page=page,
             top=following[start - 1].bottom, extent=(x0, x1),
@@ -362,7 +370,9 @@ class _Flow:
         self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
         return end, piece
 
-    def cells(self, body: list[TextLine], columns: Columns) -> list[TextLine]:
+    def without_row_label(
+        self, body: list[TextLine], columns: Columns
+    ) -> list[TextLine]:
         """Return the lines without a word left of all headings, such as ``Channels``.
 
         Such a word labels all rows and belongs to none.
@@ -381,7 +391,7 @@ class _Flow:
                 cell_lines.append(line)
         return cell_lines
 
-    def end(
+    def end_of_table(
         self, page: PageContents, following: list[TextLine], start: int, header: Columns
     ) -> int:
         """Return the index of the first line after the table."""
@@ -390,13 +400,13 @@ class _Flow:
             (
                 index
                 for index in range(start, len(following))
-                if self.ends(following, index, header, size)
+                if self.ends_table(following, index, header, size)
             ),
             len(following),
         )
         bottom = following[-1].bottom + 8
         # Exclude the upper rule of the next table.
-        if start < end < len(following) and self.begins_anew(following, end):
+        if start < end < len(following) and self.is_heading_row(following, end):
             bottom = (following[end - 1].bottom + following[end].top) / 2
         limit = _lowest_rule(page, following, start, header, bottom)
         below = (
@@ -406,14 +416,16 @@ class _Flow:
         )
         return next(below, end)
 
-    def ends(
+    def ends_table(
         self, following: list[TextLine], index: int, header: Columns, size: float
     ) -> bool:
         line = following[index]
         in_cell = _begins_in_a_column(line, header.spans)
         if self.is_caption(line) and not in_cell:
             return True
-        if self.labelled(following[index:]) or self.begins_anew(following, index):
+        if self.lines_of_first_row(following[index:]) or self.is_heading_row(
+            following, index
+        ):
             return True
         if abs(line.size - size) > 1.2 and not in_cell:
             return True
@@ -428,7 +440,7 @@ class _Flow:
         gap = line.top - following[index - 1].bottom if index else 0
         return gap > 2.2 * line.size and not self.has_key(line)
 
-    def begins_anew(self, following: list[TextLine], index: int) -> bool:
+    def is_heading_row(self, following: list[TextLine], index: int) -> bool:
         """Return whether the line is a heading row.
 
         A line at the height of the line above is a part of a cell.
@@ -437,14 +449,16 @@ class _Flow:
         if index and line.top < following[index - 1].bottom - 0.2 * line.size:
             return False
         return (
-            columns.find(following[index : index + 3], self.profile, loose=False)
+            columns.find_headings(
+                following[index : index + 3], self.profile, loose=False
+            )
             is not None
         )
 
     def is_prose(self, following: list[TextLine], header: Columns) -> bool:
         """Return whether the first line belongs to a paragraph instead of a table."""
         return (
-            self.reads_on(following[0], header.spans)
+            self.runs_across_headings(following[0], header.spans)
             and not self.has_key(following[0])
             and not self.is_group(following, header)
         )
@@ -474,7 +488,9 @@ class _Flow:
             and self.has_key(following[1])
         )
 
-    def reads_on(self, line: TextLine, spans: list[tuple[float, float]]) -> bool:
+    def runs_across_headings(
+        self, line: TextLine, spans: list[tuple[float, float]]
+    ) -> bool:
         """Return whether text runs across three headings or more, as in a paragraph."""
         for run in runs(line, WIDE_GAP):
             x0, x1 = run[0].x0, run[-1].x1
@@ -484,7 +500,7 @@ class _Flow:
                 return True
         return False
 
-    def continues(self, following: list[TextLine]) -> bool:
+    def continues_table(self, following: list[TextLine]) -> bool:
         """Return whether the lines at the top of a page continue the table before."""
         line = following[0]
         if (
@@ -497,12 +513,12 @@ class _Flow:
             return False
         return any(map(self.has_key, following[:8])) or self.is_row(line, self.open)
 
-    def continuation(
+    def read_continuation(
         self, page: PageContents, following: list[TextLine]
     ) -> tuple[int, TablePiece]:
         assert self.open is not None
-        end = max(1, self.end(page, following, 0, self.open))
-        body = self.cells(following[:end], self.open)
+        end = max(1, self.end_of_table(page, following, 0, self.open))
+        body = self.without_row_label(following[:end], self.open)
         top = following[0].top - 1
         piece = TablePiece(
             box_around(page.number, following[:end]),

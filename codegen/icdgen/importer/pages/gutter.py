@@ -1,4 +1,7 @@
-"""Pages with two columns of text, which are read one after the other."""
+"""Pages with two columns of text, which are read one after the other.
+
+`parts` divides the words of such a page at the white gutter in the middle.
+"""
 
 from __future__ import annotations
 

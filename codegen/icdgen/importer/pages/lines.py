@@ -1,4 +1,7 @@
-"""Lines of text from words, and runs of closely spaced words in them."""
+"""Lines of text from words, and runs of closely spaced words in them.
+
+The other modules of this package use these lines instead of single words.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Ruled regions from ruling lines, and the bands between horizontal rules and shading."""
+"""Ruled regions from ruling lines, and the bands between horizontal rules and shading.
+
+A region is a table with vertical rules, or a part of one. Ruling lines are drawn in
+pieces and with tolerances, so they are joined before regions are found.
+"""
 
 from __future__ import annotations
 
@@ -269,14 +273,25 @@ def _sides(
 
 def _outermost(regions: list[Region]) -> list[Region]:
     """Return the regions that are not inside another one."""
-    return [
-        r for r in regions
-        if not any(
-            o is not r and o.x0 - 1 <= r.x0 and o.x1 + 1 >= r.x1 and o.top - 1 <= r.top and o.bottom + 1 >= r.bottom
-            and (o.x1 - o.x0) * (o.bottom - o.top) > (r.x1 - r.x0) * (r.bottom - r.top)
-            for o in regions
+
+    def is_inside(inner: Region, outer: Region) -> bool:
+        """Compare with a tolerance of one point."""
+        return (
+            outer.x0 - 1 <= inner.x0
+            and outer.x1 + 1 >= inner.x1
+            and outer.top - 1 <= inner.top
+            and outer.bottom + 1 >= inner.bottom
+            # Of two regions that are equal within the tolerance, only the smaller one
+            # is inside the other.
+            and (outer.x1 - outer.x0) * (outer.bottom - outer.top)
+            > (inner.x1 - inner.x0) * (inner.bottom - inner.top)
         )
-    ]  # fmt: skip
+
+    return [
+        region
+        for region in regions
+        if not any(is_inside(region, other) for other in regions)
+    ]
 
 
 def row_marks(page: PageContents, x0: float, x1: float) -> list[float]:

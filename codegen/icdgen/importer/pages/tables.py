@@ -1,4 +1,8 @@
-"""Assembly of tables over any number of pages, from their pieces and captions."""
+"""Assembly of tables over any number of pages, from their pieces and captions.
+
+Items of `flow` in reading order go in. Headings, text and complete tables come out, as
+blocks of a document.
+"""
 
 from __future__ import annotations
 
@@ -29,36 +33,37 @@ class TableBuilder:
     # Id of a draft -> its pieces without vertical rules.
     loose_pieces: dict[int, list[TablePiece]] = field(default_factory=dict)
 
-    def run(self, items: list[Item]) -> list[Block]:
+    def build_tables(self, items: list[Item]) -> list[Block]:
         """Return headings, text and tables with their captions."""
         for item in items:
             if isinstance(item, TablePiece):
-                self.piece(item)
+                self.add_piece(item)
             else:
                 self.out.append(item)
         # Columns are found from all pieces of a table, which are known only now.
         for draft in self.out:
             if isinstance(draft, TableDraft) and id(draft) in self.loose_pieces:
-                self.cut(draft, self.loose_pieces[id(draft)])
+                self.add_rows_of_loose_pieces(draft, self.loose_pieces[id(draft)])
         return captions.attached(self.out, self.profile, self.is_part)
 
-    def piece(self, piece: TablePiece) -> None:
-        draft = self.continued(piece)
+    def add_piece(self, piece: TablePiece) -> None:
+        """Add a piece to the draft that it continues, or begin a new draft."""
+        draft = self.continued_draft(piece)
         if draft is None:
-            draft = self.begin(piece)
+            draft = self.begin_draft(piece)
         else:
             draft.boxes.append(piece.box)
         if piece.ruled:
-            self.ruled(draft, piece)
+            self.add_ruled_piece(draft, piece)
         else:
-            self.loose(draft, piece)
+            self.add_loose_piece(draft, piece)
 
-    def begin(self, piece: TablePiece) -> TableDraft:
+    def begin_draft(self, piece: TablePiece) -> TableDraft:
         draft = TableDraft([piece.box])
         self.out.append(draft)
         return draft
 
-    def continued(self, piece: TablePiece) -> TableDraft | None:
+    def continued_draft(self, piece: TablePiece) -> TableDraft | None:
         """Return the draft that this piece continues, or None."""
         between = 0
         number = None
@@ -72,7 +77,9 @@ class TableBuilder:
                 if item.kind == "caption"
                 else None
             )
-            if match and (CONTINUED.search(item.text) or self.repeated(item)):
+            if match and (
+                CONTINUED.search(item.text) or self.is_repeated_caption(item)
+            ):
                 number = match["number"]
                 continue
             if item.kind == "text" and labels.leading_meaning(item.text, self.profile):
@@ -92,10 +99,10 @@ class TableBuilder:
         )
         if between > 3 or not (follows or below):
             return None
-        if self.first_is_id(piece):
+        if self.begins_message_table(piece):
             return None
         # A repeated caption is sufficient. Otherwise, the columns must match.
-        if number is None and not self.fits(draft, piece, follows):
+        if number is None and not self.has_columns_of(draft, piece, follows):
             return None
         if (
             number is None
@@ -133,7 +140,7 @@ class TableBuilder:
         )
         return mark.strong or (touches and len(mark.cells) == 1)
 
-    def repeated(self, mark: TextItem) -> bool:
+    def is_repeated_caption(self, mark: TextItem) -> bool:
         """Return whether an earlier caption has the same number and title."""
         return any(
             other is not mark and isinstance(other, TextItem) and other.kind == "caption"
@@ -141,7 +148,7 @@ class TableBuilder:
             for other in self.out
         )  # fmt: skip
 
-    def first_is_id(self, piece: TablePiece) -> bool:
+    def begins_message_table(self, piece: TablePiece) -> bool:
         """Return whether the piece begins the table of a message, with its id."""
         if not piece.ruled:
             return bool(piece.head) and labels.begins_message_table(
@@ -156,7 +163,9 @@ class TableBuilder:
         )
         return any(labels.begins_message_table(text, self.profile) for text in texts)
 
-    def fits(self, draft: TableDraft, piece: TablePiece, follows: bool) -> bool:
+    def has_columns_of(
+        self, draft: TableDraft, piece: TablePiece, follows: bool
+    ) -> bool:
         """Return whether the columns of the piece match the draft."""
         header = draft.header
         if not piece.ruled:
@@ -167,7 +176,7 @@ class TableBuilder:
                 and follows
                 and headings.repeats(piece.columns.header.titles, header, self.profile)
             )
-        own = self.header_of(piece)
+        own = self.heading_row_of(piece)
         if own is not None:
             if header is None:
                 return own.kind == "fields" and bool(draft.head)
@@ -177,7 +186,8 @@ class TableBuilder:
             return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
         return abs(box.width - last.width) < 8
 
-    def header_of(self, piece: TablePiece) -> HeadingRow | None:
+    def heading_row_of(self, piece: TablePiece) -> HeadingRow | None:
+        """Return the heading row at the top of a piece, or None."""
         for band in piece.bands[:3]:
             header = headings.match(
                 band.texts(self.document_words), self.profile, loose=True
@@ -185,24 +195,29 @@ class TableBuilder:
             if header:
                 return header
         # No rule separates headings and rows.
-        split = self.split(piece.bands[0]) if piece.bands else None
+        split = self.split_at_headings(piece.bands[0]) if piece.bands else None
         return split[1] if split else None
 
     # Tables with vertical rules.
 
-    def ruled(self, draft: TableDraft, piece: TablePiece) -> None:
+    def add_ruled_piece(self, draft: TableDraft, piece: TablePiece) -> None:
+        """Add the bands of a piece with vertical rules.
+
+        They are rows above the headings, headings or rows of the draft. If a band
+        begins the table of another message, the remaining ones become a new draft.
+        """
         waiting = list(piece.bands)
-        fresh = True  # no row of this piece has been read yet
+        is_first_row = True
         while waiting:
             band = waiting.pop(0)
             if not band.words:
                 continue
             texts = band.texts(self.document_words)
             if self.is_new(draft, texts):
-                draft = self.begin(piece)
+                draft = self.begin_draft(piece)
             if draft.header is None:
-                if not self.header(draft, band, waiting):
-                    draft.head += self.head(band)
+                if not self.set_heading_row(draft, band, waiting):
+                    draft.head += self.rows_above_headings(band)
             elif not draft.rows and (both_lines := self.lower_half(draft, texts)):
                 upper = draft.header.printed[-1:]
                 for row in upper:
@@ -217,15 +232,15 @@ class TableBuilder:
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
             elif (
-                fresh
+                is_first_row
                 and len(draft.boxes) > 1
                 and (remainder := self.below_headings(draft, band)) is not None
             ):
                 if remainder.words:
                     waiting.insert(0, remainder)
             else:
-                self.body(draft, band, torn=fresh and len(draft.boxes) > 1)
-                fresh = False
+                self.add_rows(draft, band, torn=is_first_row and len(draft.boxes) > 1)
+                is_first_row = False
 
     def below_headings(self, draft: TableDraft, band: Band) -> Band | None:
         """Return the remainder of a band that begins with the repeated headings, or
@@ -264,7 +279,9 @@ class TableBuilder:
             " ".join(t for t in texts if t), self.profile
         )
 
-    def header(self, draft: TableDraft, band: Band, waiting: list[Band]) -> bool:
+    def set_heading_row(
+        self, draft: TableDraft, band: Band, waiting: list[Band]
+    ) -> bool:
         """Set the heading row if the band contains it or its upper half.
 
         Return whether it does.
@@ -285,7 +302,7 @@ class TableBuilder:
                     band.texts(self.document_words), self.profile, loose=True
                 )
         if match is None:
-            split = self.split(band)
+            split = self.split_at_headings(band)
             if split is None:
                 return False
             above, match, remainder = split
@@ -297,7 +314,7 @@ class TableBuilder:
         draft.header, draft.edges = match, band.edges
         return True
 
-    def head(self, band: Band) -> list[PrintedRow]:
+    def rows_above_headings(self, band: Band) -> list[PrintedRow]:
         """Return a band above the headings as one row, or as one row per line.
 
         The variant with more recognized labels is chosen.
@@ -306,11 +323,13 @@ class TableBuilder:
         as_one_row = [band.printed(self.document_words)]
         return (
             single
-            if len(single) > 1 and self.labelled(single) > self.labelled(as_one_row)
+            if len(single) > 1
+            and self.number_of_labelled_values(single)
+            > self.number_of_labelled_values(as_one_row)
             else as_one_row
         )
 
-    def labelled(self, rows: list[PrintedRow]) -> int:
+    def number_of_labelled_values(self, rows: list[PrintedRow]) -> int:
         """Return the number of values with a known label."""
         labelled = (
             labels.parse_labels(" ".join(filter(None, row.lines)), self.profile)
@@ -320,7 +339,9 @@ class TableBuilder:
             1 for parts in labelled for label in parts if label.what and label.value
         )
 
-    def split(self, band: Band) -> tuple[list[TextLine], HeadingRow, Band] | None:
+    def split_at_headings(
+        self, band: Band
+    ) -> tuple[list[TextLine], HeadingRow, Band] | None:
         """Split a band without rules between its rows: lines above the headings,
         headings, remainder.
         """
@@ -346,7 +367,8 @@ class TableBuilder:
                 )
         return None
 
-    def body(self, draft: TableDraft, band: Band, torn: bool) -> None:
+    def add_rows(self, draft: TableDraft, band: Band, torn: bool) -> None:
+        """Add the rows of a band. ``torn``: its first row may continue the last one."""
         assert draft.header is not None and draft.edges is not None
         header = draft.header
         if len(band.edges) < len(draft.edges):
@@ -364,14 +386,17 @@ class TableBuilder:
 
     # Tables without vertical rules.
 
-    def loose(self, draft: TableDraft, piece: TablePiece) -> None:
+    def add_loose_piece(self, draft: TableDraft, piece: TablePiece) -> None:
+        """Add a piece without vertical rules; its rows are added at the end."""
         draft.head += [PrintedRow([text], page=piece.box.page) for text in piece.head]
         if piece.columns is not None and draft.header is None:
             draft.header = piece.columns.header
         if draft.header is not None:
             self.loose_pieces.setdefault(id(draft), []).append(piece)
 
-    def cut(self, draft: TableDraft, pieces: list[TablePiece]) -> None:
+    def add_rows_of_loose_pieces(
+        self, draft: TableDraft, pieces: list[TablePiece]
+    ) -> None:
         """Add the rows of pieces without vertical rules, with columns found from all
         their lines.
         """

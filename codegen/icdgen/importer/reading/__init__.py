@@ -1,4 +1,8 @@
-"""Files -> documents: one table model behind PDF and text."""
+"""Reading of files as documents, with one table model behind all kinds.
+
+`read` recognizes the kind of a file by its first bytes and its suffix. The modules of
+this package read one kind each; `pages` analyses the pages of a PDF.
+"""
 
 from __future__ import annotations
 

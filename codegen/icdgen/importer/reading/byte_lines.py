@@ -1,4 +1,7 @@
-"""Frames that a document prints as lines, ``Byte0~Byte1: voltage, 10 mV``, made tables."""
+"""Tables from lines that describe bytes, such as ``Byte0~Byte1: voltage, 10 mV``.
+
+Some documents print frames in this way instead of as a table.
+"""
 
 from __future__ import annotations
 

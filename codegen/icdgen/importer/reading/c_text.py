@@ -101,8 +101,8 @@ class CText:
                 if last - 1 in self.alone and match[0].startswith("//"):
                     words = f"{self.comments[last - 1]} {words}"
                 self.alone.add(line)
-            both = (self.comments.get(line, ""), words)
-            self.comments[line] = " ".join(filter(None, both))
+            comments_of_line = (self.comments.get(line, ""), words)
+            self.comments[line] = " ".join(filter(None, comments_of_line))
         return code
 
     def _define(

@@ -1,6 +1,7 @@
-"""Web pages, Markdown and Word documents -> documents.
+"""Reading of web pages, Markdown and Word documents.
 
-They state headings, captions and spans themselves.
+These formats state headings, captions and spans of cells, so nothing has to be
+recognized by its position.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""PDF -> document.
+"""Reading of a PDF as a document.
 
-Pages are read in worker processes; what they show is put together here.
+Worker processes extract the pages (`pages/extract.py`), because that takes most of the
+time. `pages/flow.py` and `pages/tables.py` then assemble them in this process.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ def read(
     items = flow.items(pages, profile)
     document.blocks = tables.TableBuilder(
         profile, _known(pages), is_part=only is not None
-    ).run(items)
+    ).build_tables(items)
     return document
 
 

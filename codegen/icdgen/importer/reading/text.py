@@ -1,6 +1,6 @@
-"""Text with tab-separated tables -> document.
+"""Reading of text with tab-separated tables.
 
-Page breaks stand within tables as blank lines; rows may be torn there.
+Page breaks are blank lines within tables, and can divide a row.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Parts of tables -> messages and enumerations as the importer assembles them to ICDs."""
+"""Messages and enumerations from the parts of tables.
+
+The parts that `interpret` has read go in. Consecutive tables of one message are joined,
+split fields put together, and enumerations and lookup tables attached (`attach`). The
+results are in the order of the tables, as `assemble` expects them.
+"""
 
 from __future__ import annotations
 
@@ -26,25 +31,25 @@ from icdgen.importer.words import squeezed
 
 
 class MessageBuilder:
-    """Builds messages of parts; ``order`` is the node's."""
+    """Builder of messages; ``order`` has the byte and bit order of the node."""
 
     def __init__(self, profile: Profile, order: Order, notes: Notes) -> None:
         self.profile, self.order, self.notes = profile, order, notes
         self.enums: dict[str, ReadEnum] = {}
         self.enum_results: list[TableResult] = []
 
-    def build(self, parts: list[TablePart]) -> list[TableResult]:
+    def build_results(self, parts: list[TablePart]) -> list[TableResult]:
         """Return the messages and enumerations in the order of the tables."""
         messages = [
             part for part in parts if part.rule.what in ("message", "registers")
         ]
         for part in messages:
-            self.place(part)
-        messages = self.continued(messages)
+            self.place_fields(part)
+        messages = self.joined_messages(messages)
         attach.attach(parts, messages, self.order, self.notes)
         results = []
         for part in messages:
-            message = self.message(part)
+            message = self.build_message(part)
             results.append(TableResult(message.table, "message", message))
         results += self.enum_results
         results += [
@@ -54,7 +59,7 @@ class MessageBuilder:
         ]
         return sorted(results, key=lambda result: result.table.number)
 
-    def place(self, part: TablePart) -> None:
+    def place_fields(self, part: TablePart) -> None:
         """Put the pieces of split fields together and bring bits into the node's order."""
         is_register = part.rule.what == "registers"
         length = (
@@ -65,7 +70,7 @@ class MessageBuilder:
             part.drafts, self.order, is_register, length, self.notes, part.rule
         )
 
-    def continued(self, parts: list[TablePart]) -> list[TablePart]:
+    def joined_messages(self, parts: list[TablePart]) -> list[TablePart]:
         """Return the messages, with consecutive tables of one message joined.
 
         Such tables have one rule, id and kind.
@@ -93,7 +98,7 @@ class MessageBuilder:
                 )
         return merged
 
-    def message(self, part: TablePart) -> ReadMessage:
+    def build_message(self, part: TablePart) -> ReadMessage:
         """Return the message of a part."""
         table = part.table
         kind = known_kind(
@@ -120,7 +125,7 @@ class MessageBuilder:
         if kind == "configuration" and message.id is not None:
             message.set_id = message.get_id = message.id
             message.id = None
-        self.fields(message, part)
+        self.add_fields(message, part)
         self.check_announced_formulas(message, part)
         return message
 
@@ -146,7 +151,7 @@ class MessageBuilder:
                     part.rule.place,
                 )
 
-    def fields(self, message: ReadMessage, part: TablePart) -> None:
+    def add_fields(self, message: ReadMessage, part: TablePart) -> None:
         """Give the message its fields, reserved bits and structs."""
         groups: dict[str, list[FieldDraft]] = defaultdict(list)
         seen: set[str] = set()
@@ -159,9 +164,9 @@ class MessageBuilder:
                 groups[normalised(draft.roles.get("group"))].append(draft)
             else:
                 self.check_name(draft, part, seen)
-                message.fields.append(self.field(draft, part))
+                message.fields.append(self.build_field(draft, part))
         for name, drafts in groups.items():
-            self.group(message, name, drafts, part)
+            self.add_struct(message, name, drafts, part)
         message.fields.sort(key=lambda field: field.at)
 
     def check_name(self, draft: FieldDraft, part: TablePart, seen: set[str]) -> None:
@@ -180,7 +185,7 @@ class MessageBuilder:
             )
         seen.add(key)
 
-    def field(self, draft: FieldDraft, part: TablePart) -> ReadField:
+    def build_field(self, draft: FieldDraft, part: TablePart) -> ReadField:
         """Return the field of a draft."""
         field = ReadField(
             draft.name,
@@ -209,7 +214,7 @@ class MessageBuilder:
             )
             field.type = "uint"
         if draft.members:
-            field.enum = self.enumeration(draft, part)
+            field.enum = self.enumeration_name(draft, part)
         elif draft.kind == "enum" and (
             draft.described.enum_table is None and not draft.described.enum_title
         ):
@@ -223,7 +228,7 @@ class MessageBuilder:
             field.type = "uint"
         return field
 
-    def enumeration(self, draft: FieldDraft, part: TablePart) -> str:
+    def enumeration_name(self, draft: FieldDraft, part: TablePart) -> str:
         """Return the name of the enumeration with the members of the field.
 
         Fields with one name and equal members share an enumeration.
@@ -247,11 +252,13 @@ class MessageBuilder:
                 return name
         return draft.name
 
-    def group(
+    def add_struct(
         self, message: ReadMessage, name: str, drafts: list[FieldDraft], part: TablePart
     ) -> None:
-        """A struct that is repeated: as often as the frame has room for it, as a field
-        counts, or so many times.
+        """Add fields of a group as an array of structs.
+
+        The number of elements is fixed, given by a field, or as large as the frame has
+        room for.
         """
         strides = {draft.roles.get("stride") for draft in drafts} - {""}
         start = min(draft.at for draft in drafts)
@@ -288,7 +295,7 @@ class MessageBuilder:
                 # These keys describe the repetition of the group, not its fields.
                 if key not in ("count", "size", "up_to")
             }
-            field = self.field(draft, part)
+            field = self.build_field(draft, part)
             field.at -= start
             fields.append(field)
         title = f"{part.name} {name}".strip()
@@ -312,6 +319,7 @@ class MessageBuilder:
 
 
 def _is_same_message(first: TablePart, second: TablePart) -> bool:
+    """Return whether two tables have one rule, and give the same kind and ids."""
     keys = ("kind", "id", "set_id", "get_id")
     same = all(first.given.get(key) == second.given.get(key) for key in keys)
     has_id = any(first.given.get(key) for key in keys[1:])

@@ -1,4 +1,8 @@
-"""Rows -> roles: what the columns, the lines of a cell, or melted columns of a row say."""
+"""Roles of the rows of a table: what columns, lines of a cell and melted columns say.
+
+Rows under their headings go in (`rows`). `RoleReader.read` returns `Roles` for each
+row or line: the texts that patterns of the rule take, by role.
+"""
 
 from __future__ import annotations
 

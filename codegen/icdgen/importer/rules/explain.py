@@ -1,5 +1,7 @@
-"""Why a table became what it became: `icdgen import FILE --profile PROFILE --explain
-TABLE`.
+"""Report of how a table was read: `icdgen import FILE --profile PROFILE --explain TABLE`.
+
+It lists the conditions of each rule, the roles of the columns, the parts that were
+read, and the findings.
 """
 
 from __future__ import annotations

@@ -367,7 +367,7 @@ class FieldReader:
     ) -> Described:
         """Unit, formula and description."""
         text = roles.get("text")
-        described = Described(rest=text)
+        described = Described(prose=text)
         if self.profile.reads_descriptions:
             described = descriptions.read_description(
                 text, self.profile, is_enum=kind == "enum"

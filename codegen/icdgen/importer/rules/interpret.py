@@ -1,6 +1,10 @@
-"""Tables and rules -> messages, enumerations and findings.
+"""Application of the rules of a profile to the tables of a document.
 
-Nothing here guesses: a table without a rule gives nothing.
+Tables and a profile go in, messages, enumerations, lists and findings come out. Nothing
+here guesses: a table without a rule gives nothing. The steps for one table, in order:
+`selection` chooses its rules, `rows` arranges its cells under their headings, `cells`
+gives them roles, and `fields` makes fields of the roles. When all tables are read,
+`build` makes messages of their parts.
 """
 
 from __future__ import annotations
@@ -10,7 +14,14 @@ from dataclasses import dataclass
 
 from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import SourceTable
-from icdgen.importer.model import BACKGROUND, UNKNOWN, ReadMessage, Survey, TableResult
+from icdgen.importer.model import (
+    BACKGROUND,
+    UNKNOWN,
+    ReadField,
+    ReadMessage,
+    Survey,
+    TableResult,
+)
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
@@ -65,7 +76,7 @@ def interpret(
     """Apply the rules of ``profile`` to the tables; ``extra`` are findings of the
     reader of the source.
     """
-    return _Interpreter(tables, profile).run(extra or [])
+    return _Interpreter(tables, profile).interpret(extra or [])
 
 
 class _Interpreter:
@@ -75,28 +86,26 @@ class _Interpreter:
         self.parts: list[TablePart] = []
         self.attributes: dict[int, dict[str, str]] = {}
         self.list_results: list[TableResult] = []
-        words = (
-            word.strip(".,;:()[]")
-            for table in tables
-            for text in texts_in_and_around(table)
-            for word in text.split()
-        )
         # A word that a cell breaks at a hyphen is joined if it stands elsewhere in the
         # document.
-        self.document_words = frozenset(words)
+        document_words: set[str] = set()
+        for table in tables:
+            for text in texts_in_and_around(table):
+                document_words.update(word.strip(".,;:()[]") for word in text.split())
+        self.document_words = frozenset(document_words)
         self.order = Order(*profile.orders)
 
-    def run(self, extra: list[ImportFinding]) -> Interpretation:
+    def interpret(self, extra: list[ImportFinding]) -> Interpretation:
         count_runs(self.tables)
         choices = choose(self.profile.rules, self.tables)
         for choice in choices:
             for rule in choice.rules:
                 if rule.what != "ignore":
-                    self.read(rule, choice.table)
+                    self.read_table(rule, choice.table)
         self.check_use(choices)
-        results = build.MessageBuilder(self.profile, self.order, self.notes).build(
-            self.parts
-        )
+        results = build.MessageBuilder(
+            self.profile, self.order, self.notes
+        ).build_results(self.parts)
         attach.check_index(
             [part for part in self.parts if part.rule.what == "index"],
             results,
@@ -110,9 +119,13 @@ class _Interpreter:
             results_by_table.setdefault(result.table.number, []).append(result)
         for choice in choices:
             table = choice.table
-            ignored = bool(choice.rules) and choice.rules[-1].what == "ignore"
-            own = results_by_table.get(table.number)
-            survey.results += own or [TableResult(table, _what(choice, ignored), None)]
+            if table.number in results_by_table:
+                survey.results += results_by_table[table.number]
+                continue
+            what = choice.rules[-1].what if choice.rules else UNKNOWN
+            if what == "ignore":
+                what = BACKGROUND
+            survey.results.append(TableResult(table, what, None))
         self.report_unread(choices, survey)
         self.report_without_table(choices, survey)
         return Interpretation(
@@ -121,12 +134,12 @@ class _Interpreter:
 
     # One table.
 
-    def read(self, rule: TableRule, table: SourceTable) -> None:
+    def read_table(self, rule: TableRule, table: SourceTable) -> None:
         """Add the parts that a rule reads from a table."""
         titles, rows = read_rows(rule, table, self.notes)
         if not rule.columns and not rule.lines:
             rows = []  # the table describes a message without parameters
-        given = self.around(rule, table)
+        given = self.roles_around(rule, table)
         self.attributes[table.number] = given
         role_reader = RoleReader(
             rule, table, titles, self.document_words, self.profile.empty, self.notes
@@ -168,7 +181,7 @@ class _Interpreter:
             part.stated_in_rows.update(own)
             if is_field or not own or rule.what not in ("message", "registers"):
                 # Otherwise the row is a message without fields.
-                self.row(part, roles, reader)
+                self.add_row(part, roles, reader)
         if (
             not parts
             and {"message", "id", "set_id"} & set(message)
@@ -188,7 +201,7 @@ class _Interpreter:
                 and own.get(role)
                 and not _is_equal(part.rule, role, earlier, own[role])
             ):
-                self.disagree(
+                self.report_disagreement(
                     part.rule,
                     part.where,
                     part.table.spot,
@@ -196,7 +209,7 @@ class _Interpreter:
                     f"`{earlier}` and `{own[role]}` in its rows",
                 )
 
-    def disagree(
+    def report_disagreement(
         self, rule: TableRule, where: str, spot: SourcePlace, role: str, values: str
     ) -> None:
         """Report two values of a role of one message."""
@@ -209,7 +222,7 @@ class _Interpreter:
             rule.place,
         )
 
-    def row(self, part: TablePart, roles: Roles, reader: FieldReader) -> None:
+    def add_row(self, part: TablePart, roles: Roles, reader: FieldReader) -> None:
         """Add what one row gives."""
         what = part.rule.what
         if what == "index":
@@ -236,7 +249,7 @@ class _Interpreter:
             return
         part.drafts += reader.read(roles)
 
-    def around(self, rule: TableRule, table: SourceTable) -> dict[str, str]:
+    def roles_around(self, rule: TableRule, table: SourceTable) -> dict[str, str]:
         """Return the roles that the rule states, or that texts around the table and its
         rows contain.
 
@@ -251,7 +264,7 @@ class _Interpreter:
                 taken = next(
                     (
                         t
-                        for text in self.texts(rule, table, source)
+                        for text in self.texts_of_source(rule, table, source)
                         if (t := take([pattern], text))
                     ),
                     None,
@@ -268,7 +281,7 @@ class _Interpreter:
                     if role not in given
                 }
                 if new:
-                    self.doubt(rule, table, taken.roles, taken.left)
+                    self.check_notation_of_id(rule, table, taken.roles, taken.left)
                 given.update(new)
                 sources.update(dict.fromkeys(new, source))
         for source, pattern in missing:
@@ -308,9 +321,11 @@ class _Interpreter:
                 and not _is_equal(rule, role, given[role], value)
             ):
                 values = f"`{given[role]}` in its {used}, `{value}` in its {source}"
-                self.disagree(rule, table.title, table.spot, role, values)
+                self.report_disagreement(rule, table.title, table.spot, role, values)
 
-    def texts(self, rule: TableRule, table: SourceTable, source: str) -> list[str]:
+    def texts_of_source(
+        self, rule: TableRule, table: SourceTable, source: str
+    ) -> list[str]:
         """Return the texts of a source, the nearest first.
 
         For rows, these are each row, then the rows above the headings as one text.
@@ -335,7 +350,7 @@ class _Interpreter:
             }[source]
         return [normalised(text) for text in texts]
 
-    def doubt(
+    def check_notation_of_id(
         self, rule: TableRule, table: SourceTable, roles: dict[str, str], left: str
     ) -> None:
         """Report an id that is a plain number where the same text has a hexadecimal
@@ -393,15 +408,14 @@ class _Interpreter:
         """Report fields whose bits depend on a byte or bit order that the profile does
         not state.
         """
-        fields = [
-            f
-            for result in results
-            if isinstance(result.content, ReadMessage)
-            for f in result.content.all_fields
-        ]
-        numbers = [
-            f for f in fields if f.type in ("uint", "int", "enum", "float", "bool")
-        ]
+        numbers: list[ReadField] = []
+        for result in results:
+            if isinstance(result.content, ReadMessage):
+                numbers += [
+                    field
+                    for field in result.content.all_fields
+                    if field.type in ("uint", "int", "enum", "float", "bool")
+                ]
         dependent = {
             "byte_order": (
                 "several bytes",
@@ -479,26 +493,23 @@ class _Interpreter:
             for rule in self.profile.rules
             if rule.name in used and rule.what in ("message", "registers")
         ]
-        patterns = [
-            (rule, pattern)
-            for rule in rules
-            for source in ("heading", "before")
-            for pattern in rule.sources.get(source, ())
-            if pattern.roles & set(_IDS)
-        ]
+        patterns = []
+        for rule in rules:
+            for source in ("heading", "before"):
+                for pattern in rule.sources.get(source, ()):
+                    if pattern.roles & set(_IDS):
+                        patterns.append((rule, pattern))
         for table in self.tables:
             for text in map(normalised, (*table.before, *table.after)):
                 for rule, pattern in patterns:
                     taken = take([pattern], text)
-                    ids = (
-                        {
-                            whole_number(taken.roles[role], rule.base)
-                            for role in _IDS
-                            if role in taken.roles
-                        }
-                        if taken
-                        else set()
-                    )
+                    if taken is None:
+                        continue
+                    ids = {
+                        whole_number(taken.roles[role], rule.base)
+                        for role in _IDS
+                        if role in taken.roles
+                    }
                     if not ids - {None} or ids & ids_with_table:
                         continue
                     survey.import_findings.append(
@@ -525,9 +536,3 @@ def _is_equal(rule: TableRule, role: str, first: str, second: str) -> bool:
         )
     numbers = whole_number(first, rule.base), whole_number(second, rule.base)
     return numbers[0] == numbers[1] if None not in numbers else first == second
-
-
-def _what(choice: Choice, ignored: bool) -> str:
-    if ignored:
-        return BACKGROUND
-    return choice.rules[-1].what if choice.rules else UNKNOWN

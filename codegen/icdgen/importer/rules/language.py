@@ -1,4 +1,9 @@
-"""Patterns, roles, numbers and type names of the rule language."""
+"""Patterns, roles, numbers and type names of the rule language.
+
+A pattern is a regular expression with roles in braces, such as
+``{byte}(?:-{last_byte})?``. `compile_pattern` replaces each role by its expression, and
+`take` applies patterns to the text of a cell.
+"""
 
 from __future__ import annotations
 

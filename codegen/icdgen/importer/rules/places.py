@@ -1,4 +1,8 @@
-"""Numbers of bytes and bits of a row -> the place of its field in the frame."""
+"""Position of a field in the frame, from the numbers of bytes and bits in a row.
+
+Manuals count bytes from 0 or 1, state ranges or lengths, or only the size. `fields` has
+the other facts of a field.
+"""
 
 from __future__ import annotations
 

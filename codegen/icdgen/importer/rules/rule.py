@@ -1,4 +1,9 @@
-"""Rules of a profile, checked."""
+"""Rules of a profile: their classes, and how they are read and checked.
+
+`read_rules` gets the key `rules` of a profile, whose form the schema has checked, and
+returns a `TableRule` for each entry. It raises `Findings` for patterns that are invalid
+and keys that do not fit together. `docs/reference/import-rules.md` describes the keys.
+"""
 
 from __future__ import annotations
 

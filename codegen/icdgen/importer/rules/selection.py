@@ -1,4 +1,8 @@
-"""Selection of the rule for a table, with the reasons why other rules do not apply."""
+"""Selection of the rule for a table, with the reasons why other rules do not apply.
+
+The first rule that fits reads a table. So do rules before it that have the key `also`.
+`--explain` and the workbench show the reasons.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
-"""Fields as printed -> their bits in the frame: split fields are put together, bit
-numbers are brought into the node's order.
+"""Bits of fields in the frame, from fields as printed.
+
+Parts of split fields are put together, and bit numbers are converted to the bit order
+of the node.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""HTTP server of the workbench, for this machine only."""
+"""HTTP server of the workbench, for this machine only.
+
+It serves the page and passes requests, as JSON, to a `Session`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""State of the workbench: a document, its tables, and the profile as text."""
+"""State of the workbench: a document, its tables, and the profile as text.
+
+`server` calls a method of `Session` for each request. Every change of the profile
+applies all rules again, without reading the document again.
+"""
 
 from __future__ import annotations
 
