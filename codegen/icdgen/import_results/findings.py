@@ -38,7 +38,10 @@ class SourcePlace(NamedTuple):
 
 
 class ImportFinding(NamedTuple):
-    """Finding of an import. ``sure`` is the certainty of the result that it is about."""
+    """Finding of an import.
+
+    ``sure`` is the certainty of the result that it is about.
+    """
 
     code: str
     message: str

@@ -58,7 +58,7 @@ def assemble(
 def _parts_by_node(
     document: Document, survey: Survey, profile: Profile
 ) -> list[NodeParts]:
-    """Return the nodes, each with the messages, enumerations and lists of its tables."""
+    """Return the nodes, each with the contents of its tables."""
     keys = _nodes_of_results(survey, profile)
     used = [
         (key, result.content)

@@ -183,8 +183,9 @@ class _Pictures:
 def _crop(
     box: PageBox, width: float, height: float
 ) -> tuple[float, float, float, float] | None:
-    """Return the margins to cut off on the left, below, on the right and above; None if the whole
-    page would be cut off.
+    """Return the margins to cut off on the left, below, on the right and above.
+
+    Returns None if the whole page would be cut off.
     """
     x0, x1 = max(0.0, box.x0 - MARGIN), min(width, box.x1 + MARGIN)
     top, bottom = max(0.0, box.top - CAPTION), min(height, box.bottom + CAPTION)

@@ -1,4 +1,4 @@
-"""Report of how a table was read: `icdgen import FILE --profile PROFILE --explain TABLE`.
+"""Report of how a table was read (`icdgen import FILE --explain TABLE`).
 
 It lists the conditions of each rule, the roles of the columns, the parts that were
 read, and the findings.
