@@ -64,7 +64,7 @@ def test_named_values_keep_the_sign_unit_limits_and_formula(
         Enumerations(),
         Definitions(""),
     )
-    enums.hold(
+    enums.assign_value_names(
         field, bits, choices, "Gear", "Status", "message `Status`, `Gear`", notes
     )
     declared = {enum["name"]: enum["members"] for enum in enums.declared()}

@@ -217,7 +217,7 @@ def _network(
         id_bits = CAN_BOTH
     else:
         id_bits = CAN_EXTENDED if True in formats else CAN_STANDARD
-    order = frames.usual(
+    order = frames.usual_order(
         signal_place(signal) for message in messages for signal in message.signals
     )
     head = {**frames.ORDERS[order], "id_bits": id_bits}
@@ -309,8 +309,8 @@ def _message(
             (by,) = field["when"]
             same["when"] = {
                 by: [
-                    *frames.listed(same["when"][by]),
-                    *frames.listed(field["when"][by]),
+                    *frames.values_of_condition(same["when"][by]),
+                    *frames.values_of_condition(field["when"][by]),
                 ]
             }
     # A multiplexer that was left out takes the signals that depend on it along.
@@ -402,7 +402,9 @@ def _field(
     if choices := {
         int(value): str(name) for value, name in (signal.choices or {}).items()
     }:
-        enums.hold(field, signal.length, choices, signal.name, message.name, where, to)
+        enums.assign_value_names(
+            field, signal.length, choices, signal.name, message.name, where, to
+        )
     elif _is_flag(signal):
         field["type"] = "bool"
         field.pop("unit", None)

@@ -1,6 +1,7 @@
 """Repair of DBC files that cantools rejects completely.
 
-The module removes invalid statements, so that cantools can read the remaining ones.
+The module removes invalid statements, so that cantools can read the remaining ones. It
+also reports statements without a use (`account_for`). `can` has the reader.
 """
 
 from __future__ import annotations

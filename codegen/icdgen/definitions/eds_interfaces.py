@@ -14,7 +14,7 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import packets
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import CONTAINER
-from icdgen.definitions.eds_values import whole
+from icdgen.definitions.eds_values import integer_value
 from icdgen.definitions.model import NotSupported, unreadable
 
 _SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
@@ -208,7 +208,7 @@ class Interfaces:
 
     def _is_abstract(self, container: Element) -> bool:
         try:
-            return self.sheets.says(container, "abstract")
+            return self.sheets.is_true(container, "abstract")
         except NotSupported:
             return False
 
@@ -306,7 +306,7 @@ class Interfaces:
         for variable in component.iterfind("Implementation/VariableSet/Variable"):
             try:
                 text = self.sheets.attribute(variable, "initialValue")
-                values[variable.get("name", "")] = whole(text, "a value", 0)
+                values[variable.get("name", "")] = integer_value(text, "a value", 0)
             except NotSupported:
                 continue
         result: dict[str, tuple[str, int]] = {}

@@ -25,7 +25,7 @@ from icdgen.definitions.containers import (
 from icdgen.definitions.eds_parts import Constraint, EdsPart, LinearConversion
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import ARRAY, CONTAINER, EdsTypes, described
-from icdgen.definitions.eds_values import whole
+from icdgen.definitions.eds_values import integer_value
 from icdgen.definitions.frames import LITTLE
 from icdgen.definitions.model import Item, NotSupported, replace_keys
 from icdgen.definitions.reading import TooMuch
@@ -75,14 +75,14 @@ class EdsLayout(Container[EdsPart]):
                 raise NotSupported(
                     f"it depends on `{part.path[-1]}`, which follows a part of variable length"
                 )
-            raw = eds_parts.constrain(part, constraint, self.sheets, self.types)
+            raw = eds_parts.apply_constraint(part, constraint, self.sheets, self.types)
             if raw is not None and part is not None:
                 self.constants[part.path, part.entry] = raw
         # The length entry of a fixed-length container is a constant.
         if self.first_variable is None:
             for part in self.parts:
                 if part.entry.tag == "LengthEntry" and len(part.path) == 1:
-                    eds_parts.measure(part, -(-self.at // 8), self.sheets)
+                    eds_parts.set_length(part, -(-self.at // 8), self.sheets)
 
     def _add(
         self, container: Element, path: tuple[str, ...], within: tuple[Element, ...]
@@ -176,7 +176,7 @@ class EdsLayout(Container[EdsPart]):
                 f"`{name}` follows `{first.path[-1]}`, whose length is not fixed"
             )
         if entry.tag == "PaddingEntry":
-            self.at += whole(
+            self.at += integer_value(
                 self.sheets.attribute(entry, "sizeInBits"),
                 "the size of a padding",
                 0,
@@ -219,7 +219,7 @@ class EdsLayout(Container[EdsPart]):
         else:
             field_type = self.types.field_type(type_, entry, f"`{name}`")
             if entry.tag == "FixedValueEntry":
-                eds_parts.fix(
+                eds_parts.set_fixed_value(
                     field_type, self.sheets.attribute(entry, "fixedValue"), name
                 )
             part = EdsPart(
@@ -271,7 +271,7 @@ class EdsLayout(Container[EdsPart]):
         """Raise `NotSupported` if a container is abstract, because the entry could then
         contain any derived container.
         """
-        if self.sheets.says(container, "abstract"):
+        if self.sheets.is_true(container, "abstract"):
             raise NotSupported(
                 f"`{name}` is any container that is based on `{container.get('name', '')}`"
             )
@@ -314,7 +314,7 @@ class EdsLayout(Container[EdsPart]):
                     self.sheets.find_element("type", index, element), name
                 )
             else:
-                count *= whole(
+                count *= integer_value(
                     self.sheets.attribute(element, "size"),
                     f"a dimension of `{name}`",
                     1,

@@ -1,5 +1,8 @@
 """Fields of a container with their positions, and constants from fixed values,
 constraints and lengths.
+
+`eds_layout` creates the parts in the order of the frame. The functions here change the
+type of a part when its value is fixed.
 """
 
 from __future__ import annotations
@@ -11,7 +14,7 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import containers, eds_ranges
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import EdsFieldType, EdsTypes
-from icdgen.definitions.eds_values import coded, evaluate
+from icdgen.definitions.eds_values import encoded_value, evaluate
 from icdgen.definitions.model import NotSupported, replace_keys
 from icdgen.definitions.wording import line
 from icdgen.frozen import NamedTuple
@@ -43,7 +46,7 @@ class LinearConversion(NamedTuple):
     offset: Fraction
 
 
-def only(field_type: EdsFieldType, raw: int, name: str) -> None:
+def fix_raw_value(field_type: EdsFieldType, raw: int, name: str) -> None:
     """Make a raw value the constant of a field.
 
     Raises `NotSupported` if the field already has another constant.
@@ -60,7 +63,7 @@ def only(field_type: EdsFieldType, raw: int, name: str) -> None:
     replace_keys(item, {**remaining, **kind, "const": raw})
 
 
-def fix(field_type: EdsFieldType, text: str, name: str) -> None:
+def set_fixed_value(field_type: EdsFieldType, text: str, name: str) -> None:
     """Set the fixed value of a `FixedValueEntry`.
 
     A text of up to 64 bits becomes a number with its bytes.
@@ -78,10 +81,10 @@ def fix(field_type: EdsFieldType, text: str, name: str) -> None:
                 {"type": "uint", "const": Spelled(f"0x{data.hex().upper()}")},
             )
     elif field_type.item["type"] not in ("text", "bytes", "float"):
-        only(field_type, field_type.raw(text, f"`{name}`"), name)
+        fix_raw_value(field_type, field_type.raw(text, f"`{name}`"), name)
 
 
-def constrain(
+def apply_constraint(
     part: EdsPart | None, condition: Constraint, sheets: Sheets, types: EdsTypes
 ) -> int | None:
     """Apply a constraint to a part.
@@ -129,7 +132,7 @@ def constrain(
             raise NotSupported(f"{where} has one of several values")
     else:
         raise NotSupported(f"it is constrained by a `{line(element.tag, 60)}`")
-    only(field_type, raw, name)
+    fix_raw_value(field_type, raw, name)
     return raw
 
 
@@ -145,7 +148,7 @@ def _range_of_constraint(
     return types.field_type(type_, type_, f"`{type_.get('name', '')}`").range
 
 
-def measure(part: EdsPart, length: int, sheets: Sheets) -> None:
+def set_length(part: EdsPart, length: int, sheets: Sheets) -> None:
     """Make a length entry constant, from the ``length`` of its container in bytes.
 
     Nothing changes if the raw value is not an integer or does not fit. Raises
@@ -163,9 +166,10 @@ def measure(part: EdsPart, length: int, sheets: Sheets) -> None:
     raw = (length - conversion.offset) / conversion.factor
     if (
         raw.denominator == 1
-        and (value := coded(int(raw), part.field_type.code, part.bits)) is not None
+        and (value := encoded_value(int(raw), part.field_type.code, part.bits))
+        is not None
     ):
-        only(part.field_type, value, part.path[-1])
+        fix_raw_value(part.field_type, value, part.path[-1])
 
 
 def line_of(entry: Element, sheets: Sheets) -> LinearConversion | None:

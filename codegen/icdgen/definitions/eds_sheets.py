@@ -1,5 +1,8 @@
 """Packages of a data sheet and neighbouring files, with type references and values of
 design parameters.
+
+A data sheet refers to types of other files without naming the files, so all data sheets
+in its folder are indexed (`beside`).
 """
 
 from __future__ import annotations
@@ -10,7 +13,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
-from icdgen.definitions.eds_values import evaluate, whole
+from icdgen.definitions.eds_values import evaluate, integer_value
 from icdgen.definitions.model import Definitions, NotSupported, unreadable
 from icdgen.definitions.wording import line
 
@@ -132,13 +135,13 @@ class Sheets:
         for element in type_.iterfind("EnumerationList/Enumeration"):
             text = self.attribute(element, "value")
             value = (
-                whole(text, "the value of a label")
+                integer_value(text, "the value of a label")
                 if text or "value" in element.attrib
                 else value + 1
             )
             yield self.attribute(element, "label"), value
 
-    def says(self, element: Element, key: str) -> bool:
+    def is_true(self, element: Element, key: str) -> bool:
         """Return whether an attribute is `true` or `1`."""
         return self.attribute(element, key).lower() in ("true", "1")
 

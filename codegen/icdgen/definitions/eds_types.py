@@ -1,5 +1,8 @@
 """Scalar types of electronic data sheets as fields: encoding, labels, calibration and
 limits.
+
+`EdsTypes.field_type` is the entry point. It returns the field without its position,
+which `eds_layout` adds.
 """
 
 from __future__ import annotations
@@ -11,7 +14,13 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import containers, eds_ranges
 from icdgen.definitions.eds_ranges import ALL, Range
 from icdgen.definitions.eds_sheets import Sheets
-from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
+from icdgen.definitions.eds_values import (
+    CODES,
+    TWOS,
+    UNSIGNED,
+    encoded_value,
+    integer_value,
+)
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import ReadingState
@@ -56,7 +65,7 @@ class EdsFieldType(containers.FieldType):
             return self.values[label]
         try:
             raw = (
-                coded(whole(text, "a value"), self.code, self.bits)
+                encoded_value(integer_value(text, "a value"), self.code, self.bits)
                 if self.code
                 else None
             )
@@ -193,13 +202,13 @@ class EdsTypes(ReadingState):
                 {"value": value, "name": name} for value, name in enumerate(names)
             ]
             field_type.item = {"type": "enum"}
-            self.enums.give(
+            self.enums.assign_enumeration(
                 field_type.item, _enumeration_name(type_), self._owner(type_), members
             )
         return field_type
 
     def _text(self, encoding: Element | None, type_: Element) -> EdsFieldType:
-        length = whole(
+        length = integer_value(
             self.sheets.attribute(type_, "length"),
             "the length of a text",
             1,
@@ -235,7 +244,7 @@ class EdsTypes(ReadingState):
         text = self.sheets.attribute(
             encoding, "sizeInBits", "" if default is None else str(default)
         )
-        return whole(text, f"the size of {where}", 1, 8 * MOST_BYTES)
+        return integer_value(text, f"the size of {where}", 1, 8 * MOST_BYTES)
 
     def _order(self, encoding: Element, bits: int, where: str) -> str:
         is_little = (
@@ -271,7 +280,7 @@ class EdsTypes(ReadingState):
         for label, value in self.sheets.labels(type_):
             self.step()
             raw = (
-                coded(value, field_type.code, field_type.bits)
+                encoded_value(value, field_type.code, field_type.bits)
                 if field_type.item["type"] != "bytes"
                 else None
             )
@@ -285,7 +294,7 @@ class EdsTypes(ReadingState):
             return
         notes = self.heard(f"labels of {id(type_)}")  # report faults of a type once
         name = _enumeration_name(type_)
-        self.enums.hold(
+        self.enums.assign_value_names(
             field_type.item,
             field_type.bits,
             choices,

@@ -109,7 +109,7 @@ def _bounded(value: Fraction) -> Fraction:
     return value
 
 
-def whole(
+def integer_value(
     text: str, what: str, least: int | None = None, most: int | None = None
 ) -> int:
     """Return the integer value of a text.
@@ -139,7 +139,7 @@ def _integer(text: str) -> int | None:
     return int(value) if value.denominator == 1 else None
 
 
-def coded(value: int, code: str, bits: int) -> int | None:
+def encoded_value(value: int, code: str, bits: int) -> int | None:
     """Return the raw value of a number in an integer encoding, or None if it does not
     fit.
 

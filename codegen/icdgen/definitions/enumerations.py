@@ -1,5 +1,8 @@
 """Value names as enumeration members with unique names, and enumerations that several
 fields share.
+
+Value names of a quantity, such as a number with a formula, do not make an enumeration:
+they become its `special` values (`is_enumeration`).
 """
 
 from __future__ import annotations
@@ -164,7 +167,9 @@ class Enumerations:
         default_factory=list
     )
 
-    def give(self, to: Item, name: str, owner: str, named: list[Item]) -> None:
+    def assign_enumeration(
+        self, to: Item, name: str, owner: str, named: list[Item]
+    ) -> None:
         """Assign an enumeration to a field.
 
         ``name`` is its preferred name, and ``owner`` a prefix for names in conflict.
@@ -174,7 +179,7 @@ class Enumerations:
         )
         self.uses.append((to, name, owner, values))
 
-    def hold(
+    def assign_value_names(
         self,
         to: Item,
         bits: int,
@@ -200,7 +205,7 @@ class Enumerations:
             for key in _OF_NUMBERS:
                 to.pop(key, None)
             to["type"] = "enum"
-            self.give(to, name, owner, named)
+            self.assign_enumeration(to, name, owner, named)
         else:
             to |= special(named, where, notes)
 

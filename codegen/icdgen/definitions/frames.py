@@ -1,5 +1,7 @@
 """Fields by bit position in a frame: byte and bit order, and overlay fields for
 overlapping bits.
+
+`laid_out` gets fields with their `FrameBits`, in any order, and returns the message.
 """
 
 from __future__ import annotations
@@ -55,7 +57,7 @@ class FrameBits(NamedTuple):
         )
 
 
-def usual(places: Iterable[FrameBits]) -> str:
+def usual_order(places: Iterable[FrameBits]) -> str:
     """Return the order of most fields that span bytes; `LITTLE` if there is no majority
     for `BIG`.
     """
@@ -154,13 +156,13 @@ def _are_exclusive(field: Item, other: Item) -> bool:
     """Return whether the conditions of two fields exclude each other."""
     first, second = field.get("when", {}), other.get("when", {})
     return any(
-        not set(listed(first[key])) & set(listed(second[key]))
+        not set(values_of_condition(first[key])) & set(values_of_condition(second[key]))
         for key in first
         if key in second
     )
 
 
-def listed(condition: object) -> list[object]:
+def values_of_condition(condition: object) -> list[object]:
     """Return the values of a condition, which are a single value or a list, as a list."""
     return condition if isinstance(condition, list) else [condition]
 

@@ -15,10 +15,10 @@ from icdgen.definitions.containers import (
     in_sequence,
     variable_field,
 )
-from icdgen.definitions.frames import ORDERS, usual
+from icdgen.definitions.frames import ORDERS, usual_order
 from icdgen.definitions.kaitai_layout import KaitaiLayout
 from icdgen.definitions.kaitai_parts import File, KaitaiPart, Key, Undecided
-from icdgen.definitions.kaitai_types import KaitaiType, declared, mapping
+from icdgen.definitions.kaitai_types import KaitaiType, declare_types, mapping
 from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import (
     Definitions,
@@ -80,8 +80,8 @@ class Kaitai:
         shared = File(to)
         meta = mapping(body, "meta")
         name = str(meta.get("id") or node_name(file))
-        layouts = _messages(declared(name, body), shared)
-        order = usual(
+        layouts = _messages(declare_types(name, body), shared)
+        order = usual_order(
             part.place for layout in layouts for part in layout.parts if part.is_ordered
         )
         network = Network(

@@ -37,10 +37,10 @@ from icdgen.definitions.kaitai_parts import (
 from icdgen.definitions.kaitai_types import (
     KaitaiFieldType,
     KaitaiType,
-    built_in,
-    contents,
-    named,
-    sized,
+    add_enumeration,
+    built_in_type,
+    stated_contents,
+    stated_size,
 )
 from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Item, NotSupported
@@ -144,9 +144,9 @@ class KaitaiLayout(Container[KaitaiPart]):
             raise NotSupported(
                 f"its bytes are processed by `{line(str(attribute['process']), 60)}` before they are read"
             )
-        if sized(attribute) == 0:
+        if stated_size(attribute) == 0:
             return  # `size: 0`: the attribute has no bytes, whatever its type
-        if (always := contents(attribute)) is not None:
+        if (always := stated_contents(attribute)) is not None:
             self._constant(where, always, attribute)
             return
         name_of_type = attribute.get("type", "")
@@ -155,7 +155,7 @@ class KaitaiLayout(Container[KaitaiPart]):
             if chosen is None:
                 return
             name_of_type = chosen
-        field_type = built_in(str(name_of_type or ""), attribute, scope.type)
+        field_type = built_in_type(str(name_of_type or ""), attribute, scope.type)
         count = self._count(attribute, scope)
         if field_type is not None:
             part = self._place(where, field_type, count, attribute, scope)
@@ -192,9 +192,9 @@ class KaitaiLayout(Container[KaitaiPart]):
 
         If the attribute states a `size`, the next part begins behind it.
         """
-        if "size" in attribute and sized(attribute) is None:
+        if "size" in attribute and stated_size(attribute) is None:
             raise NotSupported(f"its size is `{line(str(attribute['size']), 80)}`")
-        size = sized(attribute)
+        size = stated_size(attribute)
         if size is None:
             self.add_type(inner, below, where, (*within, inner))
             return
@@ -298,7 +298,7 @@ class KaitaiLayout(Container[KaitaiPart]):
                 raise NotSupported("no byte is left for it")
         if "enum" in attribute:
             reference = str(attribute["enum"])
-            named(
+            add_enumeration(
                 field_type.item,
                 field_type.bits,
                 reference,
@@ -370,7 +370,7 @@ class KaitaiLayout(Container[KaitaiPart]):
                 inner,
                 TypeScope(inner),
                 (),
-                (*within, inner) if sized(attribute) is None else within,
+                (*within, inner) if stated_size(attribute) is None else within,
             )
         except Undecided as error:
             raise NotSupported(
@@ -409,7 +409,9 @@ class KaitaiLayout(Container[KaitaiPart]):
             raise why
         try:
             size = (
-                sized(attribute) if is_present and "repeat" not in attribute else None
+                stated_size(attribute)
+                if is_present and "repeat" not in attribute
+                else None
             )
         except NotSupported:
             size = None

@@ -1,5 +1,7 @@
 """Types of a .ksy: the nested types that the file declares, and the built-in numbers,
 texts and bytes.
+
+A built-in type becomes a `KaitaiFieldType`, to which `kaitai_layout` adds the position.
 """
 
 from __future__ import annotations
@@ -121,7 +123,7 @@ def mapping(body: Map, key: str) -> Map | dict[str, Any]:
     return value if isinstance(value, Map) else {}
 
 
-def declared(
+def declare_types(
     name: str, body: Map, outer: KaitaiType | None = None, depth: int = 0
 ) -> KaitaiType:
     """Return a type with its nested types.
@@ -136,11 +138,13 @@ def declared(
     result = KaitaiType(name, body, outer, endian, bits)
     for inner, of in mapping(body, "types").items() if depth < _DEEPEST else ():
         if isinstance(of, Map):
-            result.types[inner] = declared(inner, of, result, depth + 1)
+            result.types[inner] = declare_types(inner, of, result, depth + 1)
     return result
 
 
-def built_in(name: str, attribute: Map, within: KaitaiType) -> KaitaiFieldType | None:
+def built_in_type(
+    name: str, attribute: Map, within: KaitaiType
+) -> KaitaiFieldType | None:
     """Return the field of a built-in type, None for a type that the file declares.
 
     ``within`` has the default byte order and encoding. A size that another field gives
@@ -165,7 +169,7 @@ def built_in(name: str, attribute: Map, within: KaitaiType) -> KaitaiFieldType |
         return None
     encoding = attribute.get("encoding") or _encoding(within)
     kind = "text" if name and str(encoding).upper() in _PLAIN else "bytes"
-    if (size := sized(attribute)) is not None:
+    if (size := stated_size(attribute)) is not None:
         return KaitaiFieldType({"type": kind}, 8 * size)
     if "size" in attribute:
         return KaitaiFieldType({"type": kind}, 0)  # a field gives the size
@@ -176,7 +180,7 @@ def built_in(name: str, attribute: Map, within: KaitaiType) -> KaitaiFieldType |
     raise NotSupported("its size is not stated")
 
 
-def sized(attribute: Map) -> int | None:
+def stated_size(attribute: Map) -> int | None:
     """Return the `size` of an attribute in bytes, None if it is not a number.
 
     Raises `NotSupported` if it is out of range.
@@ -190,7 +194,7 @@ def sized(attribute: Map) -> int | None:
     return size
 
 
-def contents(attribute: Map) -> bytes | None:
+def stated_contents(attribute: Map) -> bytes | None:
     """Return the constant bytes of an attribute (`contents`), None without the key.
 
     Raises `NotSupported` for bad values.
@@ -217,7 +221,7 @@ def contents(attribute: Map) -> bytes | None:
     return result
 
 
-def named(
+def add_enumeration(
     item: Item,
     bits: int,
     reference: str,
@@ -234,7 +238,7 @@ def named(
         raise NotSupported(
             f"it has names for values, and is of the type {item['type']}"
         )
-    enums.hold(
+    enums.assign_value_names(
         item,
         bits,
         choices,

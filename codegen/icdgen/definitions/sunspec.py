@@ -389,7 +389,7 @@ class _Model:
             return item
         item |= self.scale(point, name, kind)
         if symbols:
-            self.enums.hold(
+            self.enums.assign_value_names(
                 item,
                 item["bits"],
                 symbols,

@@ -27,7 +27,7 @@ from icdgen.definitions.xtce_names import XtceNames, ancillary_data, name_of
 from icdgen.definitions.xtce_parts import (
     Reference,
     XtcePart,
-    numbered,
+    names_of_parts,
     sequence_fields,
 )
 from icdgen.definitions.xtce_types import (
@@ -542,7 +542,7 @@ class XtceLayout(Container[XtcePart]):
             raise NotSupported(f"its frames have more than {MOST_BYTES:,} bytes")
         closed = [part for part in front if part.at >= start and not part.is_reserved]
         parts = [*closed, *sequence]
-        names = numbered(parts)
+        names = names_of_parts(parts)
         for part in parts:
             if part.conditions:  # conditions refer to the final, numbered names
                 part.item["when"] = {

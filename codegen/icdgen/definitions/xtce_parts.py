@@ -55,7 +55,7 @@ class XtcePart(containers.ContainerPart):
         return int(self.item.get("bits", self.bits)) if self.bits else self.element
 
 
-def numbered(parts: Iterable[XtcePart]) -> dict[int, str]:
+def names_of_parts(parts: Iterable[XtcePart]) -> dict[int, str]:
     """Return the names of parts by `id`.
 
     Repeated names get a number: ``Mode``, ``Mode 2``.

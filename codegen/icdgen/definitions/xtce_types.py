@@ -303,7 +303,7 @@ class XtceTypes(ReadingState):
         field_type.values = {label: value for value, label in reversed(choices.items())}
         notes = self.heard(f"labels of {id(element)}")  # report once per type
         called = _enumeration_name(element)
-        self.enums.hold(
+        self.enums.assign_value_names(
             field_type.item,
             field_type.bits,
             choices,
@@ -340,7 +340,7 @@ class XtceTypes(ReadingState):
             },
             _enumeration_name(element),
         )
-        self.enums.hold(
+        self.enums.assign_value_names(
             field_type.item,
             field_type.bits,
             choices,

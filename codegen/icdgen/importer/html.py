@@ -1,5 +1,7 @@
 """Report of an import as a web page: the picture of each doubtful table next to its
-fields.
+cells as they were read.
+
+`commands/import_.py` writes it for the option `--report`. The page has no other files.
 """
 
 from __future__ import annotations

@@ -96,7 +96,7 @@ def is_key(text: str) -> bool:
     return bool(_KEY.match(text.strip()))
 
 
-def aligned(band: Band, edges: list[float]) -> Band:
+def aligned_band(band: Band, edges: list[float]) -> Band:
     """Return the band with its words in the columns of the heading row.
 
     ``edges`` are the edges of the heading row. A cell that spans several columns is
@@ -127,7 +127,7 @@ def aligned(band: Band, edges: list[float]) -> Band:
     return Band(band.page, edges, moved)
 
 
-def rows(
+def rows_of_band(
     band: Band, header: HeadingRow, document_words: frozenset[str], torn: bool = False
 ) -> list[PrintedRow]:
     """Return the rows of a band with the columns of ``header``.
@@ -217,7 +217,9 @@ def _around(
     start = 0
     for index in [*groups, len(lines_of_band)]:
         if start < index:
-            printed += rows(band.of(lines_of_band[start:index]), header, document_words)
+            printed += rows_of_band(
+                band.of(lines_of_band[start:index]), header, document_words
+            )
         if index < len(lines_of_band):
             printed.append(
                 group_row(lines_of_band[index].text, len(band.edges) - 1, band.page)

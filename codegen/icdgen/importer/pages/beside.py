@@ -16,7 +16,7 @@ from icdgen.importer.words import squeezed
 Items = list[TableDraft | TextItem]
 
 
-def parted(items: Items, profile: Profile) -> Items:
+def with_tables_separated(items: Items, profile: Profile) -> Items:
     """Return the items, with such tables separated.
 
     Each table follows its part of the lines above the tables.
@@ -84,7 +84,7 @@ def _parts(table: TableDraft, profile: Profile) -> list[TableDraft]:
         return []
     result = []
     for start in starts:
-        header = headings.match(
+        header = headings.match_headings(
             table.head[0].lines[start : start + width], profile, loose=True
         )
         if header is None:

@@ -17,12 +17,14 @@ FAR = 4  # a caption with this many lines of text before the table does not belo
 Items = list[TableDraft | TextItem]
 
 
-def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Block]:
+def blocks_with_captions(
+    items: Items, profile: Profile, is_part: bool = False
+) -> list[Block]:
     """Return headings, text and tables, the tables with number and caption.
 
     ``is_part``: the document is cut off at both ends.
     """
-    items = beside.parted(guessed.made(items), profile)
+    items = beside.with_tables_separated(guessed.with_guessed_tables(items), profile)
     captions = [
         i
         for i, item in enumerate(items)

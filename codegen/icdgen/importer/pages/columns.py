@@ -45,7 +45,7 @@ def find_headings(
             break
         columns = _in_one_line(block[0], profile) if count == 1 else None
         for cells in filter(None, (columns, _clustered(block))):
-            header = headings.match([_text(cell) for cell in cells], profile)
+            header = headings.match_headings([_text(cell) for cell in cells], profile)
             if header and (
                 best is None or header.known_words > best.header.known_words
             ):
@@ -55,7 +55,7 @@ def find_headings(
         for cells in filter(
             None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))
         ):
-            header = headings.match(
+            header = headings.match_headings(
                 [_text(cell) for cell in cells], profile, loose=True
             )
             if header and header.kind == "fields" and _is_sure(header):

@@ -82,13 +82,13 @@ def items(pages: list[PageContents], profile: Profile) -> list[Item]:
         inside = ruled[page.number]
         words = [w for w in page.words if not any(r.holds(w) for r in inside)]
         loose[page.number] = lines(words)
-    lines_of_page = furniture.without(
+    lines_of_page = furniture.without_heads_and_feet(
         pages, loose, lambda line, near: _is_of_a_table(line, near, profile)
     )
     in_order: list[Item] = []
     flow = _Flow(profile, itertools.chain.from_iterable(loose.values()))
     for page in pages:
-        for regions_of, lines_of in gutter.parts(
+        for regions_of, lines_of in gutter.columns_of_text(
             page, ruled[page.number], lines_of_page[page.number]
         ):
             in_order += flow.read_page(page, regions_of, lines_of)

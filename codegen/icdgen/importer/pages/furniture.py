@@ -1,4 +1,7 @@
-"""Removal of running heads and feet, which are repeated in the margins of pages."""
+"""Removal of running heads and feet, which are repeated in the margins of pages.
+
+The lines of all pages go in, because only a comparison of pages shows what is repeated.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ _NUMBERING = re.compile(
 )
 
 
-def without(
+def without_heads_and_feet(
     pages: list[PageContents],
     lines: dict[int, list[TextLine]],
     keep: Callable[[TextLine, list[TextLine]], bool],

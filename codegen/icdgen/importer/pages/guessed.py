@@ -1,5 +1,7 @@
 """Tables without vertical rules and with unknown headings: lines of several aligned
 cells.
+
+They become tables so that an import reports them instead of dropping them.
 """
 
 from __future__ import annotations
@@ -15,7 +17,9 @@ FEWEST_LINES = 3
 ALIGNED = 4.0  # points
 
 
-def made(items: list[TableDraft | TextItem]) -> list[TableDraft | TextItem]:
+def with_guessed_tables(
+    items: list[TableDraft | TextItem],
+) -> list[TableDraft | TextItem]:
     """Return the items, with such lines as tables, so that they are reported."""
     out: list[TableDraft | TextItem] = []
     for is_mark, group in itertools.groupby(

@@ -1,6 +1,6 @@
 """Pages with two columns of text, which are read one after the other.
 
-`parts` divides the words of such a page at the white gutter in the middle.
+`columns_of_text` divides the words of such a page at the white gutter in the middle.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ WORDS = 7  # minimum words of such a line
 FULL = 0.8  # minimum width of such a line, as a fraction of the column
 
 
-def parts(
+def columns_of_text(
     page: PageContents, regions: list[Region], lines_of_page: list[TextLine]
 ) -> list[tuple[list[Region], list[TextLine]]]:
     """Return the regions and lines of the page, column by column."""

@@ -1,4 +1,8 @@
-"""Recognition of heading rows and their columns with the vocabulary of the profile."""
+"""Recognition of heading rows and their columns with the vocabulary of the profile.
+
+The texts of cells or words go in. A `HeadingRow` with the kind of the table and the
+role of each column comes out if they are headings.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,9 @@ class HeadingSegment(NamedTuple):
     is_known: bool
 
 
-def match(cells: list[str], profile: Profile, loose: bool = False) -> HeadingRow | None:
+def match_headings(
+    cells: list[str], profile: Profile, loose: bool = False
+) -> HeadingRow | None:
     """Return the heading row that these cells form, or None.
 
     ``loose``: fields may have no column of offsets.
@@ -99,7 +105,7 @@ def segmented(words: list[str], profile: Profile) -> list[HeadingSegment] | None
             else:
                 segments.append(HeadingSegment([index], False))
                 index += 1
-        header = match(
+        header = match_headings(
             [" ".join(words[i] for i in segment.words) for segment in segments],
             profile,
             loose=True,
@@ -109,7 +115,7 @@ def segmented(words: list[str], profile: Profile) -> list[HeadingSegment] | None
     return best[1] or None
 
 
-def repeats(cells: list[str], header: HeadingRow, profile: Profile) -> bool:
+def repeats_headings(cells: list[str], header: HeadingRow, profile: Profile) -> bool:
     """Return whether the cells repeat the headings, or some of them, as on a new page."""
     given = [tuple(folded(cell)) for cell in cells if cell.strip()]
     titles = [folded(title) for title in header.titles if title.strip()]
@@ -119,7 +125,7 @@ def repeats(cells: list[str], header: HeadingRow, profile: Profile) -> bool:
         return True
     if len(given) >= 2 and _is_lower_half(given, titles):
         return True
-    repeated = match(cells, profile, loose=True)
+    repeated = match_headings(cells, profile, loose=True)
     return (
         repeated is not None
         and repeated.kind == header.kind

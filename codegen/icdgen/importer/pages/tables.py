@@ -44,7 +44,7 @@ class TableBuilder:
         for draft in self.out:
             if isinstance(draft, TableDraft) and id(draft) in self.loose_pieces:
                 self.add_rows_of_loose_pieces(draft, self.loose_pieces[id(draft)])
-        return captions.attached(self.out, self.profile, self.is_part)
+        return captions.blocks_with_captions(self.out, self.profile, self.is_part)
 
     def add_piece(self, piece: TablePiece) -> None:
         """Add a piece to the draft that it continues, or begin a new draft."""
@@ -174,7 +174,9 @@ class TableBuilder:
             return (header is None and bool(draft.head)) or (
                 header is not None
                 and follows
-                and headings.repeats(piece.columns.header.titles, header, self.profile)
+                and headings.repeats_headings(
+                    piece.columns.header.titles, header, self.profile
+                )
             )
         own = self.heading_row_of(piece)
         if own is not None:
@@ -189,7 +191,7 @@ class TableBuilder:
     def heading_row_of(self, piece: TablePiece) -> HeadingRow | None:
         """Return the heading row at the top of a piece, or None."""
         for band in piece.bands[:3]:
-            header = headings.match(
+            header = headings.match_headings(
                 band.texts(self.document_words), self.profile, loose=True
             )
             if header:
@@ -227,7 +229,7 @@ class TableBuilder:
                     ]
                 both_lines.printed = upper
                 draft.header = both_lines
-            elif headings.repeats(texts, draft.header, self.profile):
+            elif headings.repeats_headings(texts, draft.header, self.profile):
                 # The columns can be elsewhere on this page, whose margins may differ.
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
@@ -266,7 +268,7 @@ class TableBuilder:
         assert header is not None
         if len(texts) != len(header.titles):
             return None
-        both_lines = headings.match(
+        both_lines = headings.match_headings(
             [f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)],
             self.profile,
         )
@@ -286,19 +288,19 @@ class TableBuilder:
 
         Return whether it does.
         """
-        match = headings.match(band.texts(self.document_words), self.profile)
+        match = headings.match_headings(band.texts(self.document_words), self.profile)
         if match is None and not waiting:
-            match = headings.match(
+            match = headings.match_headings(
                 band.texts(self.document_words), self.profile, loose=True
             )
         printed = [band.printed(self.document_words)]
         if match is None and waiting and len(lines(band.words)) < 4:
             stacked = _stacked(band, waiting[0], self.document_words)
-            match = headings.match(stacked, self.profile) if stacked else None
+            match = headings.match_headings(stacked, self.profile) if stacked else None
             if match is not None:
                 printed.append(waiting.pop(0).printed(self.document_words))
             else:
-                match = headings.match(
+                match = headings.match_headings(
                     band.texts(self.document_words), self.profile, loose=True
                 )
         if match is None:
@@ -349,7 +351,7 @@ class TableBuilder:
         for start in range(min(8, len(lines_of_band))):
             best: tuple[int, HeadingRow] | None = None
             for count in range(1, min(4, len(lines_of_band) - start) + 1):
-                header = headings.match(
+                header = headings.match_headings(
                     band.of(lines_of_band[start : start + count]).texts(
                         self.document_words
                     ),
@@ -376,8 +378,8 @@ class TableBuilder:
             # Vertical rules separate only the headings.
             if bands.has_keys(plain, header):
                 band = plain
-        rows = bands.rows(
-            bands.aligned(band, draft.edges), header, self.document_words, torn
+        rows = bands.rows_of_band(
+            bands.aligned_band(band, draft.edges), header, self.document_words, torn
         )
         # Keep its own cells, instead of those aligned with the headings.
         if len(rows) == 1:
@@ -415,10 +417,10 @@ class TableBuilder:
             )
             edges = columns.boundaries(own, body, *piece.extent)
             for band in _bands(piece, edges):
-                if not headings.repeats(
+                if not headings.repeats_headings(
                     band.texts(self.document_words), header, self.profile
                 ):
-                    rows = bands.rows(band, header, self.document_words)
+                    rows = bands.rows_of_band(band, header, self.document_words)
                     for row in rows:
                         # Columns are found separately on each page: cells match by
                         # their index.
@@ -449,6 +451,6 @@ def _stacked(
 ) -> list[str] | None:
     """Return the texts of two bands that form one heading row."""
     if len(upper.edges) != len(lower.edges):
-        lower = bands.aligned(lower, upper.edges)
+        lower = bands.aligned_band(lower, upper.edges)
     above, below = upper.texts(document_words), lower.texts(document_words)
     return [" ".join(filter(None, pair)) for pair in zip(above, below, strict=True)]

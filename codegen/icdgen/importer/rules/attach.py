@@ -1,5 +1,8 @@
 """Tables that say more about fields and messages of other tables: enumerations, lookup
 tables, bits, and the index of messages.
+
+Their key `of` names a field. `build` calls `attach` before it makes messages, and
+`interpret` calls `check_index` when all messages are complete.
 """
 
 from __future__ import annotations

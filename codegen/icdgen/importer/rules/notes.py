@@ -1,5 +1,7 @@
 """Findings of rules, with the places in the source and in the profile, and counts of
 dropped rows.
+
+Rows with the same cause become one finding.
 """
 
 from __future__ import annotations
