@@ -32,7 +32,7 @@ def gyro():
 
 
 def imported(name, folder=SHEETS):
-    reader = kinds.of(folder / name)
+    reader = kinds.reader_of_file(folder / name)
     assert isinstance(reader, eds.Eds)
     return run.read(folder / name, reader)
 

@@ -186,7 +186,7 @@ KAITAI: dict[str, Case] = {
 
 @pytest.mark.parametrize("name", KAITAI)
 def test_a_limit_of_kaitai(name, tmp_path):
-    assert_case(KAITAI[name], tmp_path / "one.ksy", kinds.get("ksy"))
+    assert_case(KAITAI[name], tmp_path / "one.ksy", kinds.reader_of_kind("ksy"))
 
 
 def model(*points: dict[str, object], id: int = 1, depth: int = 0) -> str:
