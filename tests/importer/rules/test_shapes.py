@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from icdgen.importer import profile, run, table_files
+from icdgen.importer import profile, run, source_tables, table_files
 from tests.importer.rules.shapes import SHAPES
 
 
@@ -98,5 +98,5 @@ def test_the_kinds_of_tables_are_a_profile_to_be_completed(shape, tmp_path):
     heads = [tuple(rule["tables"]["head"].split(" | ")) for rule in proposal["rules"]]
     assert heads == [
         tuple(title or "*" for title in group[0].titles)
-        for group in explore.kinds(result.tables)
+        for group in source_tables.group_by_headings(result.tables)
     ]
