@@ -131,7 +131,7 @@ def build(folder: Path) -> Path:
     """Build the program with both decoders, and return its path."""
     dialect = import_module("pymavlink.dialects.v20.common")
     xml = Path(str(dialect.__file__)).with_suffix(".xml")
-    (tree,) = run.read(xml, kinds.get("mavlink")).trees.values()
+    (tree,) = run.read(xml, kinds.reader_of_kind("mavlink")).trees.values()
     (folder / "common.yaml").write_text(emit.canonical_yaml(tree), encoding="utf-8")
     for path, text in CBackend().files(
         load([folder / "common.yaml"]).icd, Renderer("c")

@@ -24,12 +24,12 @@ def faulty():
     return run.read(FILES / "faulty.dbc", can.Dbc())
 
 
-def message(read: run.Read, name: str) -> dict:
+def message(read: run.ReadDefinitions, name: str) -> dict:
     (tree,) = read.trees.values()
     return next(message for message in tree["messages"] if message["name"] == name)
 
 
-def field(read: run.Read, owner: str, name: str) -> dict:
+def field(read: run.ReadDefinitions, owner: str, name: str) -> dict:
     return next(
         field for field in message(read, owner)["fields"] if field["name"] == name
     )
@@ -184,7 +184,9 @@ def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):
     (tmp_path / "before.dbc").write_text(
         text.replace("Outside : 12|8@1+", "Outside : -1|8@1+")
     )
-    read = run.read(tmp_path / "before.dbc", kinds.of(tmp_path / "before.dbc"))
+    read = run.read(
+        tmp_path / "before.dbc", kinds.reader_of_file(tmp_path / "before.dbc")
+    )
     assert [field["name"] for field in message(read, "Short")["fields"]] == ["Inside"]
     messages = [
         finding.message
@@ -202,7 +204,7 @@ def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tm
     cantools.database.dump_file(
         cantools.database.load_file(FILES / "train.dbc", strict=False), path
     )
-    reader = kinds.of(path)
+    reader = kinds.reader_of_file(path)
     assert reader is not None and reader.name == form
     read = run.read(path, reader)
     keys = ("at", "bits", "type", "formula", "when", "enum", "byte_order", "view")
@@ -241,7 +243,7 @@ def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tm
 def test_a_file_that_cannot_be_read_is_a_finding(name, text, says, tmp_path):
     path = tmp_path / name
     path.write_text(text)
-    reader = kinds.of(path)
+    reader = kinds.reader_of_file(path)
     assert reader is not None
     with pytest.raises(Findings) as raised:
         run.read(path, reader)

@@ -20,30 +20,30 @@ from tests.definitions.test_can import FILES
 HEAD = 'VERSION ""\n\nBU_: Engine Gateway Display\n\n'
 
 
-def imported(text: str, folder) -> run.Read:
+def imported(text: str, folder) -> run.ReadDefinitions:
     path = folder / "network.dbc"
     path.write_text(text)
     return run.read(path, can.Dbc())
 
 
-def tree_of(read: run.Read) -> dict:
+def tree_of(read: run.ReadDefinitions) -> dict:
     (tree,) = read.trees.values()
     return tree
 
 
-def message(read: run.Read, name: str) -> dict:
+def message(read: run.ReadDefinitions, name: str) -> dict:
     return next(
         message for message in tree_of(read)["messages"] if message["name"] == name
     )
 
 
-def field(read: run.Read, owner: str, name: str) -> dict:
+def field(read: run.ReadDefinitions, owner: str, name: str) -> dict:
     return next(
         field for field in message(read, owner)["fields"] if field["name"] == name
     )
 
 
-def model(read: run.Read, folder):
+def model(read: run.ReadDefinitions, folder):
     """Return the ICD as `icdgen check` loads it, without a finding."""
     path = folder / f"{next(iter(read.trees))}.yaml"
     path.write_text(emit.canonical_yaml(tree_of(read)), encoding="utf-8")
@@ -57,7 +57,9 @@ def shapes():
     return run.read(FILES / "shapes.dbc", can.Dbc())
 
 
-def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> int:
+def assert_values_are_those_of_cantools(
+    read: run.ReadDefinitions, text: str, folder
+) -> int:
     """Compare raw and physical values of random frames of each message. Returns the
     number of values.
     """

@@ -473,7 +473,7 @@ def test_hostile_files_are_refused(text, says, tmp_path):
 
 
 def test_the_size_of_a_file_and_its_neighbours_is_limited(tmp_path, monkeypatch):
-    monkeypatch.setattr(eds_types.Types, "most_steps", 100)
+    monkeypatch.setattr(eds_types.EdsTypes, "most_steps", 100)
     assert "the file says more than 100 things" in refused(
         sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path
     )

@@ -34,7 +34,7 @@ def frame():
 
 
 def imported(name):
-    reader = kinds.of(FILES / name)
+    reader = kinds.reader_of_file(FILES / name)
     assert isinstance(reader, kaitai.Kaitai)
     return run.read(FILES / name, reader)
 
@@ -199,7 +199,7 @@ def test_limits_of_raw_values_apply_neither_to_formulas_nor_to_computed_values(
     text = ksy("{id: b, type: u1, valid: {min: 2, max: 999}}", "{id: c, type: u1, valid: {min: 2}}", "{id: d, type: u1, valid: a}",
                more="instances:\n  e: {value: c * 0.5}\n")  # fmt: skip
     (tmp_path / "bad.ksy").write_text(text)
-    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    read = run.read(tmp_path / "bad.ksy", kinds.reader_of_kind("ksy"))
     b, c, d = (field(read, "bad", name) for name in "bcd")
     assert (b["min"], "max" in b, c["formula"], "min" in c, "const" in d) == (
         2,
@@ -227,7 +227,7 @@ def test_a_repetition_with_a_count_is_a_variable_length_array(
 ):
     more = "types:\n  t:\n    seq: [{id: c, type: u1}]\ninstances:\n  d: {value: a * 0.5}\n"
     (tmp_path / "bad.ksy").write_text(ksy(attribute, "{id: z, type: u1}", more=more))
-    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    read = run.read(tmp_path / "bad.ksy", kinds.reader_of_kind("ksy"))
     assert field(read, "bad", "b") == {
         "at": 8,
         "name": "b",
@@ -256,7 +256,7 @@ def test_fields_after_variable_length_fields_are_imported(tmp_path):
         more="types:\n  t:\n    seq: [{id: c, type: s2be}, {id: d, type: u1}]\n",
     )
     (tmp_path / "bad.ksy").write_text(text)
-    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    read = run.read(tmp_path / "bad.ksy", kinds.reader_of_kind("ksy"))
     assert import_findings(read.definitions) == []
     (tmp_path / "frame.yaml").write_text(
         emit.canonical_yaml(next(iter(read.trees.values())))
@@ -287,7 +287,7 @@ def test_fields_after_variable_length_fields_are_imported(tmp_path):
 )  # fmt: skip
 def test_fields_that_depend_on_moving_bytes_are_left_out(attributes, says, tmp_path):
     (tmp_path / "bad.ksy").write_text(ksy(*attributes))
-    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    read = run.read(tmp_path / "bad.ksy", kinds.reader_of_kind("ksy"))
     assert [finding.message for finding in import_findings(read.definitions)] == [says]
     assert field(read, "bad", "b")["type"] == "bytes"
 
@@ -349,7 +349,7 @@ def test_unsupported_content_is_reported_and_the_fields_before_it_are_imported(
     attribute, more, says, tmp_path
 ):
     (tmp_path / "bad.ksy").write_text(ksy(attribute, more=more))
-    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    read = run.read(tmp_path / "bad.ksy", kinds.reader_of_kind("ksy"))
     assert read.failed and [
         finding.code for finding in import_findings(read.definitions)
     ] == ["IMP081"]
@@ -402,7 +402,7 @@ BOMB = (
 )
 def test_hostile_and_invalid_files_are_refused(text, says, line, tmp_path):
     (tmp_path / "bad.ksy").write_text(text)
-    reader = kinds.of(tmp_path / "bad.ksy")
+    reader = kinds.reader_of_file(tmp_path / "bad.ksy")
     assert isinstance(reader, kaitai.Kaitai)
     with pytest.raises(Findings) as raised:
         run.read(tmp_path / "bad.ksy", reader)

@@ -28,7 +28,7 @@ def placed(name, at):
 
 
 def imported(path):
-    return run.read(path, kinds.of(path))
+    return run.read(path, kinds.reader_of_file(path))
 
 
 def imported_set(*paths):
@@ -36,7 +36,9 @@ def imported_set(*paths):
         file_and_kind
         for path in paths
         for file_and_kind in (
-            kinds.within(path) if path.is_dir() else [(path, kinds.of(path))]
+            kinds.within(path)
+            if path.is_dir()
+            else [(path, kinds.reader_of_file(path))]
         )
     ]
     return {Path(read.definitions.file).name: read for read in run.read_set(files)}

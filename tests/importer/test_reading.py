@@ -50,7 +50,7 @@ WORDS = profile.load()
     ],
 )
 def test_formulas_and_units_are_read_in_both_directions(text, formula, unit, words):
-    read = descriptions.read(text, WORDS)
+    read = descriptions.read_description(text, WORDS)
     assert (read.formula, read.unit, read.formula_for, read.problems) == (
         formula,
         unit,
@@ -65,7 +65,7 @@ def test_formulas_and_units_are_read_in_both_directions(text, formula, unit, wor
              "(formatted value) = RAWVAL: 10 means off", "(formatted value) = RAWVAL*2: 10 off"],
 )  # fmt: skip
 def test_a_formula_that_cannot_be_read_is_a_problem_and_not_a_shorter_one(text):
-    read = descriptions.read(text, WORDS)
+    read = descriptions.read_description(text, WORDS)
     assert read.formula == ""
     assert read.problems
 
@@ -77,7 +77,7 @@ def test_a_formula_that_cannot_be_read_is_a_problem_and_not_a_shorter_one(text):
 def test_a_printed_formula_computes_the_same(factor, offset):
     shift = f"{'+' if offset >= 0 else '-'} {abs(offset)}"
     printed = f"(formatted value) [V] = RAWVAL * {factor.numerator}/{factor.denominator} {shift}"
-    read = descriptions.read(printed, WORDS)
+    read = descriptions.read_description(printed, WORDS)
     assert formulas.parse(read.formula) == formulas.Scale(factor, Fraction(offset))
 
 
@@ -93,7 +93,7 @@ def test_a_printed_formula_computes_the_same(factor, offset):
     ],
 )
 def test_a_magic_number_is_one_only_without_an_alternative(text, const):
-    assert descriptions.read(text, WORDS).const == const
+    assert descriptions.read_description(text, WORDS).const == const
 
 
 @pytest.mark.parametrize(
@@ -113,15 +113,17 @@ def test_a_magic_number_is_one_only_without_an_alternative(text, const):
     ],
 )
 def test_labels_are_read_in_whatever_cells_they_stand(text, values):
-    assert {part.what: part.value for part in labels.parse(text, WORDS)} == values
-    assert labels.begins(text, WORDS)
+    assert {
+        part.what: part.value for part in labels.parse_labels(text, WORDS)
+    } == values
+    assert labels.begins_message_table(text, WORDS)
 
 
 @pytest.mark.parametrize(
     "text", ["ID 5 is used by the loader", "Description ID 5", "5 ID", "0 8 ID UINT ID"]
 )
 def test_prose_and_fields_do_not_begin_a_message(text):
-    assert not labels.begins(text, WORDS)
+    assert not labels.begins_message_table(text, WORDS)
 
 
 @pytest.mark.parametrize(

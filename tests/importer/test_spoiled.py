@@ -8,7 +8,7 @@ import pdfplumber
 import pytest
 
 from icdgen.importer import profile, run
-from icdgen.importer.pages.extract import Page, Word, extract
+from icdgen.importer.pages.extract import PageContents, Word, extract
 from icdgen.importer.reading import pdf
 from tests.importer.compare import differences
 from tests.importer.manuals import browser, office
@@ -43,16 +43,18 @@ def drawn(layout: str, path):
     return path
 
 
-def spoilt(page: Page, index: int) -> Page:
+def spoilt(page: PageContents, index: int) -> PageContents:
     words = list(page.words)
     word = words[index]
     words[index] = word._replace(text=f"{word.text[0]}?{word.text[1:]}")
-    return Page(
+    return PageContents(
         page.number, page.width, page.height, words, page.across, page.down, page.fills
     )
 
 
-def matters(word: Word, result: run.Result, page: Page, names: set[str]) -> bool:
+def matters(
+    word: Word, result: run.Result, page: PageContents, names: set[str]
+) -> bool:
     """Return whether a word is a number or heading in a table, or the byte number of a
     line. Any name that the page contains is correct.
     """
@@ -93,7 +95,7 @@ def test_an_unreadable_cell_that_changes_the_icd_is_a_finding_on_its_page(
     with pdfplumber.open(path) as file:
         pages = [extract(page) for page in file.pages]
 
-    def imported(pages: list[Page]) -> tuple[run.Result, dict]:
+    def imported(pages: list[PageContents]) -> tuple[run.Result, dict]:
         monkeypatch.setattr(pdf, "_pages", lambda path, wanted, jobs: iter(pages))
         result, trees = run.run(path, words, jobs=1)
         return result, next(iter(trees.values()), {})

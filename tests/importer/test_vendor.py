@@ -30,14 +30,14 @@ def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
         "cubeacp": [],
     }
     assert (
-        len([table for table in result.survey.found if table.table.label is not None])
+        len([table for table in result.survey.results if table.table.label is not None])
         == 216
     )
-    assert not [table for table in result.survey.found if table.what == UNKNOWN]
+    assert not [table for table in result.survey.results if table.what == UNKNOWN]
     assert (
         sum(
             table.what == BACKGROUND and table.table.label is not None
-            for table in result.survey.found
+            for table in result.survey.results
         )
         == 8
     )
@@ -63,7 +63,7 @@ def test_tables_as_files_give_the_same_vendor_layer_byte_for_byte(
     vendor, form, tmp_path
 ):
     result, trees = imported(vendor / f"cubemag-cubewheel-addendum.{form}", "addendum")
-    table_files.write(result.tables, tmp_path / "tables", result.document)
+    table_files.write_tables(result.tables, tmp_path / "tables", result.document)
     _, second = imported(tmp_path / "tables", "addendum")
     assert {name: emit.canonical_yaml(tree) for name, tree in second.items()} == {
         name: emit.canonical_yaml(tree) for name, tree in trees.items()

@@ -68,13 +68,13 @@ def test_a_short_profile_reads_the_document(shape, tmp_path):
 
 def test_table_files_give_what_the_document_gives(shape, tmp_path):
     result, tree = read(tmp_path / "manual.pdf", tmp_path / "rules.yaml")
-    table_files.write(result.tables, tmp_path / "tables", result.document)
+    table_files.write_tables(result.tables, tmp_path / "tables", result.document)
     second, same = read(tmp_path / "tables", tmp_path / "rules.yaml")
     assert same == tree
     assert second.import_findings == result.import_findings
     assert second.tables == result.tables
     texts = {path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()}
-    table_files.write(second.tables, tmp_path / "tables", second.document)
+    table_files.write_tables(second.tables, tmp_path / "tables", second.document)
     assert texts == {
         path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()
     }

@@ -65,9 +65,9 @@ def test_descriptions_from_two_columns_are_joined(tmp_path):
     rules = RULE.replace("Type: type}", "Type: type, Meaning: text, Note: text}")
     result, _ = read(tmp_path, HEADING + rows, rules)
     (message,) = [
-        thing.thing for thing in result.survey.found if thing.what == "message"
+        entry.content for entry in result.survey.results if entry.what == "message"
     ]
-    assert [field.described.rest for field in message.fields] == [
+    assert [field.described.prose for field in message.fields] == [
         "Of the loop; Read at start",
         "In steps",
     ]
