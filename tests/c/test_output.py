@@ -197,7 +197,7 @@ messages:
 
 def test_identifiers_contain_the_name_of_the_node_once(tmp_path):
     (tmp_path / "pump.yaml").write_text(STUTTER, encoding="utf-8")
-    icd = harness.read(tmp_path / "pump.yaml")
+    icd = harness.read_unchecked(tmp_path / "pump.yaml")
     texts = files(icd)
     enums, status = texts["pump/enums.h"], texts["pump/pump_status.h"]
     assert (

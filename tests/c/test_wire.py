@@ -23,7 +23,7 @@ def headers(tmp_path_factory):
 
 
 def test_a_node_without_a_protocol_has_no_link(demo, tmp_path, headers):
-    folder = harness.generate(harness.read(demo), tmp_path)
+    folder = harness.generate(harness.read_unchecked(demo), tmp_path)
     assert not list(folder.rglob("icdgen_wire.*")) and not list(folder.rglob("link.*"))
     assert (headers / "icdgen_wire.h").is_file()
     protocols = {

@@ -143,7 +143,7 @@ def test_the_message_shown_is_that_of_the_first_icd(battery):
 
 
 def test_the_c_shown_reads_the_message(battery, tmp_path):
-    headers = c.generate(c.read(battery), tmp_path / "c")
+    headers = c.generate(c.read_unchecked(battery), tmp_path / "c")
     source = tmp_path / "program.c"
     include, _, body = snippet("c").partition("\n")
     source.write_text(C % (include, body))
@@ -162,7 +162,7 @@ def test_the_python_shown_reads_the_message(battery, tmp_path):
 
 
 def test_the_rust_shown_reads_the_message(battery, tmp_path):
-    library = rust.generate(rust.read(battery), tmp_path)
+    library = rust.generate(rust.read_unchecked(battery), tmp_path)
     toolchain = Toolchain("default")
     source = tmp_path / "program.rs"
     source.write_text(RUST % snippet("rust").replace("use battery::", "use icd::"))

@@ -259,7 +259,7 @@ def rare_cases(icd):
     cases = []
     for settings, steps, _ in RARE.values():
         link = link_of(icd, of_node)
-        sample = outcomes.Sample(link, of_node.stream, random.Random(1))
+        sample = outcomes.StreamSample(link, of_node.stream, random.Random(1))
         script = [
             (
                 step

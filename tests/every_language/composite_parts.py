@@ -42,7 +42,7 @@ def _claim(
     composite: MessageDescription,
     frame: bytes,
     message: MessageDescription,
-    part: composites.Given,
+    part: composites.PartFrame,
     count: int,
 ) -> Claim:
     """One of ``count`` parts that repeat ``message``."""

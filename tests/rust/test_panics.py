@@ -162,7 +162,7 @@ def test_arrays_structs_and_parts_cannot_panic(stories, level, tmp_path):
 def test_messages_of_variable_length_cannot_panic_or_allocate(
     tmp_path_factory, tmp_path
 ):
-    icd = harness.read(*variable_length.variable(tmp_path))
+    icd = harness.read_unchecked(*variable_length.variable(tmp_path))
     variable = Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("variable")))
     names = symbols(variable, "default", FAST, tmp_path)
     assert {
@@ -182,7 +182,7 @@ def test_a_program_without_an_allocator_cannot_allocate(tmp_path):
 
 
 def test_the_test_finds_a_panic(tmp_path):
-    icd = harness.read(odd.write_least(tmp_path))
+    icd = harness.read_unchecked(odd.write_least(tmp_path))
     least = Subject(icd, harness.generate(icd, tmp_path))
     more = "#[no_mangle] pub fn decode_badly(bytes: &[u8]) -> u8 { bytes[0] }\n"
     assert suspicious(symbols(least, "default", SMALL, tmp_path)) == []

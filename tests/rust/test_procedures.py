@@ -24,7 +24,9 @@ SIZE = 5000
 @pytest.fixture(scope="module")
 def client(tmp_path_factory) -> Path:
     folder, tools = tmp_path_factory.mktemp("client"), Toolchain("default")
-    library = tools.library(harness.generate(harness.read(LOADER), folder), *USED)
+    library = tools.library(
+        harness.generate(harness.read_unchecked(LOADER), folder), *USED
+    )
     main = Path(__file__).with_name("upload.rs")
     return tools.program(main, library, folder / "upload")
 

@@ -26,7 +26,7 @@ def test_rustfmt_leaves_the_crate_unchanged(subject, toolchain):
 
 def test_rustfmt_leaves_names_of_all_lengths_unchanged(toolchain, tmp_path):
     files = odd.write_names(tmp_path, odd.LENGTHS)
-    toolchain.formatted(harness.generate(harness.read(*files), tmp_path))
+    toolchain.formatted(harness.generate(harness.read_unchecked(*files), tmp_path))
 
 
 def test_clippy_reports_no_warnings(subject, toolchain, tmp_path):
@@ -54,7 +54,7 @@ def test_arrays_structs_and_parts_pass_all_tools(stories, tmp_path):
 def test_the_feature_std_passes_clippy_and_rustdoc(toolchain, tmp_path):
     """The feature adds code for each bus, so the node supports all of them."""
     board = ROOT / "tests" / "protocol" / "keys" / "board.yaml"
-    crate = harness.generate(harness.read(board), tmp_path)
+    crate = harness.generate(harness.read_unchecked(board), tmp_path)
     options = ("--crate-type", "lib", "--crate-name", "icd", *STD)
     toolchain.linted(crate, tmp_path, *options)
     toolchain.documented(crate, tmp_path, *STD)
@@ -65,7 +65,9 @@ def test_rustdoc_reports_no_warnings(subject, toolchain, tmp_path):
 
 
 def test_rustdoc_treats_text_of_an_icd_as_text(toolchain, tmp_path):
-    crate = harness.generate(harness.read(hostile_words.write(tmp_path)), tmp_path)
+    crate = harness.generate(
+        harness.read_unchecked(hostile_words.write(tmp_path)), tmp_path
+    )
     toolchain.documented(crate, tmp_path, "-D", "rustdoc::all")
     toolchain.formatted(crate)
 
@@ -73,12 +75,14 @@ def test_rustdoc_treats_text_of_an_icd_as_text(toolchain, tmp_path):
 def test_names_of_any_length_compile_without_a_warning(toolchain, tmp_path):
     folder = tmp_path / "icd"
     folder.mkdir()
-    crate = harness.generate(harness.read(*odd.write_long(folder)), tmp_path)
+    crate = harness.generate(harness.read_unchecked(*odd.write_long(folder)), tmp_path)
     toolchain.library(crate, level="0")
 
 
 def test_a_crate_of_one_empty_message_passes_all_tools(toolchain, tmp_path):
-    crate = harness.generate(harness.read(odd.write_least(tmp_path)), tmp_path)
+    crate = harness.generate(
+        harness.read_unchecked(odd.write_least(tmp_path)), tmp_path
+    )
     toolchain.formatted(crate)
     toolchain.linted(crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
 
@@ -89,7 +93,7 @@ def test_a_message_may_have_the_name_of_its_node(toolchain, tmp_path):
         "  - {name: Pump, id: 1, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Pump, type: uint}]}\n",
         encoding="utf-8",
     )
-    crate = harness.generate(harness.read(tmp_path / "pump.yaml"), tmp_path)
+    crate = harness.generate(harness.read_unchecked(tmp_path / "pump.yaml"), tmp_path)
     toolchain.formatted(crate)
     toolchain.linted(crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
 
@@ -108,7 +112,7 @@ def test_the_tools_report_faults(toolchain, tmp_path):
 
 def test_a_crate_for_a_framed_link_passes_all_tools(toolchain, tmp_path):
     wheel = ROOT / "examples" / "links" / "wheel.yaml"
-    crate = harness.generate(harness.read(wheel), tmp_path)
+    crate = harness.generate(harness.read_unchecked(wheel), tmp_path)
     toolchain.formatted(crate)
     options = ("--crate-type", "lib", "--crate-name", "icd", *STD)
     toolchain.linted(crate, tmp_path, *options)

@@ -53,7 +53,7 @@ def test_sessions_over_framed_links_repeat_requests_receive_and_survive_errors(
 ):
     tools = Toolchain(name)
     crate = harness.generate(
-        harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path
+        harness.read_unchecked(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path
     )
     run(
         tools.program(
@@ -87,7 +87,7 @@ def test_the_documented_handling_of_a_reason_compiles(tmp_path):
     shown = re.search(r"```rust\n(match session\.send.*?)```", text, re.S)
     tools = Toolchain("default")
     crate = harness.generate(
-        harness.read(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
+        harness.read_unchecked(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
     )
     (tmp_path / "user.rs").write_text(DOCUMENTED % shown[1])
     library = tools.library(crate, *USED)
@@ -100,7 +100,7 @@ def test_sessions_return_the_outcome_of_each_telecommand_with_its_reason(
 ):
     tools = Toolchain(name)
     crate = harness.generate(
-        harness.read(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
+        harness.read_unchecked(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
     )
     run(
         tools.program(
