@@ -9,7 +9,6 @@ them, and `icd_trees` writes the tree of each node.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +64,13 @@ def _parts_by_node(
         for key, result in zip(keys, survey.results, strict=True)
         if result.content is not None
     ]
-    nodes = {key: _new_node(key, profile) for key, _ in used if key}
+    # Captions that differ in punctuation only ("Motor A", "Motor-A") name one node.
+    by_name: dict[str, NodeParts] = {}
+    nodes: dict[str, NodeParts] = {}
+    for key, _ in used:
+        if key and key not in nodes:
+            node = _new_node(key, profile)
+            nodes[key] = by_name.setdefault(node.name, node)
     if used and not nodes:
         # Neither the document nor the profile names a node.
         words = re.findall("[A-Za-z0-9]+", Path(document.file).stem)
@@ -74,9 +79,10 @@ def _parts_by_node(
     first = next(iter(nodes), "")
     for key, content in used:
         nodes.get(key, nodes[first]).add_content(content)
-    if len(nodes) == 1:
-        next(iter(nodes.values())).shared = False
-    return [node for node in nodes.values() if node.has_contents]
+    distinct = list({node.name: node for node in nodes.values()}.values())
+    if len(distinct) == 1:
+        distinct[0].shared = False
+    return [node for node in distinct if node.has_contents]
 
 
 def _nodes_of_results(survey: Survey, profile: Profile) -> list[str]:
@@ -203,38 +209,49 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
                 references_of_fields.add(
                     (message.table.run, field.described.enum_table)
                 )
-    by_name: dict[str, ReadEnum] = {}
-    taken: Counter[str] = Counter()
-    for duplicate in node.enums:
-        first = by_name.get(duplicate.name)
-        if first is None:
-            by_name[duplicate.name] = duplicate
-            continue
-        if [(m.value, m.name) for m in first.members] == [
-            (m.value, m.name) for m in duplicate.members
-        ]:
-            is_first_meant, is_duplicate_meant = (
-                (enum.table.run, enum.table.label) in references_of_fields
-                for enum in (first, duplicate)
+    # By printed name, each enumeration with other members.
+    variants: dict[str, list[ReadEnum]] = {}
+    for enum in node.enums:
+        same_name = variants.setdefault(enum.name, [])
+        values = [(member.value, member.name) for member in enum.members]
+        equal = next(
+            (
+                index
+                for index, variant in enumerate(same_name)
+                if [(member.value, member.name) for member in variant.members] == values
+            ),
+            None,
+        )
+        if equal is not None:
+            first = same_name[equal]
+            is_first_referenced, is_referenced = (
+                (table.run, table.label) in references_of_fields
+                for table in (first.table, enum.table)
             )
-            if is_duplicate_meant and not is_first_meant:
-                duplicate.also = [first.table, *first.also]
-                by_name[duplicate.name] = duplicate
+            if is_referenced and not is_first_referenced:
+                enum.name = first.name
+                enum.also = [first.table, *first.also]
+                same_name[equal] = enum
             else:
-                first.also.append(duplicate.table)
+                first.also.append(enum.table)
             continue
-        taken[duplicate.name] += 1
-        name = f"{duplicate.name} {taken[duplicate.name] + 1}"
+        same_name.append(enum)
+        if len(same_name) == 1:
+            continue
+        name = f"{enum.name} {len(same_name)}"
+        first = same_name[0]
         survey.import_findings.append(
             ImportFinding(
                 "IMP052",
-                f"{duplicate.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
+                f"{enum.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
                 "with other members",
-                duplicate.table.spot,
+                enum.table.spot,
                 f"held as `{name}`: see which one the fields mean",
                 "error",
             )
         )
-        duplicate.name = name
-        by_name[name] = duplicate
-    node.enums = sorted(by_name.values(), key=lambda enum: enum.table.number)
+        enum.name = name
+    node.enums = sorted(
+        (enum for same_name in variants.values() for enum in same_name),
+        key=lambda enum: enum.table.number,
+    )
