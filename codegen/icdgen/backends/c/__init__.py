@@ -175,12 +175,12 @@ def _link(
     from icdgen.backends.c import links
     from icdgen.backends.c.names import checksum_function
     from icdgen.backends.c.procedures import ProcedureCode
-    from icdgen.backends.c.tables import algorithm_table
+    from icdgen.backends.c.tables import algorithm_table_name
     from icdgen.describe.links import Assumptions
 
-    folder, assumed = PurePosixPath(node.name), Assumptions(link.facts)
+    folder, assumptions = PurePosixPath(node.name), Assumptions(link.facts)
     procedures = [
-        ProcedureCode(node, link, each, assumed) for each in link.facts.procedures
+        ProcedureCode(node, link, each, assumptions) for each in link.facts.procedures
     ]
     values = {
         "node": node,
@@ -188,12 +188,16 @@ def _link(
         "sizes": links.buffer_sizes(link),
         "procedures": procedures,
         "checksums": [
-            (each.name, checksum_function(node, each.name), algorithm_table(each.name))
+            (
+                each.name,
+                checksum_function(node, each.name),
+                algorithm_table_name(each.name),
+            )
             for each in link.facts.checksums.values()
         ],
         **shared,
     }
-    code = links.link_code(link, assumed)
+    code = links.link_code(link, assumptions)
     yield folder / "link.h", render("link.h.j2", **values)
     yield folder / "link.c", render("link.c.j2", code=code, **values)
     if procedures:

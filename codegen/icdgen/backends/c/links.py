@@ -20,7 +20,7 @@ from icdgen.backends.c.stream_rows import (
     verdict_mask,
     verdict_name,
 )
-from icdgen.backends.c.tables import NODE_PREFIX, Table, TableSet, algorithm_table
+from icdgen.backends.c.tables import NODE_PREFIX, Table, TableSet, algorithm_table_name
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP
 from icdgen.describe.links import (
@@ -108,9 +108,9 @@ class LinkCode(NamedTuple):
     links: list[LinkTable]
 
 
-def link_code(link: LinkDescription, assumed: Assumptions) -> LinkCode:
+def link_code(link: LinkDescription, assumptions: Assumptions) -> LinkCode:
     """Return the links of a node, and their tables."""
-    tables = _LinkTables(link, assumed)
+    tables = _LinkTables(link, assumptions)
     links = tables.link_tables()
     return LinkCode(tables.tables, links)
 
@@ -130,13 +130,10 @@ class _LinkMember(NamedTuple):
 
 
 class _LinkTables(TableSet):
-    """Tables of a node.
+    """Tables of a node."""
 
-    Each method declares a table and returns the expression that refers to it.
-    """
-
-    def __init__(self, link: LinkDescription, assumed: Assumptions) -> None:
-        super().__init__(link, assumed, f"{NODE_PREFIX}{link.facts.node.name}_")
+    def __init__(self, link: LinkDescription, assumptions: Assumptions) -> None:
+        super().__init__(link, assumptions, f"{NODE_PREFIX}{link.facts.node.name}_")
 
     def link_tables(self) -> list[LinkTable]:
         """Return the link of the node, and one for the clients on each bus: with these,
@@ -145,9 +142,9 @@ class _LinkTables(TableSet):
         self.declare_algorithms()
         exchanges = self.declare_bus_exchanges()
         before, after = self.members_before_exchanges(), self.members_after_exchanges()
-        assumed = (
+        reasons = (
             (key, why)
-            for section, key, why in self.assumed.remaining()
+            for section, key, why in self.assumptions.remaining()
             if not section.startswith("message ")
         )
         links = []
@@ -156,7 +153,7 @@ class _LinkTables(TableSet):
             every = _in_lines(
                 exchanges.get(each, "NULL") if each in on else "NULL" for each in BUSES
             )
-            table = self.table(
+            table = self.table_of_rows(
                 "link",
                 "icd_link_t",
                 [
@@ -164,7 +161,7 @@ class _LinkTables(TableSet):
                     TableRow(f"{{{every}}}", "exchanges on UART, I2C, CAN"),
                     *(each.row_on(bus) for each in after),
                 ],
-                assumed if bus is None else (),
+                reasons if bus is None else (),
             )
             links.append(LinkTable(f"{bus}_link" if bus else "link", bus, table))
         return links
@@ -173,7 +170,7 @@ class _LinkTables(TableSet):
         """Return the members of a link up to the exchanges. Members that small clients
         use come first: a processor reaches these with shorter instructions.
         """
-        link, facts = self.link, self.facts_of_link
+        link, facts = self.link, self.facts
         telecommands = _storable_messages(link.telecommands)
         telemetry = _storable_messages(link.telemetry)
         telecommand = (
@@ -188,7 +185,9 @@ class _LinkTables(TableSet):
             "telemetry", (self.row_of_message(sent, "0u") for sent in telemetry)
         )
         return [
-            _LinkMember(self.array("nodes", "char *const", nodes), "whose messages"),
+            _LinkMember(
+                self.declare_array("nodes", "char *const", nodes), "whose messages"
+            ),
             _LinkMember(f"{len(facts.owners)}u", "how many"),
             _LinkMember(boolean(facts.little), "byte order: little"),
             _LinkMember(
@@ -220,8 +219,8 @@ class _LinkTables(TableSet):
 
     def members_after_exchanges(self) -> list[_LinkMember]:
         """Return the members of a link after the exchanges."""
-        link, facts = self.link, self.facts_of_link
-        settings = f"{{{self.values('client', facts.client)}}}"
+        link, facts = self.link, self.facts
+        settings = f"{{{self.values_of_facts(facts.client)}}}"
         checked = {
             *(facts.checksum.telecommand_buses if facts.checksum else ()),
             *(facts.checksum.telemetry_buses if facts.checksum else ()),
@@ -234,12 +233,14 @@ class _LinkTables(TableSet):
         return [
             _LinkMember(self.declare_checksum(), "checksums of messages", checked),
             _LinkMember(
-                self.numbers("reasons", "uint32_t", codes, 8),
+                self.declare_numbers("reasons", "uint32_t", codes, 8),
                 "codes of refusals",
                 self.buses_with_refusals(),
             ),
             _LinkMember(
-                self.part("framing", facts.framing), "framing of the UART", {UART}
+                self.declare_section("framing", facts.framing),
+                "framing of the UART",
+                {UART},
             ),
             _LinkMember(
                 f"{packet.overhead if packet else 0}u",
@@ -273,14 +274,14 @@ class _LinkTables(TableSet):
         """Return the buses on which a refusal has an error code."""
         return [
             bus
-            for bus, exchanges in self.facts_of_link.bus_exchanges.items()
+            for bus, exchanges in self.facts.bus_exchanges.items()
             if exchanges.command
             and any(each.reason for each in exchanges.command.responses)
         ]
 
     def declare_unsolicited(self) -> str:
-        telemetry = self.facts_of_link.telemetry
-        return self.array(
+        telemetry = self.facts.telemetry
+        return self.declare_array(
             "unsolicited",
             "icd_unsolicited_t",
             (
@@ -288,14 +289,16 @@ class _LinkTables(TableSet):
                     f"{{{id}u, {contained}u, {telemetry[contained].length}u}}",
                     plain(telemetry[contained].name),
                 )
-                for id, contained in self.facts_of_link.unsolicited.items()
+                for id, contained in self.facts.unsolicited.items()
             ),
         )
 
     def log_members(self) -> Iterator[_LinkMember]:
-        facts = self.facts_of_link
+        facts = self.facts
         yield _LinkMember(self.declare_log_mask(), "mask of logs", ())
-        yield _LinkMember(self.part("log_file", facts.log_file), "log files", ())
+        yield _LinkMember(
+            self.declare_section("log_file", facts.log_file), "log files", ()
+        )
         yield _LinkMember(self.declare_log_message(), "unsolicited logs", {UART})
 
     def file_members(self) -> Iterator[_LinkMember]:
@@ -323,7 +326,7 @@ class _LinkTables(TableSet):
         A last row of zeros is there because a program can omit all others.
         """
         messages = list(rows)
-        return self.array(
+        return self.declare_array(
             name,
             "icd_message_t",
             [*messages, TableRow("{0u, 0u, 0u}", "the end")] if messages else (),
@@ -335,7 +338,7 @@ class _LinkTables(TableSet):
         if not any(sent.message is needed for needed in self.link.always_needed):
             # A program that defines `DEMO_CHOSEN` has only the messages that it
             # selects. Without it, all messages are there.
-            node = self.facts_of_link.node.name.upper()
+            node = self.facts.node.name.upper()
             conditions = [
                 f"!defined({node}_CHOSEN)",
                 f"defined({node}_WITH_{self.link.name_of(sent.message).upper()})",
@@ -361,11 +364,11 @@ class _LinkTables(TableSet):
             )
             for role, field in report.places
         ]
-        places = self.array(f"{name}_places", "icd_place_t", rows)
+        places = self.declare_array(f"{name}_places", "icd_place_t", rows)
         message = report.message
         ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
         row = TableRow(f"{ids}, {message.length}u, {len(rows)}u, {places}")
-        return self.add(name, "icd_report_t", [row])
+        return self.declare(name, "icd_report_t", [row])
 
     def row_of_telecommand(self, sent: SentMessage) -> TableRow:
         """Return the row of a telecommand, with a comment on assumed facts."""
@@ -374,7 +377,7 @@ class _LinkTables(TableSet):
         flags += ["ICD_EXPECTS_RESET"] if message.expects_reset else []
         flags += ["ICD_SETTING"] if sent.is_setting else []
         row = self.row_of_message(sent, " | ".join(flags) or "0u")
-        why = self.assumed.why(f"message {message.name}", "acknowledge")
+        why = self.assumptions.why(f"message {message.name}", "acknowledge")
         about = (
             comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2)
             .lstrip()
@@ -393,7 +396,7 @@ class _LinkTables(TableSet):
             ", ".join(str(values.get(kind, -1)) for kind in CAN_KINDS)
             for values in (can.types, can.extended_types)
         )
-        return self.part(
+        return self.declare_section(
             "can",
             can,
             *(
@@ -405,32 +408,35 @@ class _LinkTables(TableSet):
             ),
             TableRow(f"{{{types}}}", "types"),
             TableRow(f"{{{extended_types}}}", "types of messages of several packets"),
-            TableRow(self.part("can_extended", form), "messages of several packets"),
+            TableRow(
+                self.declare_section("can_extended", form),
+                "messages of several packets",
+            ),
         )
 
     def declare_checksum(self) -> str:
-        checksum = self.facts_of_link.checksum
+        checksum = self.facts.checksum
         if checksum is None:
             return "NULL"
-        algorithm = TableRow(self.algorithm(checksum.algorithm), "algorithm")
-        return self.part("checksum", checksum, algorithm)
+        algorithm = TableRow(self.pointer_to_algorithm(checksum.algorithm), "algorithm")
+        return self.declare_section("checksum", checksum, algorithm)
 
     def declare_algorithms(self) -> None:
         """Declare the algorithms of all checksums."""
-        for each in self.facts_of_link.checksums.values():
-            name = algorithm_table(each.name)
-            crc = self.crc(name, each.crc, each.kind == CRC)
+        for each in self.facts.checksums.values():
+            name = algorithm_table_name(each.name)
+            crc = self.declare_crc(name, each.crc, each.kind == CRC)
             rows = [
                 TableRow(f"ICD_CHECK_{each.kind.upper()}"),
                 TableRow(f"{_CRC}{{{crc}}}"),
             ]
-            self.add(name, "icd_checksum_algorithm_t", rows)
+            self.declare(name, "icd_checksum_algorithm_t", rows)
 
     def declare_stream(self) -> str:
-        form = self.facts_of_link.stream
+        form = self.facts.stream
         if form is None:
             return "NULL"
-        packets = self.array(
+        packets = self.declare_array(
             "packets",
             "icd_packet_form_t",
             [self.row_of_packet(form, number) for number in range(len(form.packets))],
@@ -438,24 +444,24 @@ class _LinkTables(TableSet):
         directions = (("sent", form.telecommands), ("received", form.telemetry))
         exchanges = self.declare_exchanges("exchanges", form.exchanges)
         rows = [
-            self.array(
+            self.declare_array(
                 name,
                 "icd_stream_row_t",
                 [message_row(form, row, exchanges.get(row.exchange)) for row in rows],
             )
             for name, rows in directions
         ]
-        confirming = self.numbers(
+        confirming = self.declare_numbers(
             "confirming", "uint32_t", (f"{id:#x}u" for id in form.confirming), 8
         )
         request = "NULL"
         if form.request:
             exchange = exchanges[form.request.exchange]
             row = TableRow(f"{exchange}, {form.request.packet}u")
-            request = self.add("request", "icd_telemetry_request_t", [row])
+            request = self.declare("request", "icd_telemetry_request_t", [row])
         escaping = "NULL"
         if form.escaping:
-            escaping = self.add(
+            escaping = self.declare(
                 "escaping", "icd_escaping_t", [TableRow(_escaping(form.escaping))]
             )
         around = (
@@ -483,8 +489,8 @@ class _LinkTables(TableSet):
             TableRow(request, "request of telemetry"),
             TableRow(escaping, "escape characters"),
         ]
-        return self.add(
-            "stream", "icd_stream_form_t", parts, self.assumed.of_section("link")
+        return self.declare(
+            "stream", "icd_stream_form_t", parts, self.assumptions.of_section("link")
         )
 
     def row_of_packet(self, form: Stream, number: int) -> TableRow:
@@ -493,15 +499,15 @@ class _LinkTables(TableSet):
         """
         packet = form.packets[number]
         suffix = f"_{number}" if len(form.packets) > 1 else ""
-        fields = self.array(
+        fields = self.declare_array(
             f"fields{suffix}", "icd_packet_field_t", map(field_row, packet.fields)
         )
         check = "NULL"
         if packet.check:
             name, algorithm = f"check{suffix}", packet.check.algorithm
-            row = TableRow(self.algorithm(algorithm), "algorithm")
+            row = TableRow(self.pointer_to_algorithm(algorithm), "algorithm")
             covered = f"{packet.check.covered_from}u, {packet.check.covered_trailer}u, {boolean(packet.check.is_seeded)}"
-            check = self.add(
+            check = self.declare(
                 name, "icd_check_form_t", [row, TableRow(covered, "covered")]
             )
         sizes = (
@@ -524,16 +530,16 @@ class _LinkTables(TableSet):
         """Declare the exchanges on each bus, and return the expressions that refer to
         them.
         """
-        tables = {}
-        for bus, exchanges in self.facts_of_link.bus_exchanges.items():
+        pointers = {}
+        for bus, exchanges in self.facts.bus_exchanges.items():
             given = [exchanges.request, exchanges.command]
             declared = [each for each in given if each]
             names = self.declare_exchanges(f"{bus}_exchanges", declared)
             row = TableRow(
                 ", ".join(names.get(each, "NULL") for each in reversed(given))
             )
-            tables[bus] = self.add(f"on_{bus}", "icd_bus_exchanges_t", [row])
-        return tables
+            pointers[bus] = self.declare(f"on_{bus}", "icd_bus_exchanges_t", [row])
+        return pointers
 
     def declare_exchanges(
         self, name: str, exchanges: Sequence[Exchange]
@@ -541,7 +547,7 @@ class _LinkTables(TableSet):
         """Declare exchanges, and return the expression that refers to each."""
         rows = []
         for exchange in exchanges:
-            sources = self.shared(
+            sources = self.declare_once(
                 "sources",
                 "icd_number_place_t",
                 (
@@ -555,7 +561,7 @@ class _LinkTables(TableSet):
                 for each in exchange.responses
                 if each.telemetry is not None or each.packet is not None
             ]
-            responses = self.shared(
+            responses = self.declare_once(
                 "responses",
                 "icd_response_t",
                 map(self.initialiser_of_response, declared),
@@ -566,11 +572,11 @@ class _LinkTables(TableSet):
             if exchange.poll:
                 until = number_place(exchange.poll.until, ID_BYTES)
                 row = TableRow(f"{exchange.poll.telemetry}u, {until}")
-                poll = self.add("outcome_poll", "icd_outcome_poll_t", [row])
+                poll = self.declare("outcome_poll", "icd_outcome_poll_t", [row])
             rows.append(
                 f"{{{sources}, {responses},\n{STEP * 3}{counts}, {exchange.timeout}u, {poll}}}"
             )
-        table = self.array(name, "icd_exchange_t", rows)
+        table = self.declare_array(name, "icd_exchange_t", rows)
         return {
             exchange: f"&{table}[{number}]" for number, exchange in enumerate(exchanges)
         }
@@ -579,7 +585,7 @@ class _LinkTables(TableSet):
         """Return the initialiser of a response; its echoes and meanings are separate
         tables.
         """
-        echoes = self.shared(
+        echoes = self.declare_once(
             "echoes",
             "icd_echo_t",
             (
@@ -587,7 +593,7 @@ class _LinkTables(TableSet):
                 for echo in response.echoes
             ),
         )
-        meanings = self.shared(
+        meanings = self.declare_once(
             "meanings",
             "icd_meaning_t",
             (
@@ -611,10 +617,10 @@ class _LinkTables(TableSet):
     def declare_place(self, place: NumberPlace | None) -> str:
         """Declare the position of a number in a frame; return NULL for None."""
         rows = [number_place(place, ID_BYTES)] if place else []
-        return self.shared("place", "icd_number_place_t", rows)
+        return self.declare_once("place", "icd_number_place_t", rows)
 
     def declare_log_mask(self) -> str:
-        mask = self.facts_of_link.mask
+        mask = self.facts.mask
         if mask is None:
             return "NULL"
         rows = []
@@ -623,18 +629,20 @@ class _LinkTables(TableSet):
             id, length = (row.id, row.length) if row else (None, mask.slot_bytes)
             text = f"bit {bit}" + (f": {plain(row.name)}" if row and row.name else "")
             rows.append(TableRow(f"{{{or_none(id)}, {length}u}}", text))
-        return self.part(
-            "log_mask", mask, TableRow(self.array("log_bits", "icd_log_bit_t", rows))
+        return self.declare_section(
+            "log_mask",
+            mask,
+            TableRow(self.declare_array("log_bits", "icd_log_bit_t", rows)),
         )
 
     def declare_log_message(self) -> str:
-        mask = self.facts_of_link.mask
+        mask = self.facts.mask
         if mask is None:
             return "NULL"
         sizes = TableRow(
             f"{mask.size}u, {mask.slot_bytes}u", "size of the mask, slot_bytes"
         )
-        return self.part("log_message", self.facts_of_link.log_message, sizes)
+        return self.declare_section("log_message", self.facts.log_message, sizes)
 
     def declare_packed_time(self) -> str:
         rows = [
@@ -643,7 +651,7 @@ class _LinkTables(TableSet):
             )
             for name, part in self.link.time
         ]
-        return self.add("packed_time", "icd_time_form_t", rows) if rows else "NULL"
+        return self.declare("packed_time", "icd_time_form_t", rows) if rows else "NULL"
 
     def declare_index(self) -> str:
         form = self.link.index
@@ -651,7 +659,7 @@ class _LinkTables(TableSet):
         rows = (
             TableRow(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields
         )
-        return self.part("index_entry", form, *rows)
+        return self.declare_section("index_entry", form, *rows)
 
 
 def _in_lines(values: Iterable[str]) -> str:

@@ -99,11 +99,11 @@ class ProcedureCode:
         node: NodeDescription,
         link: LinkDescription,
         model: Procedure,
-        assumed: Assumptions,
+        assumptions: Assumptions,
     ) -> None:
         self.node, self.link, self.procedure = node, link, model
         self._description: Description = link.description
-        self.tables = _ProcedureTables(link, assumed).declare_procedure(model)
+        self.tables = _ProcedureTables(link, assumptions).declare_procedure(model)
 
     @property
     def name(self) -> str:
@@ -289,17 +289,18 @@ class _ProcedureTables(TableSet):
         }
         inputs, content = procedure.numbers, procedure.content
         arrays = ", ".join(
-            self.array(name, types[name], rows) for name, rows in self._rows.items()
+            self.declare_array(name, types[name], rows)
+            for name, rows in self._rows.items()
         )
         receives = len(self._rows["receives"])
         rows = [
             TableRow(
-                f"{self.array('steps', 'icd_step_form_t', steps)}, {len(steps)}u",
+                f"{self.declare_array('steps', 'icd_step_form_t', steps)}, {len(steps)}u",
                 "steps",
             ),
             TableRow(arrays, ", ".join(self._rows)),
             TableRow(
-                self.array(
+                self.declare_array(
                     "inputs", "icd_input_form_t", map(self.row_of_input, inputs)
                 ),
                 "inputs",
@@ -313,11 +314,11 @@ class _ProcedureTables(TableSet):
             TableRow(f"{procedure.time}u", "longest duration in ms"),
             TableRow(f"{procedure.requests}u", "largest number of requests"),
         ]
-        self.add(
+        self.declare(
             "form",
             "icd_procedure_form_t",
             rows,
-            self.assumed.of_section_tree(f"procedures.{procedure.name}"),
+            self.assumptions.of_section_tree(f"procedures.{procedure.name}"),
         )
         return self.tables
 
@@ -360,8 +361,8 @@ class _ProcedureTables(TableSet):
         if any(step.data):
             number = len(self._rows["sends"])
             octets = (f"{byte:#04x}u" for byte in step.data)
-            data = self.numbers(f"data_{number}", "uint8_t", octets, 16)
-        puts = self.shared(
+            data = self.declare_numbers(f"data_{number}", "uint8_t", octets, 16)
+        puts = self.declare_once(
             "puts",
             "icd_put_t",
             (
@@ -381,7 +382,7 @@ class _ProcedureTables(TableSet):
         if isinstance(step, Poll):
             until, fails = step.until, step.fails
             times = f"{step.interval}u, {step.timeout}u"
-        takes = self.shared(
+        takes = self.declare_once(
             "takes",
             "icd_take_t",
             (
@@ -389,7 +390,7 @@ class _ProcedureTables(TableSet):
                 for each in step.takes
             ),
         )
-        tests = self.shared(
+        tests = self.declare_once(
             "conditions", "icd_test_t", map(test_initialiser, (*until, *fails))
         )
         counts = f"{len(step.takes)}u, {len(until)}u, {len(fails)}u"
@@ -407,10 +408,10 @@ class _ProcedureTables(TableSet):
 
     def checksum_initialiser(self, step: VerifyChecksum) -> str:
         flags = f"{boolean(step.of_block)}, {boolean(step.covers_fill)}"
-        return f"{{{self.algorithm(step.algorithm)}, {flags}, {value_initialiser(step.value)}}}"
+        return f"{{{self.pointer_to_algorithm(step.algorithm)}, {flags}, {value_initialiser(step.value)}}}"
 
     def row_of_input(self, each: Input) -> TableRow:
-        values = self.shared("values", "uint32_t", (f"{n}u" for n in each.values))
+        values = self.declare_once("values", "uint32_t", (f"{n}u" for n in each.values))
         optional = boolean(each.is_optional)
         return TableRow(
             f"{{{each.most}u, {values}, {len(each.values)}u, {optional}}}", each.name
@@ -422,7 +423,7 @@ class _ProcedureTables(TableSet):
             return "NULL"
         form, map = "NULL", blocks.map
         if map is not None:
-            messages = self.array(
+            messages = self.declare_array(
                 "map_messages",
                 "icd_map_message_t",
                 [
@@ -445,8 +446,8 @@ class _ProcedureTables(TableSet):
                     "bit 0 is the most significant one, received, beyond the end",
                 ),
             ]
-            form = self.add("map", "icd_map_form_t", rows)
-        return self.add(
+            form = self.declare("map", "icd_map_form_t", rows)
+        return self.declare(
             "blocks",
             "icd_blocks_form_t",
             [
