@@ -19,7 +19,7 @@ PAGE = documents.text("reference/wire-framing")
 EXAMPLES = ROOT / "examples" / "links"
 
 
-def shown(begin: str) -> list[str]:
+def documented_lines(begin: str) -> list[str]:
     """Return the lines of the documented example in C that begins with ``begin``."""
     _, following = PAGE.split(f"```c\n{begin}")
     return (begin + following.split("```")[0]).splitlines()
@@ -83,7 +83,7 @@ int main(void)
 
 
 def test_the_documented_client_requests_sends_and_receives_messages(tmp_path):
-    lines = shown("receiver_client_t receiver;")
+    lines = documented_lines("receiver_client_t receiver;")
     in_event = [line.replace("...", "++clocks;") for line in lines if "{ ... }" in line]
     in_main = [line for line in lines if "{ ... }" not in line]
     assert len(in_event) == 1 and len(in_main) > 7
@@ -150,7 +150,7 @@ OUTCOMES = [
 
 
 def test_the_documented_program_reports_how_each_command_of_the_wheel_ends(tmp_path):
-    lines = "\n".join(shown("static void on_event(void *context"))
+    lines = "\n".join(documented_lines("static void on_event(void *context"))
     output = run(tmp_path, WHEEL % lines, EXAMPLES / "wheel.yaml")
     assert output.splitlines() == OUTCOMES
 
@@ -278,7 +278,7 @@ int main(void)
 def test_the_documented_sender_numbers_its_packets(tmp_path):
     run(
         tmp_path,
-        SENDING % "\n    ".join(shown("autopilot_sender_t sender;")),
+        SENDING % "\n    ".join(documented_lines("autopilot_sender_t sender;")),
         EXAMPLES / "mavlink2.yaml",
     )
 

@@ -133,7 +133,7 @@ from icdgen_messages.receiver import LINK, NavigationClock, PollClock, SetMessag
 from icdgen_messages.wire import Arrived, Session, StreamDecoder, stream_encode
 
 sent: list[bytes] = []
-heard: list[object] = []
+events: list[object] = []
 now = [0.0]
 
 
@@ -142,7 +142,7 @@ def read(seconds: float) -> bytes:
     return stream_encode(LINK, NavigationClock(clock_bias=len(sent)), direction="telemetry")
 
 
-session = Session(LINK, sent.append, read, on_event=heard.append, clock=lambda: now[0])
+session = Session(LINK, sent.append, read, on_event=events.append, clock=lambda: now[0])
 clock: NavigationClock = session.get(NavigationClock)
 assert clock.clock_bias == 1 and session.answer(PollClock(), NavigationClock).clock_bias == 2
 session.send(SetMessageRate(rate=5))
@@ -150,7 +150,7 @@ requests = [event for line in sent for event in StreamDecoder(LINK, "telecommand
 assert [event.kind for event in requests] == [PollClock, PollClock, SetMessageRate]
 clocks: Iterator[NavigationClock] = session.messages(NavigationClock, seconds=2)
 assert [message.clock_bias for message in clocks] == [3, 3, 3, 3]
-assert all(isinstance(event, Arrived) and event.of(NavigationClock) for event in heard) and len(heard) == 4
+assert all(isinstance(event, Arrived) and event.of(NavigationClock) for event in events) and len(events) == 4
 """
 
 

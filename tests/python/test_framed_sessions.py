@@ -55,19 +55,19 @@ class Device:
 
     def __init__(self, wire, node, *answers):
         self.wire, self.node, self.answers, self.now = wire, node, list(answers), 0.0
-        self.asked, self.decoder = [], wire.StreamDecoder(node.LINK, "telecommand")
+        self.requests, self.decoder = [], wire.StreamDecoder(node.LINK, "telecommand")
 
     def line(self, message):
         return self.wire.stream_encode(self.node.LINK, message, direction="telemetry")
 
     def write(self, data):
-        self.asked += [event.kind for event in self.decoder.feed(data)]
+        self.requests += [event.kind for event in self.decoder.feed(data)]
 
     def due(self):
         """Return the bytes to send now, and remove their messages from ``answers``."""
         due, later = b"", []
         for count, message in self.answers:
-            if count <= len(self.asked):
+            if count <= len(self.requests):
                 due += self.line(message)
             else:
                 later.append((count, message))
@@ -90,12 +90,14 @@ def test_several_requests_are_sent_before_the_first_reply(wire, node):
         (2, node.EndOfEpoch()),
         (2, node.NavigationClock(clock_bias=7)),
     )
-    device, heard = Device(wire, node, *answers), []
-    session = device.session(on_event=heard.append)
+    device, received = Device(wire, node, *answers), []
+    session = device.session(on_event=received.append)
     clock, status = session.get_several(node.NavigationClock, node.NavigationStatus)
     assert (clock.clock_bias, status.fix) == (7, 3)
-    assert device.asked == [node.PollClock, node.PollStatus] and not session.client.busy
-    assert [event.of(node.EndOfEpoch) for event in heard] == [node.EndOfEpoch()]
+    assert (
+        device.requests == [node.PollClock, node.PollStatus] and not session.client.busy
+    )
+    assert [event.of(node.EndOfEpoch) for event in received] == [node.EndOfEpoch()]
     assert session.get_several() == ()
 
 
@@ -107,7 +109,7 @@ def test_a_repeated_request_is_sent_after_the_first_reply(wire, node):
         (2, node.NavigationClock(clock_bias=2)),
     )
     clocks = device.session().get_several(node.NavigationClock, node.NavigationClock)
-    assert [clock.clock_bias for clock in clocks] == [1, 2] and device.asked == [
+    assert [clock.clock_bias for clock in clocks] == [1, 2] and device.requests == [
         node.PollClock,
         node.PollClock,
     ]
@@ -164,12 +166,12 @@ def talk(wire, node, talking, *answers, **settings):
 
 def test_several_tasks_request_messages_while_another_receives_telemetry(wire, node):
     async def talking(session, device, reader):
-        heard = []
+        received = []
 
         async def listen():
             async for message in session.messages(node.EndOfEpoch):
-                heard.append(message.time_of_week)
-                if len(heard) == 2:
+                received.append(message.time_of_week)
+                if len(received) == 2:
                     break
 
         listening = asyncio.create_task(listen())
@@ -182,10 +184,10 @@ def test_several_tasks_request_messages_while_another_receives_telemetry(wire, n
             get(node.NavigationClock),
         )
         assert (clock.clock_bias, status.fix, next_clock.clock_bias) == (1, 3, 2)
-        assert device.asked == [node.PollClock, node.PollStatus, node.PollClock]
+        assert device.requests == [node.PollClock, node.PollStatus, node.PollClock]
         reader.feed_data(device.line(node.EndOfEpoch(time_of_week=2)))
         await listening
-        assert heard == [1, 2]
+        assert received == [1, 2]
         await asyncio.sleep(0)
 
     answers = (2, node.NavigationStatus(fix=3)), (2, node.NavigationClock(clock_bias=1))
@@ -228,7 +230,7 @@ def test_cancelling_a_task_does_not_end_the_requests_of_other_tasks(
     async def talking(session, device, reader):
         kinds = node.NavigationClock, node.NavigationStatus
         tasks = [asyncio.create_task(session.get(kind)) for kind in kinds]
-        while len(device.asked) < 2:
+        while len(device.requests) < 2:
             await asyncio.sleep(0)
         tasks[given_up].cancel()
         await asyncio.wait(tasks, timeout=0.01)
@@ -268,10 +270,10 @@ def test_every_task_gets_an_error_when_the_connection_is_closed(wire, node):
 
 def test_the_documented_example_runs_and_passes_the_type_checker(package, tmp_path):
     text = documents.text("reference/wire-framing")
-    (shown,) = re.findall(
+    (example,) = re.findall(
         r"```python\n(clock, status = session.get_several.*?)```", text, re.S
     )
-    first, following = shown.split("\n", 1)
+    first, following = example.split("\n", 1)
     program = f"""\
     import asyncio
     from several_messages.receiver import LINK, NavigationClock, NavigationStatus

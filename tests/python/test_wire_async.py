@@ -96,7 +96,7 @@ def test_requests_of_several_tasks_wait_for_each_other(wire, acp, simulator_addr
 
 
 def test_a_download_does_not_block_the_event_loop(wire, acp, simulator_address):
-    shown, turns = [], 0
+    progress, turns = [], 0
 
     async def count():
         nonlocal turns
@@ -108,12 +108,12 @@ def test_a_download_does_not_block_the_event_loop(wire, acp, simulator_address):
         async with session(wire, acp, simulator_address) as device:
             counting = asyncio.create_task(count())
             download = acp.procedures.Download(type=2, counter=5, size=768)
-            done = await device.run(download, lambda *progress: shown.append(progress))
+            done = await device.run(download, lambda *sizes: progress.append(sizes))
             counting.cancel()
             return done.data
 
     assert asyncio.run(talk()) == bytes(range(256)) * 3
-    assert shown[-1] == (768, 768) and turns > 10
+    assert progress[-1] == (768, 768) and turns > 10
 
 
 class Quiet:

@@ -138,11 +138,11 @@ def test_a_file_arrives_byte_for_byte(shipped, wire, file, loss):
     acp = shipped.module("cubeacp")
     (entry,) = talking.run(acp.procedures.List()).entries
     assert (entry.file_type, entry.file_ctr, entry.file_size) == (2, 5, 61_441)
-    shown = []
+    progress = []
     download = acp.procedures.Download(type=2, counter=5, size=entry.file_size)
-    talking.run(download, lambda *now: shown.append(now))
+    talking.run(download, lambda *now: progress.append(now))
     assert download.data == file.read_bytes()
-    assert [size for size, _ in shown] == [0, 20480, 40960, 61440, 61441]
+    assert [size for size, _ in progress] == [0, 20480, 40960, 61440, 61441]
 
 
 @pytest.mark.parametrize("loss", [0, 1, 10, 30])
@@ -177,7 +177,7 @@ def refusing(shipped, name: str, times: int, code: int = 0x55):
     """Return a session with a bootloader that refuses a telecommand, its events, and
     the port.
     """
-    heard, boot = [], shipped.module("bootloader")
+    events, boot = [], shipped.module("bootloader")
     port = Refusing(
         packages.shipped(),
         "bootloader",
@@ -187,51 +187,51 @@ def refusing(shipped, name: str, times: int, code: int = 0x55):
         boot=10**9,
     )
     talking = shipped.module("wire").Session(
-        boot.LINK, port.write, port.read, clock=port.clock, on_event=heard.append
+        boot.LINK, port.write, port.read, clock=port.clock, on_event=events.append
     )
-    return talking, heard, port
+    return talking, events, port
 
 
 @pytest.mark.parametrize("times", [1, 3])
 def test_a_refusal_with_an_unknown_code_is_reported_and_the_telecommand_repeated(
     shipped, wire, times
 ):
-    talking, heard, port = refusing(shipped, "InitiateFileUpload", times)
+    talking, events, port = refusing(shipped, "InitiateFileUpload", times)
     talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
-    assert [(event.code, event.reason) for event in heard] == [(0x55, None)] * times
+    assert [(event.code, event.reason) for event in events] == [(0x55, None)] * times
     assert port.acknowledged == times + 1
 
 
 def test_repeated_refusals_with_an_unknown_code_are_a_time_out(shipped, wire):
-    talking, heard, port = refusing(shipped, "InitiateFileUpload", 100)
+    talking, events, port = refusing(shipped, "InitiateFileUpload", 100)
     with pytest.raises(wire.FailedError, match="timeout") as caught:
         talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
-    assert caught.value.result == "timeout" and {event.code for event in heard} == {
+    assert caught.value.result == "timeout" and {event.code for event in events} == {
         0x55
     }
     assert (
-        len(heard)
+        len(events)
         == port.acknowledged
         == 1 + shipped.module("bootloader").LINK.settings.retries
     )
 
 
 def test_a_telecommand_refused_with_a_known_code_is_not_repeated(shipped, wire):
-    talking, heard, port = refusing(shipped, "InitiateFileUpload", 1, code=2)
+    talking, events, port = refusing(shipped, "InitiateFileUpload", 1, code=2)
     with pytest.raises(wire.FailedError) as caught:
         talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
     assert (
         caught.value.event.code,
         caught.value.event.reason,
-        heard,
+        events,
         port.acknowledged,
     ) == (2, "Incorrect Length", [], 1)
 
 
 def test_unsolicited_logs_are_reported(shipped, wire):
-    heard = []
+    events = []
     talking, port = session(shipped)
-    talking._on_event = heard.append
+    talking._on_event = events.append
     acp = shipped.module("cubeacp")
     mask = bytes([1]) + bytes(9)
     message = wire.LogMessage.encode(
@@ -239,4 +239,4 @@ def test_unsolicited_logs_are_reported(shipped, wire):
     )
     port.line._send(0, "log", message)
     talking.get(acp.Identification)
-    assert [type(event) for event in heard] == [wire.Log]
+    assert [type(event) for event in events] == [wire.Log]

@@ -84,12 +84,12 @@ fn main() {}
 
 def test_the_documented_handling_of_a_reason_compiles(tmp_path):
     text = documents.text("reference/wire-framing")
-    shown = re.search(r"```rust\n(match session\.send.*?)```", text, re.S)
+    example = re.search(r"```rust\n(match session\.send.*?)```", text, re.S)
     tools = Toolchain("default")
     crate = harness.generate(
         harness.read_unchecked(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
     )
-    (tmp_path / "user.rs").write_text(DOCUMENTED % shown[1])
+    (tmp_path / "user.rs").write_text(DOCUMENTED % example[1])
     library = tools.library(crate, *USED)
     tools.program(tmp_path / "user.rs", library, tmp_path / "program")
 
