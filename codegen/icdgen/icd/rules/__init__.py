@@ -26,6 +26,7 @@ from icdgen.icd.rules import (  # noqa: F401
     errata,
     escapes,
     formulas,
+    frame_checksums,
     framed_links,
     identifiers,
     ids,

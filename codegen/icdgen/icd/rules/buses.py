@@ -16,12 +16,12 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node, buses_of
 from icdgen.icd.packets import DEVICE, HOST, ID_ROLE, Packet, Packets, value_of
 from icdgen.icd.responses import ACK, BUSY, NAK, number_of
 from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.frame_checksums import DATA
 from icdgen.icd.rules.framed_links import (
-    DATA,
     DeclaredLink,
-    ids_of,
-    links,
-    links_on_buses,
+    bus_links,
+    framed_links,
+    messages_with_ids,
 )
 from icdgen.icd.rules.responses import (
     DeclaredResponse,
@@ -93,7 +93,7 @@ def responses_on_buses(ctx: Context) -> tuple[BusResponses, ...]:
 
 
 def _responses(ctx: Context) -> Iterator[BusResponses]:
-    for link in links_on_buses(ctx):
+    for link in bus_links(ctx):
         protocol = ctx.protocol_of(link.node)
         own_buses = link.section.get("buses")
         for bus in (bus for bus in BUSES if bus in buses_of(protocol)):
@@ -123,7 +123,7 @@ def packets_of_responses_exist(ctx: Context) -> Iterator[Fault]:
         for declared in responses.declared(ctx):
             if declared.is_packet:
                 yield from _named_packet(responses, declared.row, TELEMETRY)
-    for link in links_on_buses(ctx):
+    for link in bus_links(ctx):
         named = bus_link(ctx.protocol_of(link.node)["link"], CAN).packets
         for section in _sections(link):
             name = section.get("segment_of")
@@ -193,7 +193,7 @@ def responses_on_buses_are_complete(ctx: Context) -> Iterator[Fault]:
             text = "nothing says which packet requests telemetry"
             help = "add `packet:` with its name"
             yield Fault.at_key(responses.link.section, REQUESTS, text, help)
-    for link in links_on_buses(ctx):
+    for link in bus_links(ctx):
         yield from _reasons(ctx, link)
 
 
@@ -265,7 +265,7 @@ def _compared_fields(
     if responses.bus == CAN:
         return  # The responses have no fields.
     if declared.packet is None and telemetry_of(ctx, declared) is None:
-        telecommands = ids_of(ctx, declared.link.node, TELECOMMAND)
+        telecommands = messages_with_ids(ctx, declared.link.node, TELECOMMAND)
         is_telecommand = any(each.name == declared.name for _, each in telecommands)
         # ICD093 reports other names, and ICD095 packets.
         if is_telecommand and not declared.is_packet:
@@ -350,7 +350,7 @@ def _sections(link: DeclaredLink) -> list[Map]:
 
 @rule("ICD104")
 def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
-    for link in links_on_buses(ctx):
+    for link in bus_links(ctx):
         packets = link.section.get("packets")
         seen: dict[object, tuple[str, Map]] = {}
         for name, section in packets.items() if isinstance(packets, Map) else ():
@@ -376,15 +376,15 @@ ONLY_ON_BUSES = ("buses", "optional", "type", "segment_of")
 
 @rule("ICD175", needs_complete=True)
 def packets_on_buses_have_an_effect(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         packets = link.section.get("packets")
         own = [*packets.values()] if isinstance(packets, Map) else []
-        for section in (*mappings(own), *(row for _, row in link.rows)):
+        for section in (*mappings(own), *(row for _, row in link.fields_by_part)):
             for key in ONLY_ON_BUSES:
                 if key in section:
                     text = f"`{key}` has no effect on framed links"
                     yield Fault.at_key(section, key, text, "remove it")
-    for link in links_on_buses(ctx):
+    for link in bus_links(ctx):
         sections = link.section.get("packets")
         if not isinstance(sections, Map):
             continue
@@ -459,7 +459,9 @@ def _unasked(
         key = "messages" if "messages" in section else "header"
         yield Fault.at(section, key, text, "list one message in `messages`")
         return
-    telemetry = {each.name: id for id, each in ids_of(ctx, link.node, TELEMETRY)}
+    telemetry = {
+        each.name: id for id, each in messages_with_ids(ctx, link.node, TELEMETRY)
+    }
     if names[0] not in telemetry and names[0] not in ctx.broken_messages(link.node):
         text = f"the node has no telemetry {quote(str(names[0]))}"
         remedy = suggestion(str(names[0]), telemetry, "correct the name")

@@ -10,13 +10,13 @@ from icdgen.icd.packets import id_shifts, value_of
 from icdgen.icd.pieces import bits_of
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.framed_links import (
+    CONSTANT_ROLES,
     DIRECTIONS,
-    FIXED,
     DeclaredLink,
     LinkPacket,
-    carried_in,
-    ids_of,
-    links,
+    framed_links,
+    messages_in_packet,
+    messages_with_ids,
 )
 from icdgen.icd.rules.rule import rule
 from icdgen.wording import quote
@@ -26,7 +26,7 @@ _KEYS = ("escape", "start", "end", "data", "other")  # only for `by: escape`
 
 @rule("ICD196")
 def escape_characters_fit(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         framing = link.section.get("framing")
         if not isinstance(framing, Map):
             continue
@@ -57,7 +57,7 @@ def _first_bytes(ctx: Context, link: DeclaredLink, framing: Map) -> Iterator[Fau
         for direction, id, name in _contents(ctx, link, packet):
             byte = _first_byte(link, packet, direction, id)
             if byte is None:
-                text = f"without `start`, the first byte{packet.title or ' of packets'} must be an id or a constant"
+                text = f"without `start`, the first byte{packet.of_packet or ' of packets'} must be an id or a constant"
                 help = "begin `header` with one of 8 bits, or add `start` to `framing`"
                 yield Fault.at(*place, text, help)
                 break
@@ -72,15 +72,15 @@ def _contents(
     ctx: Context, link: DeclaredLink, packet: LinkPacket
 ) -> Iterator[tuple[str, int, str]]:
     """Yield direction, id and name of what a packet can contain."""
-    for direction in packet.packet.directions:
+    for direction in packet.declared.directions:
         carried = [
             (id, quote(message.name))
-            for id, message in carried_in(ctx, link, packet.packet, direction)
+            for id, message in messages_in_packet(ctx, link, packet.declared, direction)
         ]
         # A packet without messages can have the id of any.
         if not carried:
             for each in DIRECTIONS:
-                messages = ids_of(ctx, link.node, each)
+                messages = messages_with_ids(ctx, link.node, each)
                 carried += ((id, quote(message.name)) for id, message in messages)
         for id, name in carried or [(0, "each message")]:
             yield direction, id, name
@@ -90,14 +90,16 @@ def _first_byte(
     link: DeclaredLink, packet: LinkPacket, direction: str, id: int
 ) -> int | None:
     """Return the first byte of a packet; None if it is not only ids and constants."""
-    shifts = (shift for _, shift in id_shifts([row for _, row in packet.rows]))
+    shifts = (
+        shift for _, shift in id_shifts([row for _, row in packet.fields_by_part])
+    )
     order, byte, determined = link.node.bit_order, 0, 0
-    for part, row in packet.rows:
+    for part, row in packet.fields_by_part:
         row_order: str = row.get("byte_order", link.node.byte_order)
         if row["role"] == "id":
             # An id can have several parts, the most significant bits first.
             value = id >> next(shifts)
-        elif row["role"] in FIXED:
+        elif row["role"] in CONSTANT_ROLES:
             value = value_of(row, direction, row_order == "little")
         else:
             continue

@@ -1,13 +1,17 @@
-"""Protocol section `link`: links whose frames have header and trailer fields with
-roles.
+"""Rules of links with header, trailer and roles of fields (ICD170 to ICD172).
 
-`links` and `links_on_buses` list the links of an ICD for the themes `packets`,
-`responses`, `escapes` and `buses`, too.
+A framed link sends the data of a message between a header and a trailer. Each field of
+these has a role, such as `id` or `length`. The rules take the `link` sections of the
+YAML files. `framed_links.md` has their pages; `frame_checksums` continues with the
+checksums.
+
+Other rules list links with `framed_links` and `bus_links`, and messages with
+`messages_with_ids`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from icdgen.frozen import NamedTuple
@@ -15,25 +19,26 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node, framed_link
 from icdgen.icd.packets import Packet, Packets, declared_packets
-from icdgen.icd.procedures import nested_steps
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, of_wide_value
-from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings
 from icdgen.once import cached_by_owner
 from icdgen.wording import count, listing, quote
 
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
-PARTS = ("header", "trailer")
-FIXED = ("sync", "constant")
-DERIVED = ("id", "length", "response_length", "checksum")
+# Roles of fields whose value the ICD gives.
+CONSTANT_ROLES = ("sync", "constant")
+# Roles of fields whose value is computed from the message.
+COMPUTED_ROLES = ("id", "length", "response_length", "checksum")
+# Roles of which a packet can have several fields. The fields of an id have its bits in
+# turn, the most significant first.
+REPEATED_ROLES = (*CONSTANT_ROLES, "id", "length")
 WORD = 32  # largest width of a field in bits
-MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # largest number of bytes that a field can be in
-DATA = "data"
-# Keys that only fields of some roles can have.
-ONLY_WITH = {
+# The runtimes store the last sequence number in 32 bits, and need a value for "none yet".
+MOST_SEQUENCE_BITS = 31
+# Key that only fields of some roles can have -> these roles.
+ROLES_OF_KEY = {
     "counts": ("length",),
     "plus": ("length",),
     "unit": ("length", "response_length"),
@@ -51,35 +56,35 @@ FRAMED_ONLY = ("line", "header", "trailer")
 WITH_FRAMING_OR_BUSES = ("packets", "commands", "requests")
 # Keys of `link` that framed links do not have.
 WITHOUT_FRAMING_ONLY = ("ids", "buses")
-BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
 class LinkPacket(NamedTuple):
-    """Packet format of a link. ``title`` names it in a sentence; it is empty for the
-    only one of a link.
+    """Packet format of a link.
+
+    ``of_packet`` names it at the end of a phrase: " of the packet `Data`". It is empty
+    if the link has one format only, which has no name.
     """
 
-    packet: Packet
-    title: str
-    rows: list[tuple[str, Map]]  # header or trailer, and a field, in order
+    declared: Packet
+    of_packet: str
+    fields_by_part: list[tuple[str, Map]]  # ("header" or "trailer", field), in order
 
-    def fields_of_roles(self, *roles: str) -> list[Map]:
-        """Return the fields of these roles."""
-        return [row for _, row in self.rows if row.get("role") in roles]
+    def fields_with_roles(self, *roles: str) -> list[Map]:
+        """Return the fields that have one of these roles."""
+        return [field for _, field in self.fields_by_part if field.get("role") in roles]
 
     @property
     def overhead(self) -> int:
-        """Return the bytes of header and trailer."""
-        overhead = 0
-        for part in PARTS:
-            ends = (row["at"] + row["bits"] for of, row in self.rows if of == part)
-            # Round up to whole bytes.
-            overhead += -(-max(ends, default=0) // 8)
-        return overhead
+        """Return the number of bytes of header and trailer."""
+        ends = {"header": 0, "trailer": 0}  # in bits
+        for part, field in self.fields_by_part:
+            ends[part] = max(ends[part], field["at"] + field["bits"])
+        # Each is padded to whole bytes.
+        return sum((end + 7) // 8 for end in ends.values())
 
 
 class DeclaredLink(NamedTuple):
-    """Framing of the link of a node."""
+    """Section `link` of a node, with its packet formats."""
 
     node: Node
     section: Map
@@ -87,14 +92,17 @@ class DeclaredLink(NamedTuple):
     packets: list[LinkPacket]
 
     @property
-    def rows(self) -> Iterator[tuple[str, Map]]:
-        """Yield header or trailer, and each field, once: packets can share fields."""
+    def fields_by_part(self) -> Iterator[tuple[str, Map]]:
+        """Yield each field with its part ("header" or "trailer").
+
+        A field that several packets share is yielded once.
+        """
         seen: set[int] = set()
         for packet in self.packets:
-            for part, row in packet.rows:
-                if id(row) not in seen:
-                    seen.add(id(row))
-                    yield part, row
+            for part, field in packet.fields_by_part:
+                if id(field) not in seen:
+                    seen.add(id(field))
+                    yield part, field
 
     @property
     def checksums(self) -> Map:
@@ -104,82 +112,116 @@ class DeclaredLink(NamedTuple):
 
     @property
     def framing(self) -> object:
-        """Return how bytes become packets."""
+        """Return how a receiver finds the packets in a stream of bytes: `framing: by`."""
         return at_path(self.section, ("framing", "by"))
 
     def place(self, packet: LinkPacket) -> tuple[Map, str]:
-        """Return mapping and key that describe a packet as a whole."""
-        if packet.title:
-            return self.section["packets"][packet.packet.name], "from"
+        """Return the mapping and the key at which a fault of a whole packet is shown."""
+        if packet.of_packet:
+            return self.section["packets"][packet.declared.name], "from"
         return self.section, "framing"
 
 
-def links(ctx: Context) -> Iterator[DeclaredLink]:
-    """Yield the framed links of the nodes that declare a valid one themselves."""
-    return (link for link in all_links(ctx) if "framing" in link.section)
+def framed_links(ctx: Context) -> Iterator[DeclaredLink]:
+    """Yield the links of the nodes that declare a valid `link` with `framing`
+    themselves, not in an included file.
+    """
+    return (link for link in declared_links(ctx) if "framing" in link.section)
 
 
-def links_on_buses(ctx: Context) -> Iterator[DeclaredLink]:
-    """Yield the other links of the nodes that declare a valid `link` themselves."""
-    for link in all_links(ctx):
+def bus_links(ctx: Context) -> Iterator[DeclaredLink]:
+    """Yield the links of the nodes that declare a valid `link` themselves and for which
+    no framing is in effect, not even that of an included file.
+    """
+    for link in declared_links(ctx):
         if not framed_link(ctx.protocol_of(link.node)):
             yield link
 
 
 @cached_by_owner
-def all_links(ctx: Context) -> tuple[DeclaredLink, ...]:
+def declared_links(ctx: Context) -> tuple[DeclaredLink, ...]:
     """Return the links of the nodes that declare a valid `link` themselves."""
-    return tuple(_links(ctx))
-
-
-def _links(ctx: Context) -> Iterator[DeclaredLink]:
+    links = []
     for node in ctx.icd.nodes:
         section = section_of(node, "link")
         if section is None:
             continue
-        telecommands = [message for _, message in ids_of(ctx, node, TELECOMMAND)]
+        telecommands = [each for _, each in messages_with_ids(ctx, node, TELECOMMAND)]
         declared = declared_packets(section, telecommands)
         packets = []
         for packet in declared.all:
-            title = f" of the packet {quote(packet.name)}" if packet.name else ""
-            rows = [("header", row) for row in mappings(packet.header)]
-            rows += [("trailer", row) for row in mappings(packet.trailer)]
-            packets.append(LinkPacket(packet, title, rows))
-        # Otherwise the schema check reports the fields.
-        if all(_is_sound(row) for packet in packets for _, row in packet.rows):
-            yield DeclaredLink(node, section, declared, packets)
+            of_packet = f" of the packet {quote(packet.name)}" if packet.name else ""
+            fields = [("header", field) for field in mappings(packet.header)]
+            fields += [("trailer", field) for field in mappings(packet.trailer)]
+            packets.append(LinkPacket(packet, of_packet, fields))
+        if all(
+            _has_usable_types(field)
+            for packet in packets
+            for _, field in packet.fields_by_part
+        ):
+            links.append(DeclaredLink(node, section, declared, packets))
+    return tuple(links)
 
 
-def _is_sound(row: Map) -> bool:
-    """Return whether the values of a field that these rules use conform to the schema."""
-    numbers: list[Any] = [row.get("at"), row.get("bits")]
-    numbers += [row.get("unit", 1), row.get("plus", 0)]
-    if (
-        not all(type(number) is int for number in numbers)
-        or numbers[0] < 0
-        or not 0 < numbers[1] <= WORD
-        or numbers[2] < 1
-    ):
+def _has_usable_types(field: Map) -> bool:
+    """Return whether these rules can compute with the values of a field.
+
+    Otherwise the schema check reports the field, and the rules leave out its link.
+    """
+    numbers: list[Any] = [field.get("at"), field.get("bits")]
+    numbers += [field.get("unit", 1), field.get("plus", 0)]
+    # Not `isinstance`, because `true` is an `int` in Python.
+    if not all(type(number) is int for number in numbers):
         return False
-    texts = [
-        row.get("role"),
-        *(row.get(key, "") for key in ("checksum", "name", "enum")),
-    ]
-    value = row.get("value", 0)
+    at, bits, unit, _ = numbers
+    if at < 0 or not 0 < bits <= WORD or unit < 1:
+        return False
+    texts = [field.get("role")]
+    texts += [field.get(key, "") for key in ("checksum", "name", "enum")]
+    value = field.get("value", 0)
     values = [*value.values()] if isinstance(value, Map) else [value]
-    return all(isinstance(text, str) for text in texts) and all(map(_is_value, values))
+    return all(isinstance(text, str) for text in texts) and all(
+        _is_number_or_bytes(each) for each in values
+    )
 
 
-def _is_value(value: object) -> bool:
-    """Return whether a value is a number, or bytes."""
+def _is_number_or_bytes(value: object) -> bool:
     if isinstance(value, Seq | list):
         return all(type(byte) is int and 0 <= byte <= 0xFF for byte in value)
     return type(value) is int
 
 
+def has_one_length(message: Message) -> bool:
+    """Return whether a message is always sent with the same number of bytes."""
+    return message.layout.shortest == message.length and not message.may_end_early
+
+
+def messages_with_ids(
+    ctx: Context, node: Node, direction: str
+) -> list[tuple[int, Message]]:
+    """Return (id, message) for each message of a node in a direction."""
+    pairs = [
+        (getattr(message, f"{direction}_id"), message)
+        for message in ctx.messages_of(node)
+    ]
+    return [(id, message) for id, message in pairs if id is not None]
+
+
+def messages_in_packet(
+    ctx: Context, link: DeclaredLink, packet: Packet, direction: str
+) -> list[tuple[int, Message]]:
+    """Return (id, message) for each message that is sent in a packet in a direction."""
+    return [
+        (id, message)
+        for id, message in messages_with_ids(ctx, link.node, direction)
+        if packet in link.declared.packets_of_message(message.name, direction)
+    ]
+
+
 @rule("ICD170")
 def links_are_described_once(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    """Report keys that have no effect with `framing`, and keys that need it."""
+    for link in framed_links(ctx):
         protocol = link.node.source["protocol"]
         for key in protocol:
             if key not in ALLOWED_WITH_LINK:
@@ -200,10 +242,11 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at_key(client, key, message, "remove it")
     for node in ctx.icd.nodes:
         section = section_of(node, "link") or unread()
-        keys: tuple[str, ...] = FRAMED_ONLY
-        if framed_link(ctx.protocol_of(node)):  # of an included file
-            keys += WITH_FRAMING_OR_BUSES
-        key = next((key for key in section if key in keys), None)
+        framed_keys: tuple[str, ...] = FRAMED_ONLY
+        # An included file can have the framing. Its packets are declared there as well.
+        if framed_link(ctx.protocol_of(node)):
+            framed_keys += WITH_FRAMING_OR_BUSES
+        key = next((key for key in section if key in framed_keys), None)
         if key is not None and "framing" not in section:
             message = f"`{key}` belongs to a framed link, and `framing` is missing"
             help = "add `framing: {by: ...}`, how bytes become packets"
@@ -212,469 +255,192 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD171")
 def roles_are_complete(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
-        reported: set[int] = set()
+    """Report roles that occur twice, that are missing, or whose fields have the wrong
+    keys.
+    """
+    for link in framed_links(ctx):
+        yield from _check_repeated_roles(link)
+        for _, field in link.fields_by_part:
+            yield from _check_keys_of_role(field)
         for packet in link.packets:
-            seen: set[str] = set()
-            for _, row in packet.rows:
-                role = row["role"]
-                is_twice = role in seen and role not in (*FIXED, "id", "length")
-                if is_twice and id(row) not in reported:
-                    reported.add(id(row))
-                    message = f"there are two fields of the role `{role}`{packet.title}"
-                    help = "give one of them its own role, or make it a `constant`"
-                    yield Fault.at(row, "role", message, help)
-                seen.add(role)
-        for _, row in link.rows:
-            role = row["role"]
-            if role in FIXED and "value" not in row:
-                yield Fault.at(
-                    row,
-                    "role",
-                    f"a `{role}` has no `value`",
-                    "add `value:`, what it always is",
-                )
-            if role in DERIVED and "value" in row:
-                message = f"the {role} follows from the message, so it has no `value`"
-                yield Fault.at_key(
-                    row,
-                    "value",
-                    message,
-                    "remove `value`, or make the field a `constant`",
-                )
-            for key, owners in ONLY_WITH.items():
-                if key in row and role not in owners:
-                    owner = " or ".join(f"`{each}`" for each in owners)
-                    message = f"`{key}` applies to a field of the role {owner}, not of a `{role}`"
-                    yield Fault.at_key(
-                        row, key, message, "remove it, or correct `role`"
-                    )
-        yield from _missing(ctx, link)
+            yield from _check_missing_roles(ctx, link, packet)
 
 
-def _missing(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
-    """Yield the faults of roles that a packet needs and no field has."""
-    is_delimited = link.framing != "length"
+def _check_repeated_roles(link: DeclaredLink) -> Iterator[Fault]:
+    reported: set[int] = set()  # fields: packets can share them
     for packet in link.packets:
-        place = link.place(packet)
-        lengths = packet.fields_of_roles("length")
-        is_answering = packet.packet.name == link.declared.answering
-        parts = {part for part, row in packet.rows if row["role"] == "length"}
-        for _, row in packet.rows:
-            if row["role"] == "length" and parts == {"trailer"} and not is_delimited:
-                message = "the length that delimits messages is after their data"
-                yield Fault.at(row, "role", message, "move it to `header`")
-        carried = {
-            direction: carried_in(ctx, link, packet.packet, direction)
-            for direction in packet.packet.directions
-        }
-        for direction, messages in carried.items():
-            is_many = len({id for id, _ in messages}) > 1
-            if is_many and not packet.fields_of_roles("id") and not is_answering:
-                message = f"no field{packet.title} has the role `id`, and there are several messages in one direction ({direction})"
-                help = "add one: the link has no other way to distinguish them"
-                yield Fault.at(*place, message, help)
-                break
-        if lengths or is_delimited:
-            continue
-        everything = [each for rows in carried.values() for _, each in rows]
-        varying = next((each for each in everything if not has_one_length(each)), None)
-        if is_answering and varying is None:
-            # No id says which of them it is.
-            lengths_of = {each.length for each in everything}
-            if len(lengths_of) > 1:
-                sizes = listing(f"{size}" for size in sorted(lengths_of))
-                message = f"no field{packet.title} has the role `length`, and the telemetry in it has {sizes} bytes"
-                help = "add one, or choose another `framing`"
-                yield Fault.at(*place, message, help)
-        if varying is not None:
-            message = f"no field{packet.title} has the role `length`, and {quote(varying.name)} has no fixed length"
-            help = "add one, or choose another `framing`"
-            yield Fault.at(*place, message, help)
+        seen: set[str] = set()
+        for _, field in packet.fields_by_part:
+            role = field["role"]
+            is_twice = role in seen and role not in REPEATED_ROLES
+            if is_twice and id(field) not in reported:
+                reported.add(id(field))
+                message = f"there are two fields of the role `{role}`{packet.of_packet}"
+                help = "give one of them its own role, or make it a `constant`"
+                yield Fault.at(field, "role", message, help)
+            seen.add(role)
 
 
-def has_one_length(message: Message) -> bool:
-    """Return whether a message is always sent with the same number of bytes."""
-    return message.layout.shortest == message.length and not message.may_end_early
+def _check_keys_of_role(field: Map) -> Iterator[Fault]:
+    role = field["role"]
+    if role in CONSTANT_ROLES and "value" not in field:
+        message = f"a `{role}` has no `value`"
+        yield Fault.at(field, "role", message, "add `value:`, what it always is")
+    if role in COMPUTED_ROLES and "value" in field:
+        message = f"the {role} follows from the message, so it has no `value`"
+        help = "remove `value`, or make the field a `constant`"
+        yield Fault.at_key(field, "value", message, help)
+    for key, roles in ROLES_OF_KEY.items():
+        if key in field and role not in roles:
+            owner = " or ".join(f"`{each}`" for each in roles)
+            message = (
+                f"`{key}` applies to a field of the role {owner}, not of a `{role}`"
+            )
+            yield Fault.at_key(field, key, message, "remove it, or correct `role`")
 
 
-def ids_of(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
-    """Return the messages of a node in a direction, with their ids."""
-    messages = [
-        (getattr(message, f"{direction}_id"), message)
-        for message in ctx.messages_of(node)
+def _check_missing_roles(
+    ctx: Context, link: DeclaredLink, packet: LinkPacket
+) -> Iterator[Fault]:
+    """Report that a packet lacks an id or a length that its receiver needs."""
+    place, of_packet = link.place(packet), packet.of_packet
+    # With another framing than `length`, special bytes delimit the packets.
+    is_delimited = link.framing != "length"
+    is_answering = packet.declared.name == link.declared.answering
+    length_parts = [
+        part for part, field in packet.fields_by_part if field["role"] == "length"
     ]
-    return [(id, message) for id, message in messages if id is not None]
-
-
-def carried_in(
-    ctx: Context, link: DeclaredLink, packet: Packet, direction: str
-) -> list[tuple[int, Message]]:
-    """Return the messages that are sent in a packet, with their ids."""
-    return [
-        (id, message)
-        for id, message in ids_of(ctx, link.node, direction)
-        if packet in link.declared.packets_of_message(message.name, direction)
-    ]
+    lengths = packet.fields_with_roles("length")
+    if lengths and "header" not in length_parts and not is_delimited:
+        message = "the length that delimits messages is after their data"
+        for field in lengths:
+            yield Fault.at(field, "role", message, "move it to `header`")
+    carried: list[Message] = []
+    needs_id = ""  # first direction with several messages
+    for direction in packet.declared.directions:
+        pairs = messages_in_packet(ctx, link, packet.declared, direction)
+        carried += [message for _, message in pairs]
+        if len({id for id, _ in pairs}) > 1:
+            needs_id = needs_id or direction
+    # The request shows which message is in an answering packet.
+    if needs_id and not packet.fields_with_roles("id") and not is_answering:
+        message = f"no field{of_packet} has the role `id`, and there are several messages in one direction ({needs_id})"
+        help = "add one: the link has no other way to distinguish them"
+        yield Fault.at(*place, message, help)
+    if lengths or is_delimited:
+        return
+    varying = next((each for each in carried if not has_one_length(each)), None)
+    sizes = sorted({message.length for message in carried})
+    if varying is not None:
+        message = f"no field{of_packet} has the role `length`, and {quote(varying.name)} has no fixed length"
+    elif is_answering and len(sizes) > 1:
+        # Without an id, the receiver of the bytes cannot look up the length.
+        texts = listing(f"{size}" for size in sizes)
+        message = f"no field{of_packet} has the role `length`, and the telemetry in it has {texts} bytes"
+    else:
+        return
+    yield Fault.at(*place, message, "add one, or choose another `framing`")
 
 
 @rule("ICD172")
 def frame_fields_fit(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
-        yield from _places(link)
-        yield from _values(link)
-        yield from _contents(ctx, link)
+    """Report fields that cannot represent their values, or that no client can read."""
+    for link in framed_links(ctx):
+        for _, field in link.fields_by_part:
+            yield from _check_position(link, field)
+        for _, field in link.fields_by_part:
+            yield from _check_given_values(field)
+        for packet in link.packets:
+            yield from _check_computed_values(ctx, link, packet)
+        for _, field in link.fields_by_part:
+            if field["role"] == "sequence" and field["bits"] > MOST_SEQUENCE_BITS:
+                text = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
+                help = "make it narrower, and the rest a `constant`"
+                yield Fault.at(field, "bits", text, help)
 
 
-def _places(link: DeclaredLink) -> Iterator[Fault]:
-    """Yield the faults of fields that are in too many bytes, or not contiguous.
+def _check_position(link: DeclaredLink, field: Map) -> Iterator[Fault]:
+    """Report a field that is in too many bytes, or not contiguous.
 
     ICD092 reports overlaps.
     """
-    for _, row in link.rows:
-        bits = range(row["at"], row["at"] + row["bits"])
-        size = bits[-1] // 8 - bits[0] // 8 + 1
-        if size > MOST_SPAN:
-            message = (
-                f"the {row['role']} spans {count(size, 'byte')}, more than {MOST_SPAN}"
-            )
-            yield Fault.at(
-                row, "bits", message, "make it narrower, or begin it at a whole byte"
-            )
-        # A field across bytes is contiguous only if the byte order continues the bit
-        # order: big with msb0, little with lsb0.
-        order = row.get("byte_order", link.node.byte_order)
-        if (
-            size > 1
-            and row["bits"] % 8 + row["at"] % 8
-            and (order == "big") != (link.node.bit_order == "msb0")
-        ):
-            message = f"the {row['role']} crosses bytes in {order} order, though bits are {link.node.bit_order}"
-            yield Fault.at(
-                row,
-                "at",
-                message,
-                "use whole bytes: only these can have a byte order that differs from the bit order",
-            )
+    at, bits, role = field["at"], field["bits"], field["role"]
+    size = (at + bits - 1) // 8 - at // 8 + 1
+    if size > MOST_SPAN:
+        message = f"the {role} spans {count(size, 'byte')}, more than {MOST_SPAN}"
+        help = "make it narrower, or begin it at a whole byte"
+        yield Fault.at(field, "bits", message, help)
+    # A field across bytes is contiguous only if the byte order continues the bit
+    # order: big with msb0, little with lsb0.
+    order = field.get("byte_order", link.node.byte_order)
+    is_whole_bytes = bits % 8 == 0 and at % 8 == 0
+    is_contiguous = (order == "big") == (link.node.bit_order == "msb0")
+    if size > 1 and not is_whole_bytes and not is_contiguous:
+        message = f"the {role} crosses bytes in {order} order, though bits are {link.node.bit_order}"
+        help = "use whole bytes: only these can have a byte order that differs from the bit order"
+        yield Fault.at(field, "at", message, help)
 
 
-def _values(link: DeclaredLink) -> Iterator[Fault]:
-    """Yield the faults of constant values that do not have the width of their field."""
-    for _, row in link.rows:
-        values = row.get("value")
-        for value in values.values() if isinstance(values, Map) else [values]:
-            if isinstance(value, Seq | list) and len(value) * 8 != row["bits"]:
-                text = f"{count(len(value), 'byte')} are given for {count(row['bits'], 'bit')}"
-                yield Fault.at(row, "value", text, "correct `bits` or `value`")
-            elif isinstance(value, int) and value >> row["bits"] > 0:
-                text = f"{value} does not fit {count(row['bits'], 'bit')}"
-                yield Fault.at(row, "value", text, "correct `bits` or `value`")
+def _check_given_values(field: Map) -> Iterator[Fault]:
+    """Report a `value` that does not fit its field."""
+    value, bits = field.get("value"), field["bits"]
+    # A mapping has a value for each direction.
+    for each in value.values() if isinstance(value, Map) else [value]:
+        if isinstance(each, Seq | list) and len(each) * 8 != bits:
+            text = f"{count(len(each), 'byte')} are given for {count(bits, 'bit')}"
+        elif isinstance(each, int) and each >> bits > 0:
+            text = f"{each} does not fit {count(bits, 'bit')}"
+        else:
+            continue
+        yield Fault.at(field, "value", text, "correct `bits` or `value`")
 
 
-def _contents(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
-    """Yield the faults of fields that are too narrow for the ids and lengths of the
-    messages.
-    """
-    for packet in link.packets:
-        messages: list[tuple[int, Message]] = []
-        for direction in packet.packet.directions:
-            messages += carried_in(ctx, link, packet.packet, direction)
-        parts = packet.fields_of_roles("id")
-        bits = sum(row["bits"] for row in parts)
-        id, message = max(messages, key=lambda pair: pair[0], default=(0, None))
-        if message is not None and parts and id >> bits:
-            text = f"an id of {count(bits, 'bit')} cannot represent 0x{id:X}, that of {quote(message.name)}"
-            help = "make the field wider, or correct the id"
-            yield Fault.at(parts[0], "bits", text, help)
-        overhead = packet.overhead
-        empty = next((each for _, each in messages if each.layout.shortest == 0), None)
-        if empty is not None and overhead == 0:
-            text = f"no byte is sent for {quote(empty.name)}, which can have no data"
-            help = "add a field to `header`, such as an id"
-            yield Fault.at(*link.place(packet), text, help)
-        for row in packet.fields_of_roles("length"):
-            yield from _lengths(row, messages, overhead)
-    for _, row in link.rows:
-        if row["role"] == "sequence" and row["bits"] > MOST_SEQUENCE_BITS:
-            text = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
-            yield Fault.at(
-                row, "bits", text, "make it narrower, and the rest a `constant`"
-            )
-
-
-def _lengths(
-    row: Map, messages: list[tuple[int, Message]], overhead: int
+def _check_computed_values(
+    ctx: Context, link: DeclaredLink, packet: LinkPacket
 ) -> Iterator[Fault]:
-    """Yield the faults of a length field that cannot represent the length of a message."""
-    around = overhead if row.get("counts") == "message" else 0
-    unit, plus = row.get("unit", 1), row.get("plus", 0)
-    for _, message in messages:
-        shortest, longest = (
-            (size + around) // unit + plus
-            for size in (message.layout.shortest, message.length)
-        )
-        if longest >= 1 << row["bits"]:
-            text = f"a length of {count(row['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
+    """Report ids and lengths that do not fit their fields, and messages that would send
+    no byte.
+    """
+    pairs: list[tuple[int, Message]] = []
+    for direction in packet.declared.directions:
+        pairs += messages_in_packet(ctx, link, packet.declared, direction)
+    id_fields = packet.fields_with_roles("id")
+    bits = sum(field["bits"] for field in id_fields)
+    id, message = max(pairs, key=lambda pair: pair[0], default=(0, None))
+    if message is not None and id_fields and id >> bits:
+        text = f"an id of {count(bits, 'bit')} cannot represent 0x{id:X}, that of {quote(message.name)}"
+        help = "make the field wider, or correct the id"
+        yield Fault.at(id_fields[0], "bits", text, help)
+    messages = [message for _, message in pairs]
+    empty = next((each for each in messages if each.layout.shortest == 0), None)
+    if empty is not None and packet.overhead == 0:
+        text = f"no byte is sent for {quote(empty.name)}, which can have no data"
+        help = "add a field to `header`, such as an id"
+        yield Fault.at(*link.place(packet), text, help)
+    for field in packet.fields_with_roles("length"):
+        yield from _check_length_field(field, messages, packet.overhead)
+
+
+def _check_length_field(
+    field: Map, messages: list[Message], overhead: int
+) -> Iterator[Fault]:
+    """Report the first message whose length does not fit a length field.
+
+    The field has the bytes of the data, or of the whole packet (`counts: message`),
+    divided by `unit`, and increased by `plus`.
+    """
+    around = overhead if field.get("counts") == "message" else 0
+    unit, plus = field.get("unit", 1), field.get("plus", 0)
+    for message in messages:
+        shortest = (message.layout.shortest + around) // unit + plus
+        longest = (message.length + around) // unit + plus
+        if longest >= 1 << field["bits"]:
+            text = f"a length of {count(field['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
             help = "make the field wider, or the message shorter"
-            yield Fault.at(row, "bits", text, help)
-            break
+            yield Fault.at(field, "bits", text, help)
+            return
         if shortest < 0:
             text = f"the length of {quote(message.name)} would be {shortest}"
             help = "correct `plus`, or let the message have more bytes"
-            yield Fault.at(row, "plus", text, help)
-            break
-
-
-@rule("ICD173")
-def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
-    for link in all_links(ctx):
-        checksums = link.checksums
-        # Without places: it is a copy if several nodes have checksums.
-        names = ctx.fact(link.node, "link", "checksums")
-        names = names if isinstance(names, Mapping) else {}
-        for packet, part, row in _checksum_fields(link):
-            name = row.get("checksum", "")
-            declared = checksums.get(name)
-            if name not in names:
-                message = (
-                    f"no checksum is called {quote(name)}"
-                    if name
-                    else "the field names no checksum"
-                )
-                existing = "there are none"
-                if names:
-                    existing = listing(f"`{key}`" for key in names)
-                yield Fault.at(
-                    row,
-                    "role",
-                    message,
-                    f"name one of `checksums` in `checksum:`: {existing}",
-                )
-            elif isinstance(declared, Map) and _is_valid(declared):
-                yield from _field_of(row, declared)
-                if "framing" in link.section:
-                    yield from _covered(packet, part, row, row.get("covers"))
-        for name, declared in checksums.items():
-            if _is_valid(declared):
-                yield from _checksum(ctx, link, declared)
-            if ctx.complete and name not in _used_checksums(ctx, link.node):
-                message = f"no field of a packet has the checksum {quote(name)}"
-                help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
-                yield Fault.at_key(checksums, name, message, help)
-
-
-def _used_checksums(ctx: Context, node: Node) -> set[str]:
-    """Return the names of the checksums in packets and procedures of a node, and of the
-    nodes that include it.
-    """
-    used: set[str] = set()
-    for user in ctx.users(node):
-        protocol = ctx.protocol_of(user)
-        used.update(_checksums_in_steps(protocol.get("procedures")))
-        link = protocol.get("link")
-        for packet in declared_packets(link).all if isinstance(link, Mapping) else ():
-            used.update(
-                str(row.get("checksum")) for row in packet.fields_of_role("checksum")
-            )
-    return used
-
-
-def _checksums_in_steps(procedures: object) -> Iterator[str]:
-    """Yield the names of the checksums that steps of procedures compare."""
-    for procedure in procedures.values() if isinstance(procedures, Mapping) else ():
-        for step in nested_steps(at_path(procedure, ["steps"])):
-            if isinstance(name := at_path(step, ("verify", "checksum")), str):
-                yield name
-
-
-def _checksum_fields(link: DeclaredLink) -> Iterator[tuple[LinkPacket, str, Map]]:
-    """Yield each checksum field, the part in which it is, and the first packet with
-    it.
-    """
-    seen: set[int] = set()
-    for packet in link.packets:
-        for part, row in packet.rows:
-            if row["role"] == "checksum" and id(row) not in seen:
-                seen.add(id(row))
-                yield packet, part, row
-
-
-def _is_valid(checksum: object) -> bool:
-    """Return whether the values of a checksum that these rules use conform to the
-    schema.
-    """
-    if (
-        not isinstance(checksum, Map)
-        or type(checksum.get("width")) is not int
-        or not 0 < checksum["width"] <= 32
-    ):
-        return False
-    return isinstance(checksum.get("kind"), str)
-
-
-def _field_of(row: Map, checksum: Map) -> Iterator[Fault]:
-    """Yield the fault of a checksum that is sent in a field of another width."""
-    width: int = checksum["width"]
-    required = BITS_OF.get(checksum["kind"])
-    if (not required or width == required) and width != row["bits"]:
-        yield Fault.at(
-            row,
-            "bits",
-            f"the checksum has {width} bits, its field {row['bits']}",
-            f"correct `bits` of the field, or `width` ({line_of(checksum.at('width'), row.at('bits'))})",
-        )
-
-
-def _checksum(ctx: Context, link: DeclaredLink, checksum: Map) -> Iterator[Fault]:
-    """Yield the faults of the parameters of a checksum."""
-    width: int = checksum["width"]
-    required = BITS_OF.get(checksum["kind"])
-    if required and width != required:
-        message = (
-            f"a checksum of kind `{checksum['kind']}` has {required} bits, not {width}"
-        )
-        yield Fault.at(
-            checksum,
-            "width",
-            message,
-            f"write `width: {required}`, or correct `kind`",
-            str(required),
-        )
-        width = required  # the values below are checked against the right width
-    for key in ("polynomial", "init", "xor_out", "empty", "check"):
-        if isinstance(checksum.get(key), int) and checksum[key] >> width > 0:
-            yield Fault.at(
-                checksum,
-                key,
-                f"`{key}` does not fit {count(width, 'bit')}",
-                *of_wide_value(key, checksum[key], width),
-            )
-    if checksum["kind"] != "crc":
-        for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
-            if key in checksum:
-                message = f"`{key}` applies to a CRC, not to a checksum of kind `{checksum['kind']}`"
-                yield Fault.at_key(
-                    checksum, key, message, "remove it, or correct `kind`"
-                )
-    yield from _seeds(ctx, link, checksum)
-
-
-def _covered(
-    packet: LinkPacket, part: str, row: Map, covers: object
-) -> Iterator[Fault]:
-    """Yield the faults of `covers`, which must include the data but not the checksum
-    itself.
-    """
-    if not isinstance(covers, Map):
-        message = "nothing says what the checksum covers"
-        help = "add `covers: {from: ..., to: ...}`"
-        yield Fault.at(row, "checksum", message, help)
-        return
-    if not all(isinstance(covers.get(key), str) for key in ("from", "to")):
-        return  # the schema check reports it
-    bounds: dict[str, Map | None] = {}
-    for key, where in (("from", "header"), ("to", "trailer")):
-        role = covers[key]
-        matches = [
-            (part_of_row, field)
-            for part_of_row, field in packet.rows
-            if role in (field.get("name"), field["role"])
-        ]
-        if role != DATA and not matches:
-            message = f"no field{packet.title} has the role or name `{role}`"
-            help = "name the role of a field of the frame, or `data`"
-            yield Fault.at(covers, key, message, help)
+            yield Fault.at(field, "plus", text, help)
             return
-        if role != DATA and matches[0][0] != where:
-            message = f"a checksum covers the data, but `{key}: {role}` names a field of the {matches[0][0]}"
-            help = "`from` names a field of the header or `data`, `to` one of the trailer or `data`"
-            yield Fault.at(covers, key, message, help)
-            return
-        if role == DATA:
-            bounds[key] = None
-        else:
-            # Of several fields of a role, all are covered.
-            _, bounds[key] = matches[0] if key == "from" else matches[-1]
-    first, last = bounds["from"], bounds["to"]
-    begin = first["at"] if first else None
-    end = last["at"] + last["bits"] if last else 0
-    if begin is not None and begin % 8:
-        yield Fault.at(
-            covers,
-            "from",
-            "it begins within a byte",
-            "begin with a field at a whole byte",
-        )
-    # A checksum in the header must come before the first covered byte, one in the
-    # trailer after the last.
-    inside = (
-        part == "header"
-        and begin is not None
-        and row["at"] + row["bits"] > begin // 8 * 8
-    )
-    if inside or (part == "trailer" and row["at"] // 8 < -(-end // 8)):
-        message = "the checksum covers itself"
-        help = (
-            "correct `covers`, so that it ends before the checksum or begins after it"
-        )
-        yield Fault.at(covers, "from" if inside else "to", message, help)
-
-
-def _seeds(ctx: Context, link: DeclaredLink, checksum: Map) -> Iterator[Fault]:
-    """Yield the faults of `seeds`, the start value of a checksum for each message."""
-    seeds = checksum.get("seeds")
-    if not isinstance(seeds, Map):
-        return
-    names = [message.name for message in ctx.messages_of(link.node)]
-    broken = ctx.broken_messages(link.node)
-    for name in seeds:
-        if name not in names and name not in broken:
-            help = suggestion(name, names, "correct the name")
-            yield Fault.at_key(seeds, name, f"there is no message {quote(name)}", *help)
-    without_seed = [name for name in names if name not in seeds]
-    if without_seed:
-        message = f"{quote(without_seed[0])} has no seed" + (
-            f", nor have {len(without_seed) - 1} others" if without_seed[1:] else ""
-        )
-        yield Fault.at_key(
-            checksum, "seeds", message, "give every message a seed, or remove `seeds`"
-        )
-
-
-@rule("ICD174")
-def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
-    """Report messages that share an id and differ in seed or `may_end_early`.
-
-    A receiver can distinguish them only by their data, after it has checked and removed
-    the framing.
-    """
-    for link in links(ctx):
-        all_seeds = [at_path(each, ["seeds"]) for each in link.checksums.values()]
-        for direction in DIRECTIONS:
-            first_of_id: dict[int, Message] = {}
-            for id, message in ids_of(ctx, link.node, direction):
-                first = first_of_id.setdefault(id, message)
-                if bool(message.may_end_early) != bool(first.may_end_early):
-                    early = message if message.may_end_early else first
-                    text = f"zeros of {quote(early.name)} may be omitted, but not the zeros of another message with its id"
-                    yield Fault.at(
-                        early.source,
-                        "may_end_early",
-                        text,
-                        "add `may_end_early` to both, or to neither",
-                    )
-                for seeds in all_seeds:
-                    if (
-                        not isinstance(seeds, Map)
-                        or not {message.name, first.name} <= seeds.keys()
-                    ):
-                        continue
-                    if seeds[message.name] != seeds[first.name]:
-                        names = f"{quote(message.name)} has a seed different from that of {quote(first.name)}"
-                        text = f"{names}, which has the same id"
-                        yield Fault.at(
-                            seeds,
-                            message.name,
-                            text,
-                            "give both the same seed, or other ids",
-                        )

@@ -13,14 +13,14 @@ from icdgen.icd.pieces import bits_of
 from icdgen.icd.responses import declared_responses
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.framed_links import (
+    CONSTANT_ROLES,
     DIRECTIONS,
-    FIXED,
     DeclaredLink,
     LinkPacket,
-    carried_in,
+    framed_links,
     has_one_length,
-    ids_of,
-    links,
+    messages_in_packet,
+    messages_with_ids,
 )
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
@@ -30,13 +30,13 @@ from icdgen.wording import count, quote
 
 @rule("ICD184")
 def messages_have_one_packet(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         packets = link.section.get("packets")
         if not isinstance(packets, Map):
             continue
         yield from _lists(ctx, link, packets)
         for direction in DIRECTIONS:
-            for _, message in ids_of(ctx, link.node, direction):
+            for _, message in messages_with_ids(ctx, link.node, direction):
                 yield from _packet_of(link, message, direction)
 
 
@@ -53,7 +53,7 @@ def _lists(ctx: Context, link: DeclaredLink, packets: Map) -> Iterator[Fault]:
         names = section.get("messages")
         sent: set[str] = set()
         for direction in packet.directions:
-            messages = ids_of(ctx, link.node, direction)
+            messages = messages_with_ids(ctx, link.node, direction)
             sent.update(message.name for _, message in messages)
         for name, place in names.placed() if isinstance(names, Seq) else ():
             if not isinstance(name, str) or name in broken:
@@ -88,16 +88,16 @@ def _packet_of(link: DeclaredLink, message: Message, direction: str) -> Iterator
 
 @rule("ICD185")
 def packets_can_be_distinguished(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         for direction in DIRECTIONS:
             packets = [
                 packet
                 for packet in link.packets
-                if direction in packet.packet.directions
+                if direction in packet.declared.directions
             ]
             for first, second in combinations(packets, 2):
                 if _precedes(link, first, second, direction):
-                    name, other = first.packet.name, second.packet.name
+                    name, other = first.declared.name, second.declared.name
                     text = f"{quote(other)} is received as {quote(name)}, which precedes it and has no other constants"
                     help = f"give them different constants in the header, or move {quote(other)} in front if its constants are more"
                     yield Fault.at(*link.place(second), text, help)
@@ -122,8 +122,8 @@ def _constant_bits(
 ) -> dict[int, int]:
     """Return the constant bits of a header, by their place in it."""
     bits: dict[int, int] = {}
-    for part, row in packet.rows:
-        if part != "header" or row["role"] not in FIXED:
+    for part, row in packet.fields_by_part:
+        if part != "header" or row["role"] not in CONSTANT_ROLES:
             continue
         order = row.get("byte_order", link.node.byte_order)
         value = value_of(row, direction, order == "little")
@@ -134,9 +134,9 @@ def _constant_bits(
 
 @rule("ICD186")
 def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         requests = link.section.get("requests")
-        telemetry = ids_of(ctx, link.node, TELEMETRY)
+        telemetry = messages_with_ids(ctx, link.node, TELEMETRY)
         if not isinstance(requests, Map):
             for _, message in telemetry:
                 if "requested" in message.source:
@@ -169,7 +169,7 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
             text = "the packet has no field with the role `id`, so a request could not say what it requests"
             yield Fault.at_key(owner, key, text, "add one, or name another packet")
         elif "response" not in requests:  # otherwise ICD187
-            ids = [id for id, _ in ids_of(ctx, link.node, TELECOMMAND)]
+            ids = [id for id, _ in messages_with_ids(ctx, link.node, TELECOMMAND)]
             if telemetry and not any(
                 is_requested(link.declared, message, ids, ())
                 for _, message in telemetry
@@ -181,7 +181,7 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD187")
 def requested_telemetry_is_recognized(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         requests = link.section.get("requests")
         if not isinstance(requests, Map) or not isinstance(
             requests.get("response"), str
@@ -217,7 +217,7 @@ def _nameless(
 
     The host can identify such telemetry only by the request that it sent before.
     """
-    telecommands = ids_of(ctx, link.node, TELECOMMAND)
+    telecommands = messages_with_ids(ctx, link.node, TELECOMMAND)
     ids = [id for id, _ in telecommands]
     commands = link.section.get("commands")
     commands = commands if isinstance(commands, Map) else {}
@@ -228,7 +228,9 @@ def _nameless(
             if isinstance(row.get("message"), str):
                 responding[row["message"]] = message
     where = f"is sent in the packet {quote(packet.name)}, which does not say what it carries"
-    carried = [message for _, message in carried_in(ctx, link, packet, TELEMETRY)]
+    carried = [
+        message for _, message in messages_in_packet(ctx, link, packet, TELEMETRY)
+    ]
     for message in carried:
         if message.name in responding:
             telecommand = quote(responding[message.name].name)
@@ -252,10 +254,10 @@ def _nameless(
 
 @rule("ICD188")
 def lengths_are_whole_units(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         reported: set[int] = set()
         for packet in link.packets:
-            for row in packet.fields_of_roles("length", "response_length"):
+            for row in packet.fields_with_roles("length", "response_length"):
                 if id(row) in reported:
                     continue
                 for fault in _units(ctx, link, packet, row):
@@ -270,27 +272,27 @@ def _units(
     """Yield the faults of a length that cannot be counted in its unit."""
     unit, around = row.get("unit", 1), 0
     messages: list[Message] = []
-    for direction in packet.packet.directions:
-        carried = carried_in(ctx, link, packet.packet, direction)
+    for direction in packet.declared.directions:
+        carried = messages_in_packet(ctx, link, packet.declared, direction)
         messages += (message for _, message in carried)
     is_of_response = row["role"] == "response_length"
     if is_of_response:
-        if packet.packet.name != link.declared.requesting or messages:
+        if packet.declared.name != link.declared.requesting or messages:
             text = "a `response_length` is in a packet that only requests telemetry"
             help = "name the packet in `requests: packet`, and let another one carry telecommands"
             yield Fault.at(row, "role", text, help)
             return
-        ids = [id for id, _ in ids_of(ctx, link.node, TELECOMMAND)]
+        ids = [id for id, _ in messages_with_ids(ctx, link.node, TELECOMMAND)]
         messages = [
             message
-            for _, message in ids_of(ctx, link.node, TELEMETRY)
+            for _, message in messages_with_ids(ctx, link.node, TELEMETRY)
             if is_requested(link.declared, message, ids, ())
         ]
     elif unit == 1:
         return
     else:
         around = packet.overhead if row.get("counts") == "message" else 0
-        reserved = link.declared.reserved_in(packet.packet)
+        reserved = link.declared.reserved_in(packet.declared)
         if not messages and (reserved + around) % unit:
             text = f"{count(reserved + around, 'byte')} are not a multiple of the unit {unit}"
             yield Fault.at(row, "unit", text, "correct `unit` or `reserved`")

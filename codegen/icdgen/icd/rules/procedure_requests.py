@@ -11,7 +11,7 @@ from icdgen.icd.model import TELECOMMAND
 from icdgen.icd.packets import is_requested
 from icdgen.icd.responses import REPLY, declared_responses
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.framed_links import DeclaredLink, ids_of, links
+from icdgen.icd.rules.framed_links import DeclaredLink, framed_links, messages_with_ids
 from icdgen.icd.rules.procedures import procedures_in, steps_in
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import named
@@ -20,9 +20,9 @@ from icdgen.wording import quote
 
 @rule("ICD195", needs_complete=True)
 def telemetry_of_steps_can_be_requested(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         messages = {message.name: message for message in ctx.messages_of(link.node)}
-        telecommands = ids_of(ctx, link.node, TELECOMMAND)
+        telecommands = messages_with_ids(ctx, link.node, TELECOMMAND)
         commands = link.section.get("commands")
         commands = commands if isinstance(commands, Map) else unread()
         # Telemetry that responds to a telecommand comes when the telecommand is sent,

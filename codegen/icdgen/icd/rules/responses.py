@@ -34,7 +34,7 @@ from icdgen.icd.responses import (
     reason_of,
 )
 from icdgen.icd.rules.context import PATH_OF_BUSES, Context
-from icdgen.icd.rules.framed_links import DeclaredLink, ids_of, links
+from icdgen.icd.rules.framed_links import DeclaredLink, framed_links, messages_with_ids
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path
@@ -84,7 +84,7 @@ def _owners(ctx: Context, link: DeclaredLink) -> list[tuple[Map, list[Message]]]
 
     The mapping of responses to telemetry requests applies to no telecommands.
     """
-    telecommands = [message for _, message in ids_of(ctx, link.node, TELECOMMAND)]
+    telecommands = [m for _, m in messages_with_ids(ctx, link.node, TELECOMMAND)]
     commands = link.section.get("commands")
     commands = commands if isinstance(commands, Map) else unread()
     own = [
@@ -139,17 +139,19 @@ def _inherits(message: Message, kind: str) -> bool:
 
 def telemetry_of(ctx: Context, declared: DeclaredResponse) -> Message | None:
     """Return the telemetry that a response names; None for an unknown name."""
-    telemetry = ids_of(ctx, declared.link.node, TELEMETRY)
+    telemetry = messages_with_ids(ctx, declared.link.node, TELEMETRY)
     return next((each for _, each in telemetry if each.name == declared.name), None)
 
 
 @rule("ICD176")
 def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
-        telemetry = ids_of(ctx, link.node, TELEMETRY)
+    for link in framed_links(ctx):
+        telemetry = messages_with_ids(ctx, link.node, TELEMETRY)
         ids = [id for id, _ in telemetry]
         names = {message.name: id for id, message in telemetry}
-        telecommands = {each.name for _, each in ids_of(ctx, link.node, TELECOMMAND)}
+        telecommands = {
+            each.name for _, each in messages_with_ids(ctx, link.node, TELECOMMAND)
+        }
         broken = ctx.broken_messages(link.node)
         yield from _sources(ctx, link)
         for declared in declared_responses_in(ctx, link):
@@ -209,7 +211,7 @@ def _packet_faults(declared: DeclaredResponse) -> Iterator[Fault]:
 
 @rule("ICD177")
 def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         for declared in declared_responses_in(ctx, link):
             if declared.packet is None and telemetry_of(ctx, declared) is None:
                 continue  # ICD176
@@ -297,7 +299,7 @@ def _reason_against_echo(
         if repeated != ID and id_byte_of(node, repeated) is None:
             text = "a request of telemetry has no part but its id and its header"
             return text, "write `id`, or `header.` and the name of a field"
-        ids = [id for id, _ in ids_of(ctx, node, TELEMETRY)]
+        ids = [id for id, _ in messages_with_ids(ctx, node, TELEMETRY)]
         bits = max(ids, default=0).bit_length()
         if repeated == ID and bits > width:
             text = f"{quote(name)} of {count(width, 'bit')} cannot repeat an id of {count(bits, 'bit')}"
@@ -577,9 +579,9 @@ def _reasons(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
 
 @rule("ICD178")
 def telecommands_of_one_id_have_one_response(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         first_of_id: dict[int, Message] = {}
-        for id, message in ids_of(ctx, link.node, TELECOMMAND):
+        for id, message in messages_with_ids(ctx, link.node, TELECOMMAND):
             first = first_of_id.setdefault(id, message)
             for key in ("response", "repeat"):
                 if getattr(message, key) != getattr(first, key):
@@ -614,11 +616,11 @@ def _places_of_variants(
 
 @rule("ICD179")
 def responses_tell_the_outcome(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
+    for link in framed_links(ctx):
         reported: set[tuple[int, str]] = set()
         commands = link.section.get("commands")
         commands = commands if isinstance(commands, Map) else unread()
-        for _, message in ids_of(ctx, link.node, TELECOMMAND):
+        for _, message in messages_with_ids(ctx, link.node, TELECOMMAND):
             rows = declared_responses(commands, message)
             for kind, text, help in _contradictions(rows):
                 own: Any = message.response
