@@ -89,5 +89,5 @@ def test_a_program_that_takes_no_uploads_refuses_their_telecommands():
     running = Computer(ICD, ICD.node("cubeacp"), SimulationSettings(), DeviceStorage())
     assert code(running, 0, INITIATE, 3, 0) == REASONS["unknown_id"]
     outcome = running.take(0, bytes([PACKET, 0, 0]) + bytes(20), "uart")
-    assert (outcome.code, outcome.acknowledge) == (REASONS["unknown_id"], False)
+    assert (outcome.code, outcome.is_answered) == (REASONS["unknown_id"], False)
     assert running.storage.objects_of("program") == {}

@@ -43,7 +43,7 @@ class Computer:
 
     @property
     def deadline(self) -> int | None:
-        """Time at which `tick` or `Program.log_due` must be called, or None."""
+        """Time at which `tick` or `Program.take_due_log` must be called, or None."""
         times = [at for at in (self.boot_at, self.program.log_at) if at is not None]
         return min(times, default=None)
 
@@ -62,7 +62,7 @@ class Computer:
         # A request of this telemetry keeps the device in its boot program.
         if message and message.name == stop:
             self.boot_at = None
-        return self.program.frame(now, id)
+        return self.program.requested_frame(now, id)
 
     def restart(self, now: int) -> None:
         """Restart with the boot program, as after a reset or at power-up."""

@@ -48,11 +48,11 @@ class UartLine(DeviceLine):
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        response = self.computer.program.refusal
+        response = self.computer.program.refusing_response
         return refusal_names(response) if response else ()
 
     def is_reason(self, text: str) -> bool:
-        response = self.computer.program.refusal
+        response = self.computer.program.refusing_response
         return response is not None and refusal_code(response, text) is not None
 
     def received(self, now: int, data: bytes) -> None:
@@ -65,7 +65,7 @@ class UartLine(DeviceLine):
 
     def tick(self, now: int) -> None:
         super().tick(now)
-        log = self.computer.program.log_due(now)
+        log = self.computer.program.take_due_log(now)
         if log is not None:
             self._send(now, "log", log)
 
@@ -117,7 +117,7 @@ class UartLine(DeviceLine):
         if outcome is None:
             return
         is_silent = self.faults.hits("silence", "telecommand")
-        if outcome.acknowledge and self._acknowledge and not is_silent:
+        if outcome.is_answered and self._acknowledge and not is_silent:
             is_foreign = self.faults.hits("foreign", "telecommand")
             id = message[0] ^ 1 if is_foreign else message[0]
             acknowledge = acknowledge_of(self.link, id, outcome.code)

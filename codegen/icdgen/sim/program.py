@@ -15,6 +15,7 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.logs import LogMessage
 
 from icdgen import codec
+from icdgen.frozen import NamedTuple
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.icd.procedures import nested_steps
 from icdgen.procedures.counterpart import Counterpart, Device, Refused
@@ -28,24 +29,38 @@ from icdgen.sim.storage import DeviceStorage
 from icdgen.sim.values import Values, number_places
 from icdgen.values.frame import violations_of_value
 
-Raw = dict[str, "int | bytes"]
+RawValues = dict[str, "int | bytes"]
 
 
 @dataclass(frozen=True, slots=True)
 class TelecommandOutcome:
     """Result of a telecommand.
 
-    ``reset`` is the message that restarts the device, which then does not respond.
+    ``field_index`` is the index of the first invalid field; 0 also if no field is
+    invalid. ``is_answered``: the device sends an ACK or a NAK. ``reset`` is the message
+    that restarts the device, which then does not respond.
     """
 
     code: int
-    parameter: int = 0
-    acknowledge: bool = True
+    field_index: int = 0
+    is_answered: bool = True
     reset: Message | None = None
 
 
+class LogSetting(NamedTuple):
+    """Configuration of the unsolicited log messages."""
+
+    mask: bytes
+    period_ms: int  # 0: no messages
+
+
 class Program:
-    """A program that has just been started."""
+    """Firmware of the device, boot program or application: its values, statistics and
+    procedures, from its start on.
+
+    `take`, `refuse` and `requested_frame` are for buses. `icdgen.sim.framed_line`
+    processes the packets of framed links itself.
+    """
 
     def __init__(
         self,
@@ -70,13 +85,14 @@ class Program:
         responses = chain.from_iterable(
             responses_on(self.link, bus) for bus in self.link.bus_exchanges
         )
-        # Response with the code of a refusal; None without one.
-        self.refusal = next((row for row in responses if row.reason), None)
-        meanings = self.refusal.meanings if self.refusal else ()
+        # Response with a field for the reason of a refusal; None if there is none.
+        self.refusing_response = next((row for row in responses if row.reason), None)
+        response = self.refusing_response
+        meanings = response.meanings if response else ()
         self.success = next((code for code, says in meanings if says == "ack"), 0)
-        self.last = (0, 0, 0)  # id, code and parameter of the last telecommand
+        self.last = (0, 0, 0)  # id, code and index of the field of the last telecommand
         self.free_at = now  # end of processing of the last telecommand
-        self.log_at: int | None = None
+        self.log_at: int | None = None  # time of the next log message
         self._identify()
         for name, raw in settings.values.items():
             if name in self.values.frames:
@@ -87,8 +103,8 @@ class Program:
         """Increment a counter of the statistics, or set a flag."""
         self.counts[role] = self.counts.get(role, 0) + 1
 
-    def take(self, now: int, message: bytes, bus: str) -> TelecommandOutcome | None:
-        """Process a telecommand, which begins with its id.
+    def take(self, now: int, received: bytes, bus: str) -> TelecommandOutcome | None:
+        """Process a telecommand; ``received`` begins with its id.
 
         Return None if it is lost because the previous one is still being processed.
         """
@@ -96,28 +112,32 @@ class Program:
             self.count("overrun")
             return None
         self.count("telecommands")
-        outcome = self._take(now, message, bus)
+        outcome = self._processed(now, received, bus)
         self.free_at = now + self.settings.processing_ms
-        self.last = (message[0], outcome.code, outcome.parameter)
+        self.last = (received[0], outcome.code, outcome.field_index)
         return outcome
 
-    def refuse(self, message: bytes, reason: str | None = None) -> TelecommandOutcome:
-        """Reject a telecommand without processing it.
+    def refuse(self, received: bytes, reason: str | None = None) -> TelecommandOutcome:
+        """Reject a telecommand without processing it, for an injected fault.
 
-        ``reason`` is the name or number of a code; None for that of a wrong parameter.
+        ``reason`` is the name or number of a code. The code of an invalid value is sent
+        instead if it is None or no code of the response.
         """
         self.count("telecommands")
-        telecommand = self.facts.telecommands.get(message[0])
-        is_acknowledged = telecommand is None or telecommand.acknowledge
-        outcome = self._refusal("value", acknowledge=is_acknowledged)
-        if reason is not None and self.refusal:
-            code = refusal_code(self.refusal, reason)
+        telecommand = self.facts.telecommands.get(received[0])
+        is_answered = telecommand is None or telecommand.acknowledge
+        outcome = self._refused("value", is_answered=is_answered)
+        if reason is not None and self.refusing_response:
+            code = refusal_code(self.refusing_response, reason)
             outcome = replace(outcome, code=outcome.code if code is None else code)
-        self.last = (message[0], outcome.code, outcome.parameter)
+        self.last = (received[0], outcome.code, outcome.field_index)
         return outcome
 
-    def frame(self, now: int, id: int) -> bytes | None:
-        """Return the frame with this id, or None."""
+    def requested_frame(self, now: int, id: int) -> bytes | None:
+        """Count a request and return the current frame of its id.
+
+        Return None for an unknown id, which is not counted.
+        """
         message = self.facts.telemetry.get(id)
         if message is None:
             return None
@@ -136,13 +156,13 @@ class Program:
         if (
             message == self.facts.polled
         ):  # it reports the outcome of the last telecommand
-            id, code, parameter = self.last
+            id, code, field_index = self.last
             is_processed = now >= self.free_at
-            data = with_outcome(self.link, data, id, is_processed, code, parameter)
+            data = with_outcome(self.link, data, id, is_processed, code, field_index)
         return data
 
-    def log_due(self, now: int) -> bytes | None:
-        """Return an unsolicited log message if it is due."""
+    def take_due_log(self, now: int) -> bytes | None:
+        """Return an unsolicited log message if it is due, and schedule the next."""
         if self.log_at is None or now < self.log_at:
             return None
         self._plan_log(now)
@@ -158,16 +178,20 @@ class Program:
             return None
         frames = []
         fill = bytes([layout.fill])
-        for slot in layout.selected(setting[0]):
+        for slot in layout.selected(setting.mask):
             message = self.facts.telemetry.get(slot.id) if slot.id is not None else None
             data = self.current(now, message) if message else b""
             frames.append(data[: slot.length].ljust(slot.length, fill))
-        return LogMessage.encode(self.link, setting[0], frames)
+        return LogMessage.encode(self.link, setting.mask, frames)
 
     def first_invalid(
         self, message: Message, raw: Mapping[str, int | bytes]
     ) -> int | None:
-        """Return the index of the first field with an invalid value, or None."""
+        """Return the index of the first field with an invalid value, or None.
+
+        With `strict` of the settings, the device also checks ranges and enumerations;
+        otherwise only constants.
+        """
         for index, field in enumerate(self.icd.longest_frame(message)):
             value = raw.get(field.name)
             if not isinstance(value, int):
@@ -181,40 +205,39 @@ class Program:
                 return index
         return None
 
-    def _take(self, now: int, message: bytes, bus: str) -> TelecommandOutcome:
-        telecommand = self.facts.telecommands.get(message[0])
+    def _processed(self, now: int, received: bytes, bus: str) -> TelecommandOutcome:
+        telecommand = self.facts.telecommands.get(received[0])
         if telecommand is None or telecommand.name in self.unsupported:
-            return self._refusal(
-                "unknown_id", acknowledge=telecommand is None or telecommand.acknowledge
-            )
-        data, form = message[1:], self.facts.checksum
+            is_answered = telecommand is None or telecommand.acknowledge
+            return self._refused("unknown_id", is_answered=is_answered)
+        data, form = received[1:], self.facts.checksum
         # The checksum is optional unless `telecommand_always` has the bus: the length
         # shows whether it is there.
         if form and bus in form.telecommand_buses:
             if len(data) == telecommand.length + form.bytes:
                 data = data[: telecommand.length]
-                if message != i2c_write(self.link, message[0], data, crc=True):
-                    return self._refusal("checksum")
+                # `i2c_write` builds id, data and checksum, as they are sent on a UART
+                # as well.
+                if received != i2c_write(self.link, received[0], data, crc=True):
+                    return self._refused("checksum")
             elif bus in form.telecommand_always and len(data) == telecommand.length:
-                return self._refusal("checksum")
+                return self._refused("checksum")
         if len(data) != telecommand.length:
-            return self._refusal("length")
+            return self._refused("length")
         raw = codec.decode(self.icd.node(telecommand.node), telecommand, data)
         if (index := self.first_invalid(telecommand, raw)) is not None:
-            return self._refusal("value", index)
+            return self._refused("value", index)
         if telecommand.kind == CONFIGURATION:
             self.values.put(telecommand, data)
         try:
             self.counterpart.telecommand(now, telecommand, data)
         except Refused as refused:
-            return self._refusal("value", self._index(telecommand, refused.place))
-        if telecommand.name == self._log_role().get("message"):
+            return self._refused("value", self._index(telecommand, refused.place))
+        if telecommand.name == self._log_configuration().get("message"):
             self._plan_log(now)
         reset = telecommand if telecommand.expects_reset else None
-        is_acknowledged = telecommand.acknowledge and not reset
-        return TelecommandOutcome(
-            self.success, acknowledge=is_acknowledged, reset=reset
-        )
+        is_answered = telecommand.acknowledge and not reset
+        return TelecommandOutcome(self.success, is_answered=is_answered, reset=reset)
 
     def _index(self, message: Message, place: NumberPlace | None) -> int:
         """Return the index of the field at a place; 0 without one."""
@@ -223,15 +246,18 @@ class Program:
 
     def _unsupported(self) -> set[str]:
         """Return the telecommands of procedures that only other nodes have."""
-        every = self.icd.protocol_of(self.node).get("procedures", {})
-        return _sent(every) - _sent(self.icd.procedures_of(self.node))
+        procedures = self.icd.protocol_of(self.node).get("procedures", {})
+        own = self.icd.procedures_of(self.node)
+        return _sent_telecommands(procedures) - _sent_telecommands(own)
 
-    def _refusal(
-        self, reason: str, parameter: int = 0, acknowledge: bool = True
+    def _refused(
+        self, cause: str, field_index: int = 0, is_answered: bool = True
     ) -> TelecommandOutcome:
-        return TelecommandOutcome(
-            self.facts.reasons.get(reason, 1), parameter, acknowledge
-        )
+        """Return the outcome of a refusal; the code is 1 if the ICD has none for the
+        cause.
+        """
+        code = self.facts.reasons.get(cause, 1)
+        return TelecommandOutcome(code, field_index, is_answered)
 
     def _identify(self) -> None:
         """Set the numbers of the ICD in the telemetry that identifies the node."""
@@ -248,7 +274,7 @@ class Program:
             }
             self.values.update(report.message, raw)
 
-    def _statistics(self, message: Message) -> Raw:
+    def _statistics(self, message: Message) -> RawValues:
         """Return the counters in a message; a flag is 1 after any event."""
         report = self.facts.statistics
         if report is None or report.message.name != message.name:
@@ -256,40 +282,41 @@ class Program:
         bits = {
             field.name: field.bits for field in self.icd.longest_frame(report.message)
         }
-        result: Raw = {}
+        result: RawValues = {}
         for role, name in report.fields.items():
             count = self.counts.get(role, 0)
             is_flag = bits[name] == 1
             result[name] = int(count > 0) if is_flag else count % (1 << bits[name])
         return result
 
-    def _log_role(self) -> dict[str, Any]:
-        role: dict[str, Any] = (
-            self.icd.protocol_of(self.node)
-            .get("unsolicited_log", {})
-            .get("configured_by", {})
-        )
-        return role
+    def _log_configuration(self) -> dict[str, Any]:
+        """Return the section of the ICD that names the message and the fields with mask
+        and period.
+        """
+        protocol = self.icd.protocol_of(self.node)
+        section: dict[str, Any] = protocol.get("unsolicited_log", {})
+        configured_by: dict[str, Any] = section.get("configured_by", {})
+        return configured_by
 
-    def _log_setting(self) -> tuple[bytes, int] | None:
-        """Return mask and period in milliseconds, or None."""
-        role = self._log_role()
-        message = self.values.messages.get(role.get("message", ""))
+    def _log_setting(self) -> LogSetting | None:
+        """Return the current setting; None without unsolicited log messages."""
+        section = self._log_configuration()
+        message = self.values.messages.get(section.get("message", ""))
         if message is None or not self.facts.log_message:
             return None
-        raw, fields = self.values.raw(message), role["fields"]
-        return (
-            bytes(raw[fields["mask"]]),
-            int(raw[fields["period"]]) * role["period_unit_ms"],
-        )
+        raw, fields = self.values.raw(message), section["fields"]
+        period_ms = int(raw[fields["period"]]) * section["period_unit_ms"]
+        return LogSetting(bytes(raw[fields["mask"]]), period_ms)
 
     def _plan_log(self, now: int) -> None:
         setting = self._log_setting()
-        self.log_at = now + setting[1] if setting and setting[1] else None
+        self.log_at = None
+        if setting and setting.period_ms:
+            self.log_at = now + setting.period_ms
 
 
-def _sent(procedures: Mapping[str, dict[str, Any]]) -> set[str]:
-    """Return the telecommands of procedures of an ICD."""
+def _sent_telecommands(procedures: Mapping[str, dict[str, Any]]) -> set[str]:
+    """Return the names of the telecommands that these procedures send."""
     names: set[str] = set()
     for section in procedures.values():
         steps = nested_steps(section["steps"])
