@@ -10,7 +10,10 @@ doubles.
 `decode_frame` returns the values that a frame has. Objects of generated code have room
 for the longest frame. Therefore `decode` returns and `encode` takes the values of the
 longest frame: elements that a frame does not have are 0, and bytes or text of variable
-length are padded with zeros. `decode` and `frame_with` convert between the two forms.
+length are padded with zeros. `decode` and `encode_partial` convert between the two
+forms. Frames themselves have their real length.
+
+A new message is the object that generated code constructs: see `initial_value`.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ from icdgen.icd.meanings import Special
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.places import AnyScalar
 
-Raw: TypeAlias = "int | bytes"
+RawValue: TypeAlias = "int | bytes"
 
 
 class CodecError(ValueError):
@@ -40,14 +43,19 @@ class CodecError(ValueError):
 
 
 class LengthError(CodecError):
-    """A frame has a length in bytes that the message cannot have."""
+    """A frame has a length in bytes that the message cannot have, or a counter that is
+    out of range or contradicts the length.
+
+    ``expected`` is one length near the actual one that the message can have. It is a
+    hint for people and need not be the length that was meant.
+    """
 
     def __init__(self, message: Message, expected: int, actual: int) -> None:
         super().__init__(f"{message.name} has {expected} bytes, {actual} given")
         self.expected, self.actual = expected, actual
 
 
-def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
+def decode(node: Node, message: Message, frame: bytes) -> dict[str, RawValue]:
     """Return the raw values of the longest frame by name, without absent optional
     fields.
 
@@ -66,7 +74,7 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     return raw
 
 
-def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
+def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, RawValue]:
     """Return the raw values that a frame has, by name. Raises `LengthError`.
 
     The result has no entries for array elements that the frame lacks and for absent
@@ -77,7 +85,7 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     # A frame that ends early lacks trailing zeros only, and missing bits of the number
     # read as 0.
     bits = int.from_bytes(frame, "little")
-    raw: dict[str, Raw] = {}
+    raw: dict[str, RawValue] = {}
     optional = []
     for field in fields:
         if field.role == "count":
@@ -94,36 +102,40 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
 
 
 def fields_of_frame(
-    node: Node, message: Message, raw: Mapping[str, Raw]
+    node: Node, message: Message, raw: Mapping[str, RawValue]
 ) -> list[FrameField]:
     """List the scalars with values in `raw`, at their positions in the frame of these
     values.
 
     Raises `CodecError`.
     """
-    sizes = sizes_of_values(message, raw)
+    sizes = sizes_from_counters(message, raw)
     fields = frame_fields(message.layout, node.orders, sizes)
     return [field for field in fields if field.name in raw]
 
 
-def derived_values(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
+def derived_values(
+    message: Message, raw: Mapping[str, RawValue]
+) -> dict[str, RawValue]:
     """Return the derived values whose operands have raw values, each as the bits of a
     double.
     """
     scalars: dict[str, Scalar] = {}
-    for node in message.layout.nodes:
-        if isinstance(node, Scalar | Overlay | Derived):
-            scalars[node.name] = node if isinstance(node, Scalar) else node.scalar
-    values, results = dict(raw), dict[str, Raw]()
-    for node in message.layout.derived:
-        operands = node.derivation.fields
+    for layout_node in message.layout.nodes:
+        if isinstance(layout_node, Scalar):
+            scalars[layout_node.name] = layout_node
+        elif isinstance(layout_node, Overlay | Derived):
+            scalars[layout_node.name] = layout_node.scalar
+    values, results = dict(raw), dict[str, RawValue]()
+    # A derived value can be an operand of a later one.
+    for derived in message.layout.derived:
+        operands = derived.derivation.fields
         if all(name in values for name in operands):
             doubles = [
                 value_double(scalars[name], _number(values[name])) for name in operands
             ]
-            values[node.name] = results[node.name] = float_bits(
-                node.scalar, node.derivation.double(doubles)
-            )
+            bits = float_bits(derived.scalar, derived.derivation.double(doubles))
+            values[derived.name] = results[derived.name] = bits
     return results
 
 
@@ -201,26 +213,28 @@ def _check_length(message: Message, lengths: range, actual: int) -> None:
         )
 
 
-def _number(raw: Raw) -> int:
+def _number(raw: RawValue) -> int:
     assert isinstance(raw, int)
     return raw
 
 
-def sizes_of_values(message: Message, raw: Mapping[str, Raw]) -> Sizes:
-    """Return the size of each variable-length node, from the values of its counter.
+def sizes_from_counters(message: Message, raw: Mapping[str, RawValue]) -> Sizes:
+    """Return the number of elements, or of bytes, of each variable-length node, from
+    the values of the counters.
 
-    Raises `CodecError`.
+    Raises `CodecError` if one is out of range.
     """
     return {
-        name: size_of_values(part, raw)
+        name: size_from_counter(part, raw)
         for name, part in message.layout.parts_by_size.items()
     }
 
 
-def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
+def size_from_counter(part: VariablePart, raw: Mapping[str, RawValue]) -> int:
     """Return the number of elements, or of bytes, of a part from its counter.
 
-    Raises `CodecError` if it is out of range.
+    Without a value, the counter has its minimum. Raises `CodecError` if it is out of
+    range.
     """
     value = _number(raw.get(part.counter, part.low))
     if not part.low <= value <= part.high:
@@ -230,8 +244,8 @@ def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
     return value + part.plus
 
 
-def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
-    """Return a copy of a frame with new values of some numbers."""
+def with_numbers(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
+    """Return a copy of a frame in which the bits of some numbers are replaced."""
     bits = int.from_bytes(frame, "little")
     for field, value in values.items():
         # All bits of the field, as a value in its range: `_bits_in_frame` checks values.
@@ -240,8 +254,11 @@ def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
     return bits.to_bytes(len(frame), "little")
 
 
-def is_present(field: FrameField, raw: Mapping[str, Raw]) -> bool:
-    """Return whether a message with these raw values meets all conditions of a field."""
+def is_present(field: FrameField, raw: Mapping[str, RawValue]) -> bool:
+    """Return whether a message with these raw values meets all conditions of a field.
+
+    A field without a value counts as 0, as all bits of a frame without a value.
+    """
     return not field.scalar.present_if or all(
         raw.get(need.field, 0) in need.values for need in field.scalar.present_if
     )
@@ -254,9 +271,9 @@ def message_of_frame(
     matches none of them.
 
     A frame matches a message that can have its length and whose constants it has.
-    Constants of array elements, and constants that all the messages have in common, are
-    not compared. If several messages match, the message with the most constants is
-    returned. Raises `LengthError` if all messages have the same fixed length and the
+    Constants of optional fields, constants behind the fixed part, and constants that
+    all the messages have in common are not compared. If several messages match, the
+    message with the most constants is returned. Raises `LengthError` if all messages have the same fixed length and the
     frame has another.
     """
     bits = int.from_bytes(frame, "little")
@@ -300,11 +317,12 @@ def message_of_frame_if_any(
         return None
 
 
-def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
+def encode(node: Node, message: Message, raw: Mapping[str, RawValue]) -> bytes:
     """Return the frame with these values of the longest frame; reserved bits are 0.
 
-    Values of overlay fields, derived values and fields that are absent from the frame
-    are ignored. Raises `CodecError` for a missing, unknown or invalid value.
+    `encode_partial` accepts missing and unknown values. Values of overlay fields,
+    derived values and fields that are absent from the frame are ignored.
+    Raises `CodecError` for a missing, unknown or invalid value.
     """
     fields = frame_fields(message.layout, node.orders)
     names = {field.name for field in fields}
@@ -314,17 +332,19 @@ def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
     for field in fields:
         if field.is_raw and field.name not in raw and is_present(field, raw):
             raise CodecError(f"no value for {field.name!r}")
-    return frame_with(node, message, raw)
+    return encode_partial(node, message, raw)
 
 
-def initial_values(node: Node, message: Message) -> dict[str, Raw]:
-    """Return the raw values of a new message by name, without overlay fields, derived
-    values and absent optional fields.
+def initial_values(node: Node, message: Message) -> dict[str, RawValue]:
+    """Return the raw values of a new message by name, in the form of the longest frame.
+
+    Overlay fields, derived values and absent optional fields are missing.
     """
     fields = [
         field for field in frame_fields(message.layout, node.orders) if field.is_raw
     ]
     raw = {field.name: initial_value(message, field) for field in fields}
+    # Unlike `is_present`, a condition on a field without an initial value is not met.
     return {
         field.name: raw[field.name]
         for field in fields
@@ -333,25 +353,29 @@ def initial_values(node: Node, message: Message) -> dict[str, Raw]:
 
 
 def initial_frame(node: Node, message: Message) -> bytes:
-    """Return the frame of a new message, which has the fewest elements."""
+    """Return the shortest frame of a new message: its variable-length nodes have the
+    fewest elements.
+    """
     fixed = fixed_fields(message.layout, node.orders)
     counts = {field.name: initial_value(message, field) for field in fixed}
-    fields = frame_fields(message.layout, node.orders, sizes_of_values(message, counts))
+    fields = frame_fields(
+        message.layout, node.orders, sizes_from_counters(message, counts)
+    )
     # Bytes and text are 0 in a new message, as all bits without a value.
     numbers = (field for field in fields if field.is_raw and not field.is_bytes)
-    return frame_with(
+    return encode_partial(
         node, message, {field.name: initial_value(message, field) for field in numbers}
     )
 
 
-def initial_value(message: Message, field: FrameField) -> Raw:
+def initial_value(message: Message, field: FrameField) -> RawValue:
     """Return the raw value of a field of a new message: see `Scalar.initial_value`."""
     return field.scalar.initial_value(
         field.bits, message.layout.smallest_raw(field.name)
     )
 
 
-def initial_object_values(node: Node, message: Message) -> dict[str, Raw]:
+def initial_object_values(node: Node, message: Message) -> dict[str, RawValue]:
     """Return the raw values of the longest frame for a new message.
 
     Generated code sets constants also in absent elements of variable-length nodes,
@@ -369,13 +393,14 @@ def initial_object_values(node: Node, message: Message) -> dict[str, Raw]:
     return decode(node, message, encode(node, message, values)) | elements
 
 
-def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
-    """Return the frame with these values of the longest frame; all other bits are 0.
+def encode_partial(node: Node, message: Message, raw: Mapping[str, RawValue]) -> bytes:
+    """Return the frame with some values of the longest frame; all other bits are 0.
 
-    Raises `CodecError` if one is invalid.
+    Unlike `encode`, this accepts missing values and ignores unknown names. Raises
+    `CodecError` for an invalid value.
     """
     layout, bits = message.layout, 0
-    sizes = sizes_of_values(message, raw)
+    sizes = sizes_from_counters(message, raw)
     for field in frame_fields(layout, node.orders, sizes):
         if not field.is_raw or field.name not in raw or not is_present(field, raw):
             continue
@@ -410,7 +435,7 @@ def check_raw(field: AnyScalar, value: int | bytes) -> None:
 
 def physical(field: AnyScalar, raw: int) -> Fraction | None:
     """Return the exact physical value of an integer field with a scale; None for any
-    other field.
+    other field, also with a curve: see `physical_double`.
     """
     return field.scale.physical(raw) if field.scale else None
 
@@ -428,8 +453,8 @@ def physical_double(field: AnyScalar, raw: int) -> float | None:
 
 
 def value_double(field: AnyScalar, raw: int) -> float:
-    """Return the physical value of a number as a double; without a formula its raw
-    value.
+    """Return the value of any number as a double: the physical value, or without a
+    formula the number itself.
     """
     physical = physical_double(field, raw)
     if physical is not None:
@@ -580,7 +605,7 @@ def _runs(
     return tuple(runs)
 
 
-def _read_field(field: FrameField, frame: int) -> Raw:
+def _read_field(field: FrameField, frame: int) -> RawValue:
     """Return the raw value of a field from a frame."""
     scalar = field.scalar
     if scalar.is_bytes:
@@ -596,7 +621,7 @@ def _read_field(field: FrameField, frame: int) -> Raw:
     return value
 
 
-def _bits_in_frame(field: FrameField, value: Raw) -> int:
+def _bits_in_frame(field: FrameField, value: RawValue) -> int:
     """Return the bits of the frame that a value sets.
 
     Raises `CodecError` if the value is invalid.

@@ -162,7 +162,7 @@ class Reference:
                 raise Refusal("missing-field", field=field.name)
         for part in message.layout.counted_parts:
             try:
-                codec.size_of_values(part, raw)
+                codec.size_from_counter(part, raw)
             except codec.CodecError as error:
                 raise Refusal("range", field=part.counter, detail=str(error)) from None
         return described(

@@ -144,7 +144,7 @@ def _random(
                     fields_by_name[condition.field]: source.choice(condition.values)
                     for condition in field.conditions
                 }
-                frame = codec.frame_of(frame, values)
+                frame = codec.with_numbers(frame, values)
             row = frame_vector(node, message, "random frame", frame)
             vector = {
                 "why": "random frame", "bytes": row.frame.hex(), "encoded": row.encoded.hex(),

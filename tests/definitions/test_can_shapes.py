@@ -94,7 +94,7 @@ def assert_values_are_those_of_cantools(
                     for value in need.values
                 ]
                 if dice.random() < 0.7 and values:
-                    frame = codec.frame_of(frame, {chosen: dice.choice(values)})
+                    frame = codec.with_numbers(frame, {chosen: dice.choice(values)})
                     raw = codec.decode(node, ours, frame)
             for scaled in (False, True):
                 # cantools raises for a value of the multiplexer without a signal.

@@ -53,7 +53,7 @@ def differences(
                 if field.const is not None
             }
             # Random bytes would violate the constants of the message.
-            frame = codec.frame_of(frame, fixed)
+            frame = codec.with_numbers(frame, fixed)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 data = message.telemetry_id.to_bytes(width, "big") + frame

@@ -80,7 +80,7 @@ def _compared(
             if field.const is not None
         }
         for count in range(frames):
-            frame = codec.frame_of(chance.randbytes(message.length), fixed)
+            frame = codec.with_numbers(chance.randbytes(message.length), fixed)
             head = struct.pack(
                 ">HHH", message.telemetry_id, 0xC000 | count, len(frame) - 1
             )

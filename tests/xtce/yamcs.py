@@ -82,7 +82,7 @@ def _compared(
             owner = icd.node(message.node)
             fields = frame_fields(message.layout, owner.orders)
             frame = chance.randbytes(message.length)
-            frame = codec.frame_of(
+            frame = codec.with_numbers(
                 frame,
                 {field: field.const for field in fields if field.const is not None},
             )

@@ -108,10 +108,10 @@ def example_of_message(message: MessageDescription) -> Example:
                 in_arrays.add(scalar.name)
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
-    frame = brief = codec.frame_with(message.node, message.model, raw)
+    frame = brief = codec.encode_partial(message.node, message.model, raw)
     if len(in_arrays) > FEW:
         few = {name: value for name, value in raw.items() if name not in in_arrays}
-        brief = codec.frame_with(message.node, message.model, few)
+        brief = codec.encode_partial(message.node, message.model, few)
     return Example(shown, frame, brief)
 
 

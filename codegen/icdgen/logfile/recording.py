@@ -240,7 +240,7 @@ def _unpacked(node: Node, message: Message, data: bytes) -> Unpacked:
     Raise `icdgen.codec.LengthError` if the length of the data is invalid.
     """
     raw = codec.decode_frame(node, message, data)
-    layout, sizes = message.layout, codec.sizes_of_values(message, raw)
+    layout, sizes = message.layout, codec.sizes_from_counters(message, raw)
     ends = {
         part.name: part.begin + sizes[part.name] * part.step for part in layout.parts
     }

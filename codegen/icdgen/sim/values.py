@@ -83,7 +83,7 @@ class Values:
         counters: dict[str, int] = {}
         for part in message.layout.counted_parts:
             octets = new.get(part.name)
-            count = codec.size_of_values(part, {**current, **raw})
+            count = codec.size_from_counter(part, {**current, **raw})
             if isinstance(octets, bytes):
                 new[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
             elements = (step.element for step in steps if step.node is part.node)

@@ -203,11 +203,11 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
         for step in (-1, 1, part.most, 1 << counter.bits - 1):
             stated = sizes[name] - part.plus + step
             if counter.raw_min <= stated <= counter.raw_max:
-                invalid.append(codec.frame_of(frame, {counter: stated}))
+                invalid.append(codec.with_numbers(frame, {counter: stated}))
     for counter, high in highest.items():
         # Above the maximum, in a frame of the maximum length
         if high < counter.raw_max:
-            invalid.append(codec.frame_of(longest, highest | {counter: high + 1}))
+            invalid.append(codec.with_numbers(longest, highest | {counter: high + 1}))
     # The last part takes the remaining bytes and can make up for a wrong counter, so
     # some of these frames are valid.
     for candidate in dict.fromkeys(invalid):

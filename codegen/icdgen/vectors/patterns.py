@@ -96,13 +96,13 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
                     yielded.add(why)
                     yield (
                         why,
-                        codec.frame_of(
+                        codec.with_numbers(
                             random_frame(message, f"alternative {why}"), values
                         ),
                     )
                     yield (
                         f"{why}, all others ones",
-                        codec.frame_of(b"\xff" * message.length, values),
+                        codec.with_numbers(b"\xff" * message.length, values),
                     )
 
 
@@ -176,7 +176,7 @@ def with_counts(
     for name, part in message.layout.parts_by_size.items():
         if name in counts and not part.is_rest:
             values[fields[part.counter]] = counts[name] - part.plus
-    return codec.frame_of(frame, values)
+    return codec.with_numbers(frame, values)
 
 
 def shortened(message: Message, frame: bytes, sizes: Mapping[str, int]) -> bytes:

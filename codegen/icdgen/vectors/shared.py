@@ -104,7 +104,7 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
                 values = codec.decode(node, message, frame) | {
                     field.name: field.const or 0 for field in constant_fields
                 }
-                frame_with_constants = codec.frame_with(node, message, values)
+                frame_with_constants = codec.encode_partial(node, message, values)
                 yield frame_with_constants
                 if message.may_end_early:
                     # The first byte is always sent, even if it is zero.
@@ -119,7 +119,7 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
                 signed = inverted - (
                     inverted >> field.bits - 1 << field.bits if field.is_signed else 0
                 )
-                yield codec.frame_with(node, message, values | {field.name: signed})
+                yield codec.encode_partial(node, message, values | {field.name: signed})
 
 
 def _cut(message: Message, node: Node, frame: bytes) -> list[bytes]:

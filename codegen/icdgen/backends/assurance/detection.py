@@ -234,7 +234,7 @@ class MessageWatch:
     @cached_property
     def _initial_names(self) -> frozenset[str]:
         """Names of the scalars with bits in the frame of a new message."""
-        sizes = codec.sizes_of_values(self.message, self._initial)
+        sizes = codec.sizes_from_counters(self.message, self._initial)
         fields = frame_fields(self.message.layout, self.node.orders, sizes)
         with_bits = (f for f in fields if f.role in ("field", "overlay") and f.bits)
         return frozenset(field.name for field in with_bits)
@@ -258,7 +258,7 @@ class MessageWatch:
 
         ``raw``: values of the frame.
         """
-        sizes = codec.sizes_of_values(self.message, raw)
+        sizes = codec.sizes_from_counters(self.message, raw)
         return self.message.layout.in_longest(frame, sizes)
 
     @cached_property
