@@ -37,7 +37,7 @@ def test_a_frame_is_rejected_only_because_of_the_highest_bit_of_a_counter(
     (message,) = make_vectors(icd, icd.node("demo")).messages
     frames = {row.frame for row in message.rows}
     for byte in counters:
-        rejected = [frame for frame in message.miscounted if frame[byte] & 0x80]
+        rejected = [frame for frame in message.refused_frames if frame[byte] & 0x80]
         # The same frames with the highest bit of the counter cleared must be valid.
         without = [
             frame[:byte] + bytes([frame[byte] & 0x7F]) + frame[byte + 1 :]

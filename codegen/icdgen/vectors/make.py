@@ -25,11 +25,11 @@ from icdgen.icd.model import (
     Node,
 )
 from icdgen.vectors import patterns, shared
-from icdgen.vectors.settings import Assignments, bits_of, settings
+from icdgen.vectors.settings import Assignments, assignments_of_field, bits_of
 
 FORMAT = 1
 
-Raw = dict[str, "int | bytes"]
+RawValues = dict[str, "int | bytes"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +40,11 @@ class FrameVector:
 
     why: str
     frame: bytes
-    raw: Raw
+    raw: RawValues
     encoded: bytes
     physical: dict[str, Fraction]  # exact physical values of scaled fields
     texts: dict[str, str | None]  # of text fields; None if the bytes are not ASCII
-    # Physical values as doubles (scales and lookup tables), 16 hex digits each
+    # Physical values as doubles (all formulas), 16 hex digits each
     doubles: dict[str, str]
 
 
@@ -54,17 +54,17 @@ class MessageVectors:
 
     message: Message
     fields: tuple[FrameField, ...]  # fields of the longest frame
-    # Initial values: 0, empty or ``const``; overlays have the value that they read.
+    # Initial values: 0, empty, ``const`` or the minimum of a counter; overlays have the
+    # value that they read.
     # Absent optional fields are missing.
-    default: Raw
+    default: RawValues
     rows: tuple[FrameVector, ...]
-    lengths: tuple[int, ...]  # lengths of refused frames
-    # Refused frames whose counters contradict their length
-    miscounted: tuple[bytes, ...]
-    unfit: dict[str, list[int]]  # refused raw values by field
-    settings: dict[
-        str, Assignments
-    ]  # assignments of physical values and texts, by field
+    refused_lengths: tuple[int, ...]
+    # Frames of permitted lengths whose counters contradict the length
+    refused_frames: tuple[bytes, ...]
+    refused_raws: dict[str, list[int]]  # raw values by field
+    # Assignments of physical values and texts, by field
+    assignments: dict[str, Assignments]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     frames = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
     whys = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
     vectors = [frame_vector(node, message, whys[frame], frame) for frame in frames]
-    for number, raw in enumerate(patterns.raw_columns(message, node)):
+    for number, raw in enumerate(patterns.value_sets(message, node)):
         frame = codec.encode(node, message, raw)
         if frame not in frames:
             frames[frame] = None
@@ -108,47 +108,44 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
             vectors.append(frame_vector(node, message, why, frame))
     fields = frame_fields(message.layout, node.orders)
     raw_fields = [field for field in fields if field.is_raw]
-    settable = [
+    assignable = [
         field
         for field in raw_fields
         if (field.has_formula and field.is_invertible) or field.type == "text"
     ]
+    refused_raws = {
+        field.name: patterns.refused_raws(message, field) for field in raw_fields
+    }
     return MessageVectors(
         message=message,
         fields=fields,
         default=codec.initial_object_values(node, message),
         rows=tuple(vectors),
-        lengths=_refused_lengths(message),
-        miscounted=tuple(_miscounted(node, message)),
-        unfit={
-            field.name: unfit
-            for field in raw_fields
-            if (unfit := patterns.unfit(message, field))
-        },
-        settings={field.name: settings(field) for field in settable},
+        refused_lengths=_refused_lengths(message),
+        refused_frames=tuple(_miscounted(node, message)),
+        refused_raws={name: raws for name, raws in refused_raws.items() if raws},
+        assignments={field.name: assignments_of_field(field) for field in assignable},
     )
 
 
 def _refused_lengths(message: Message) -> tuple[int, ...]:
     """Return refused lengths: 0, and the neighbors of the permitted lengths."""
     layout = message.layout
-    # With several variable parts, any length from the shortest to the longest may be
-    # permitted.
-    # With one variable part, the fixed part alone is the shortest decodable frame.
-    least = layout.shortest if layout.has_gaps else layout.length
-    ends = {
-        end + step
-        for end in (least, layout.shortest, layout.shortest + 1, layout.longest)
-        for step in (-1, 1)
-    }
     if not layout.parts:
-        ends = {layout.longest - 1, layout.longest + 1}
-    return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(layout.lengths)))
+        ends = [layout.longest]
+    elif layout.has_gaps:
+        # Any length from the shortest to the longest may be permitted.
+        ends = [layout.shortest, layout.shortest + 1, layout.longest]
+    else:
+        # The fixed part alone is the shortest frame whose counter can be read.
+        ends = [layout.length, layout.shortest, layout.shortest + 1, layout.longest]
+    neighbors = {max(end + step, 0) for end in ends for step in (-1, 1)}
+    return tuple(sorted({0, *neighbors} - set(layout.lengths)))
 
 
 def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     """Yield frames with one element more or less than their counter, or with a counter
-    beyond its maximum.
+    that is beyond its maximum or that is wrong in its highest bit only.
     """
     if not message.layout.parts:
         return
@@ -156,7 +153,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     last = message.layout.parts[-1]
     if message.layout.has_gaps:
         for count in (last.fewest, last.most):
-            yield from _miscounted_inside(node, message, count)
+            yield from _miscounted_with_gaps(node, message, count)
         return
     # Without a counter, nothing can contradict the length.
     if last.is_rest:
@@ -165,30 +162,33 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     counter = _counter(message, node, last)
     few, most = last.fewest, last.most
     # The smallest and largest number of elements that the counter can state
-    low, high = counter.raw_min + last.plus, counter.raw_max + last.plus
+    least_stated = counter.raw_min + last.plus
+    most_stated = counter.raw_max + last.plus
     # Highest bit of the counter, which a narrower implementation would ignore
     top = 1 << counter.bits - 1
-    # Number of elements in the frame, and in its counter.
+    # (elements in the frame, elements that its counter states)
     pairs = [
         (few, few + 1),
         (most, most - 1),
         (most - 1, most),
-        (most, high),
+        (most, most_stated),
         (few, few + top),
         (most, most + top),
     ]
     if last.plus:
-        pairs += [(few, few - 1), (most, low)]
-    for count, stated in pairs:
+        pairs += [(few, few - 1), (most, least_stated)]
+    for actual, stated in pairs:
         # Fewer elements than the minimum are a wrong length (`_refused_lengths`).
-        if stated != count >= few and low <= stated <= high:
+        if actual < few or actual == stated:
+            continue
+        if least_stated <= stated <= most_stated:
             invalid = patterns.with_counts(message, node, frame, {last.name: stated})
-            yield invalid[: last.begin + count * last.step]
+            yield invalid[: last.begin + actual * last.step]
 
 
-def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[bytes]:
-    """Yield invalid frames for ``count`` elements of the last variable part: wrong
-    counters of other parts, or missing bytes.
+def _miscounted_with_gaps(node: Node, message: Message, count: int) -> Iterator[bytes]:
+    """Yield invalid frames of a message with several variable parts, whose last part
+    has ``count`` elements: with a wrong counter, or with missing bytes.
     """
     longest = patterns.random_frame(message, "miscounted inside")
     frame = patterns.cut(message, node, longest, count)
@@ -200,6 +200,7 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
             continue
         counter = _counter(message, node, part)
         highest[counter] = message.layout.largest_raw(part.counter)
+        # One less or more, far too many, and another highest bit
         for step in (-1, 1, part.most, 1 << counter.bits - 1):
             stated = sizes[name] - part.plus + step
             if counter.raw_min <= stated <= counter.raw_max:
@@ -211,7 +212,7 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
     # The last part takes the remaining bytes and can make up for a wrong counter, so
     # some of these frames are valid.
     for candidate in dict.fromkeys(invalid):
-        if not _is_frame(node, message, candidate):
+        if not _can_decode(node, message, candidate):
             yield candidate
 
 
@@ -224,7 +225,7 @@ def _counter(message: Message, node: Node, part: VariablePart) -> FrameField:
     )
 
 
-def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
+def _can_decode(node: Node, message: Message, frame: bytes) -> bool:
     with suppress(codec.LengthError):
         return bool(codec.decode(node, message, frame))
     return False
@@ -245,8 +246,10 @@ def frame_vector(node: Node, message: Message, why: str, frame: bytes) -> FrameV
         if exact is not None:
             physical[field.name] = exact
         if field.has_formula:
-            double = codec.physical_double(field, value) or 0.0
-            doubles[field.name] = bits_of(double)
+            double = codec.physical_double(field, value)
+            assert double is not None
+            # A negative zero is written as 0.
+            doubles[field.name] = bits_of(double or 0.0)
         if field.type == "text":
             texts[field.name] = ascii_text(value)
     return FrameVector(
@@ -269,14 +272,14 @@ def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
         direction: shared.messages_by_id(icd, node, direction)
         for direction in (TELECOMMAND, TELEMETRY)
     }
-    settings: dict[int, list[Message]] = {}
+    configurations: dict[int, list[Message]] = {}
     for pick in ("set_id", "get_id"):  # a set_id has precedence over an equal get_id
-        taken = set(settings)
+        taken = set(configurations)
         for message in icd.messages_of(node):
             id = getattr(message, pick)
             if id is not None and id not in taken:
-                settings.setdefault(id, []).append(message)
-    ids_by_direction[CONFIGURATION] = dict(sorted(settings.items()))
+                configurations.setdefault(id, []).append(message)
+    ids_by_direction[CONFIGURATION] = dict(sorted(configurations.items()))
     return {
         direction: {
             id: [message.name for message in messages] for id, messages in ids.items()

@@ -1,7 +1,7 @@
 """Test patterns: frames and raw values that become vectors.
 
-`frames` yields frames of a message (decoded by each language), `raw_columns` yields raw
-values (encoded by each language), `unfit` returns raw values that encoders must refuse.
+`frames` yields frames of a message (decoded by each language), `value_sets` yields raw
+values (encoded by each language), `refused_raws` returns raw values that encoders must refuse.
 The choice of patterns decides which faults of generated code the vectors detect.
 """
 
@@ -295,7 +295,7 @@ def _near(field: AnyScalar) -> Iterator[float]:
         yield from ((left + right) / 2 for left, right in pairwise(points))
 
 
-def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]]:
+def value_sets(message: Message, node: Node) -> Iterator[dict[str, int | bytes]]:
     """Yield raw values of the longest frame, so that each field takes each of its
     values.
 
@@ -340,7 +340,7 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
     ]
 
 
-def unfit(message: Message, field: FrameField) -> list[int]:
+def refused_raws(message: Message, field: FrameField) -> list[int]:
     """Return raw values that encoding must refuse."""
     if any(field.name == part.counter for part in message.layout.counted_parts):
         low = message.layout.smallest_raw(field.name)

@@ -1,6 +1,6 @@
 """Physical values and texts that test the setters of fields.
 
-`settings` returns pairs of an assigned value and the raw value that the setter must
+`assignments_of_field` returns pairs of an assigned value and the raw value that the setter must
 store, or None if it must refuse the value. Most values lie next to a limit of rounding.
 """
 
@@ -40,7 +40,7 @@ def float_of(bits: str) -> float:
 Assignments = list[tuple[str, "int | bytes | None"]]
 
 
-def settings(field: AnyScalar) -> Assignments:
+def assignments_of_field(field: AnyScalar) -> Assignments:
     """Return assignments of a field: the bits of a double, or a text, and the resulting
     raw value (None: refused).
     """

@@ -136,10 +136,10 @@ def _message(vectors: MessageVectors) -> str:
     # Without its braces: the other parts follow in lines of their own.
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in vectors.fields]))
-    parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
-    if vectors.miscounted:
+    parts.append(f'"refused_lengths": {_json(list(vectors.refused_lengths))}')
+    if vectors.refused_frames:
         parts.append(
-            f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}'
+            f'"refused_frames": {_json([frame.hex() for frame in vectors.refused_frames])}'
         )
     parts.append(_array("vectors", [_row(vectors.fields, row) for row in vectors.rows]))
     return "{" + ",\n".join(parts) + "}"
@@ -188,11 +188,12 @@ def _field(vectors: MessageVectors, field: FrameField) -> str:
         row["limits"] = {
             key: decimal(value) for key, value in limits.items() if value is not None
         }
-    if field.name in vectors.unfit:
-        row["unfit"] = vectors.unfit[field.name]
-    if field.name in vectors.settings:
+    if field.name in vectors.refused_raws:
+        row["unfit"] = vectors.refused_raws[field.name]
+    if field.name in vectors.assignments:
         row["set"] = [
-            [given, raw_json(field, raw)] for given, raw in vectors.settings[field.name]
+            [given, raw_json(field, raw)]
+            for given, raw in vectors.assignments[field.name]
         ]
     return _json(row)
 

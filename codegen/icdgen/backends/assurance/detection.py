@@ -25,7 +25,7 @@ from icdgen.icd.layout_nodes import overlay_of
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.vectors.lines import MessageLines
-from icdgen.vectors.make import FrameVector, MessageVectors, Raw, ascii_text
+from icdgen.vectors.make import FrameVector, MessageVectors, RawValues, ascii_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
 from icdgen.vectors.write import raw_json
 
@@ -186,7 +186,7 @@ class MessageWatch:
             special.value for special in now.special
         ] or old.limits != now.limits:
             return True
-        unfit = self.vectors.unfit.get(old.name, ())
+        unfit = self.vectors.refused_raws.get(old.name, ())
         # The message, and not the field, refuses a count that fits its bits but not the
         # frame.
         if any(part.counter == old.name for part in self.message.layout.counted_parts):
@@ -198,7 +198,7 @@ class MessageWatch:
         ):
             return True
         # The vectors call the setter of a physical value, or that of a text.
-        assignments = self.vectors.settings.get(old.name, [])
+        assignments = self.vectors.assignments.get(old.name, [])
         if not assignments or old.type == "text":
             return any(
                 _attempt(codec.raw_from_text, now, text) != _expected(raw)
@@ -252,7 +252,7 @@ class MessageWatch:
             for row in self.vectors.rows
         ]
 
-    def _in_longest(self, frame: bytes, raw: Raw) -> bytes:
+    def _in_longest(self, frame: bytes, raw: RawValues) -> bytes:
         """Return the longest frame with the bytes of a shorter frame at their
         positions.
 
@@ -351,7 +351,7 @@ def _attributes_of(field: NodePlace) -> tuple[object, ...]:
 
 def _codec_result(
     node: Node, message: Message, frame: bytes
-) -> tuple[Raw, bytes] | None:
+) -> tuple[RawValues, bytes] | None:
     """Return the decoded values of a frame and their encoding; None if the codec
     refuses it.
     """

@@ -31,7 +31,7 @@ from icdgen.icd.model import Icd, Message
 from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
 from icdgen.render import Renderer
 from icdgen.vectors.ids import test_ids
-from icdgen.vectors.make import FrameVector, MessageVectors, Raw, make_vectors
+from icdgen.vectors.make import FrameVector, MessageVectors, RawValues, make_vectors
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER, Assignments, bits_of
 from icdgen.vectors.shared import SharedRow
@@ -192,7 +192,7 @@ class _SelftestFile:
                 if differ
                 else []
             ),
-            "refused_lengths": vectors.lengths,
+            "refused_lengths": vectors.refused_lengths,
             "tail": (
                 _variable_part_values(message, message.last_part, vectors)
                 if message.last_part is not None
@@ -235,12 +235,12 @@ class _SelftestFile:
         tables = tables_by_line.setdefault(line, stem)
         unfit = [
             v
-            for v in vectors.unfit.get(field.name, ())
+            for v in vectors.refused_raws.get(field.name, ())
             if not is_bytes and storage.min <= v <= storage.max
         ]
-        settings = vectors.settings.get(field.name)
+        assignments = vectors.assignments.get(field.name)
         accessors = {
-            accessor.kind: _accessor_rows(accessor, settings)
+            accessor.kind: _accessor_rows(accessor, assignments)
             for accessor in accessors_of(description, "text", "double", "integer")
             if accessor.kind != "integer" or accessor.is_settable
         }
@@ -309,7 +309,7 @@ def _vectors_in_c(
         )
     if not message.optional_members:
         return vectors
-    absent: Raw = {
+    absent: RawValues = {
         field.model.name: field.model.initial_value
         for field in message.optional_members
     }
@@ -327,12 +327,14 @@ def _vectors_in_c(
             for field in scaled
         }
         rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
-    always = {name: raws for name, raws in vectors.unfit.items() if name not in absent}
+    always = {
+        name: raws for name, raws in vectors.refused_raws.items() if name not in absent
+    }
     fresh = {
         field.name: field.initial_value for field in raw_fields_in(message.model.layout)
     }
     return replace(
-        vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always
+        vectors, rows=tuple(rows), default=vectors.default | fresh, refused_raws=always
     )
 
 
@@ -358,38 +360,39 @@ def _variable_part_values(
         # `icdgen_selftest.c` expects frame i at byte i * `length` of a flat array.
         "frames": _byte_rows(
             b"".join(
-                frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted
+                frame.ljust(message.model.length, b"\0")
+                for frame in vectors.refused_frames
             )
         ),
-        "frame_lengths": list(map(len, vectors.miscounted)),
+        "frame_lengths": list(map(len, vectors.refused_frames)),
     }
 
 
-def _accessor_rows(accessor: Accessor, settings: Assignments | None) -> AccessorRows:
+def _accessor_rows(accessor: Accessor, assignments: Assignments | None) -> AccessorRows:
     """Return accessors with test values.
 
-    ``settings`` is None for an overlay field, because it has no setter.
+    ``assignments`` is None for an overlay field, because it has no setter.
     """
     if accessor.kind == "text":
-        type, rows = "char", _text_rows(settings or [])
+        type, rows = "char", _text_rows(assignments or [])
     elif accessor.kind == "integer":
         type, rows = f"int{accessor.integers.bits}_t", _integer_rows(accessor)
     else:
         type = "double"
-        rows = [] if settings is None else _double_rows(accessor.field, settings)
+        rows = [] if assignments is None else _double_rows(accessor.field, assignments)
     stem = names.stem(accessor.field.declaration.message)
     return AccessorRows(
         f"{stem}_{accessor.name}", f"{stem}_set_{accessor.name}", type, rows
     )
 
 
-def _text_rows(settings: Assignments) -> list[str]:
+def _text_rows(assignments: Assignments) -> list[str]:
     """Return assignments of texts: the resulting bytes, or a refusal.
 
     C strings cannot represent all bytes, so other contents are omitted.
     """
     lines = []
-    for text, raw in settings:
+    for text, raw in assignments:
         assert not isinstance(raw, int)
         octets = (
             "NULL"
@@ -409,12 +412,12 @@ def _integer_of(value: int | bytes) -> int:
     return value
 
 
-def _double_rows(field: FieldDescription, settings: Assignments) -> list[str]:
+def _double_rows(field: FieldDescription, assignments: Assignments) -> list[str]:
     """Return assignments of doubles: the resulting raw value, or a refusal."""
     lines = []
     # Floats accept NaN and infinities.
     never = () if field.model.type == "float" else NEVER
-    for bits, raw in [*settings, *((bits, None) for bits in never)]:
+    for bits, raw in [*assignments, *((bits, None) for bits in never)]:
         assert not isinstance(raw, bytes)
         lines.append(
             f"{{UINT64_C(0x{bits}), {_unsigned_literal(raw or 0)}, {'true' if raw is None else 'false'}}},"

@@ -70,7 +70,7 @@ def _all_frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     """Yield purpose and bytes of each frame; none of a message without bytes."""
     if message.length:
         yield from patterns.frames(message, node)
-        for index, raw in enumerate(patterns.raw_columns(message, node)):
+        for index, raw in enumerate(patterns.value_sets(message, node)):
             yield f"chosen values {index}", codec.encode(node, message, raw)
 
 
