@@ -81,7 +81,7 @@ def mirrored(change: Change) -> tuple:
         *subject(change)[::-1],
         change.new,
         change.old,
-        change.sure,
+        change.confidence,
     )
 
 
@@ -93,7 +93,7 @@ def as_it_is(change: Change) -> tuple:
         *subject(change),
         change.old,
         change.new,
-        change.sure,
+        change.confidence,
     )
 
 
@@ -138,7 +138,7 @@ def test_changes_are_complete_and_ordered_by_layer(names, seed):
         LAYERS.index(c.layer) for c in changes
     )
     for change in changes:
-        assert change.message and change.where.node and 0 < change.sure <= 1
+        assert change.message and change.where.node and 0 < change.confidence <= 1
         assert change.was != change.now or change.code in (
             "DIF108",
             "DIF109",

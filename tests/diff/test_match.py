@@ -48,7 +48,7 @@ def test_the_same_layout_under_another_name_and_id_is_a_rename(tmp_path):
         tmp_path, message("Rates", 130, *AXES), message("Gyro Rates", 131, *AXES)
     )
     assert codes(reported) == ["DIF103", "DIF301"]
-    assert 0 < reported[0].sure < 1
+    assert 0 < reported[0].confidence < 1
 
 
 def test_another_layout_under_another_name_is_another_message(tmp_path):

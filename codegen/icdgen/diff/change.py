@@ -20,7 +20,7 @@ CERTAIN, LIKELY = 0.95, 0.7
 class Change:
     """Change between two ICDs.
 
-    ``sure``: confidence from 0 to 1 that old and new side are the same object; 1 if the
+    ``confidence``: from 0 to 1, that old and new side are the same object; 1 if the
     names are equal.
     """
 
@@ -34,7 +34,7 @@ class Change:
     details: tuple[str, ...]
     severity: str  # "error" | "warning" | "note"
     addition: bool  # new object that existing software does not depend on
-    sure: float
+    confidence: float
     errata: tuple[str, ...]  # errata that cause the change: "ACP-007 is new"
     pair: Pair = field(compare=False, repr=False)
 
@@ -70,18 +70,20 @@ class Change:
     @property
     def certainty(self) -> str:
         """Confidence of the match as a word; empty for a match by name."""
-        if self.sure >= 1:
+        if self.confidence >= 1:
             return ""
-        if self.sure >= CERTAIN:
+        if self.confidence >= CERTAIN:
             return "certain"
-        return "likely" if self.sure >= LIKELY else "uncertain"
+        return "likely" if self.confidence >= LIKELY else "uncertain"
 
     @property
     def notes(self) -> list[str]:
         """Notes of the change: consequences, confidence of the match, errata."""
         notes = list(self.details)
         if self.certainty:
-            notes.append(f"Matched by similarity, {self.certainty} ({self.sure:.0%}).")
+            notes.append(
+                f"Matched by similarity, {self.certainty} ({self.confidence:.0%})."
+            )
         if self.errata:
             notes.append(f"Because erratum {', '.join(self.errata)}.")
         return notes

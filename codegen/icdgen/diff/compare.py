@@ -32,19 +32,24 @@ from icdgen.icd.model import Icd
 from icdgen.wording import listing, quote
 
 RULES: dict[str, DiffRule] = dict(sorted(REGISTERED.items()))
-# (kind of pair, presence) -> check -> default code
+# (kind of pair, presence) -> check -> code of its rule. A check of several rules names
+# the code in each result instead.
 _CHECKS: dict[tuple[str, str], dict[Check, str]] = {}
 for _rule in RULES.values():
     for _of in _rule.of:
-        _CHECKS.setdefault((_of, _rule.when), {})[_rule.check] = _rule.code
+        _CHECKS.setdefault((_of, _rule.presence), {})[_rule.check] = _rule.code
 
 
-MOST_PLACES = 3  # maximum number of places shown for a change of a struct
+MOST_OTHER_USES = 3  # maximum number of other uses shown for a change of a struct
 
 
 @dataclass
 class Comparison:
-    """Changes in the order of the new ICD, and the matched pairs."""
+    """Changes by layer, and the matched pairs.
+
+    In each layer, changes are in the order of the new ICD; those of removed objects
+    come last.
+    """
 
     match: Match
     changes: list[Change]
@@ -57,7 +62,7 @@ def compare(old: Icd, new: Icd) -> Comparison:
     Order, formatting and spelling of formulas are ignored.
     """
     context = ComparisonContext(match(old, new))
-    # The sort is stable: within a layer, changes keep the order of the ICD.
+    # The sort is stable: within a layer, changes keep the order of the pairs.
     changes = sorted(
         _merge_struct_changes(_all_changes(context)),
         key=lambda c: LAYERS.index(c.layer),
@@ -66,12 +71,12 @@ def compare(old: Icd, new: Icd) -> Comparison:
 
 
 def _merge_struct_changes(changes: Iterable[Change]) -> list[Change]:
-    """Report a change of a struct once, at its first use, and list the other uses in
-    its details.
+    """Return the changes with each change of a struct once, at its first use; its
+    details list the other uses.
     """
     result: list[Change] = []
     indexes: dict[object, int] = {}
-    other_places: dict[int, list[str]] = {}
+    other_uses: dict[int, list[str]] = {}
     for change in changes:
         key = _struct_key(change)
         if key is None or key not in indexes:
@@ -80,15 +85,15 @@ def _merge_struct_changes(changes: Iterable[Change]) -> list[Change]:
             result.append(change)
         else:
             where = change.where
-            other_places.setdefault(indexes[key], []).append(
+            other_uses.setdefault(indexes[key], []).append(
                 f"{quote(where.field)} of {quote(where.message)}"
             )
-    for index, places in other_places.items():
-        if len(places) > MOST_PLACES:
-            places[MOST_PLACES - 1 :] = [f"{len(places) - MOST_PLACES + 1} more"]
+    for index, uses in other_uses.items():
+        if len(uses) > MOST_OTHER_USES:
+            uses[MOST_OTHER_USES - 1 :] = [f"{len(uses) - MOST_OTHER_USES + 1} more"]
         result[index] = replace(
             result[index],
-            details=(*result[index].details, f"The same of {listing(places)}."),
+            details=(*result[index].details, f"The same of {listing(uses)}."),
         )
     return result
 
@@ -106,15 +111,18 @@ def _struct_key(change: Change) -> object:
     if not isinstance(pair, FieldPair) or not pair.is_of_struct:
         return None
     sides = [side for side in (pair.before, pair.after) if side is not None]
+    # All uses of a struct have the source places of its fields. A use that is shifted
+    # by another number of bits has a different change.
     return change.rule.code, change.old, change.new, sides[-1].at - sides[0].at
 
 
 def _all_changes(context: ComparisonContext) -> Iterator[Change]:
+    """Yield the changes of whole ICDs, then those of each node and of its parts."""
     # Checks of whole ICDs name the pair of each result themselves.
     for check, code in _CHECKS["icd", "both"].items():
-        for finding in check(context):
-            assert finding.pair is not None
-            yield _change(RULES[code], finding.pair, finding)
+        for result in check(context):
+            assert result.pair is not None
+            yield _change(RULES[code], result.pair, result)
     for node in context.match.nodes:
         yield from _run("node", node, context)
         for owner in node.declared:
@@ -129,12 +137,12 @@ def _all_changes(context: ComparisonContext) -> Iterator[Change]:
 
 
 def _run(of: str, pair: Pair, context: ComparisonContext) -> Iterator[Change]:
-    # Rules are registered for pairs with both sides, or with one side only.
+    """Yield the changes that the rules of a kind of pair find in a pair, by code."""
     if pair.both:
-        when = "both"
+        presence = "both"
     else:
-        when = "gone" if pair.after is None else "come"
-    checks = _CHECKS.get((of, when), {})
+        presence = "removed" if pair.after is None else "added"
+    checks = _CHECKS.get((of, presence), {})
     results = [
         (result.code or code, result)
         for check, code in checks.items()
@@ -145,6 +153,9 @@ def _run(of: str, pair: Pair, context: ComparisonContext) -> Iterator[Change]:
 
 
 def _change(rule: DiffRule, pair: Pair, result: CheckResult) -> Change:
+    """Return the result of a check as a change; the pair and the rule supply what the
+    result leaves out.
+    """
     old, new = result.places or pair.places(result.keys)
     return Change(
         rule=rule,
@@ -157,15 +168,15 @@ def _change(rule: DiffRule, pair: Pair, result: CheckResult) -> Change:
         details=result.details,
         severity=result.severity or rule.severity,
         addition=rule.addition if result.addition is None else result.addition,
-        sure=pair.sure,
-        errata=_decisions(pair, result.keys),
+        confidence=pair.confidence,
+        errata=_errata_notes(pair, result.keys),
         pair=pair,
     )
 
 
-def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the errata that were added, removed or changed and that concern one of
-    these keys of the pair.
+def _errata_notes(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
+    """Return a note on each erratum that was added, removed or changed and that
+    concerns one of these keys of the pair.
     """
     if isinstance(pair, NodePair):
         return ()
@@ -173,7 +184,7 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
         {e.id: e for e in side.errata} if side is not None else {}
         for side in (pair.before, pair.after)
     )
-    decisions = []
+    notes = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)
         # `held` of an erratum lists the keys that it corrects, with their values.
@@ -184,9 +195,9 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
         if before == after or affected_keys.isdisjoint(keys):
             continue
         if before is None:
-            decisions.append(f"{key} is new")
+            notes.append(f"{key} is new")
         elif after is None:
-            decisions.append(f"{key} is gone")
+            notes.append(f"{key} is gone")
         else:
-            decisions.append(f"{key} says otherwise")
-    return tuple(decisions)
+            notes.append(f"{key} says otherwise")
+    return tuple(notes)

@@ -223,13 +223,17 @@ def _paired(
     """
 
     def paired(
-        home: NodePair, node: NodePair, old: object, new: object, sure: float = 1.0
+        home: NodePair,
+        node: NodePair,
+        old: object,
+        new: object,
+        confidence: float = 1.0,
     ) -> tuple[NodePair, Paired]:
         elsewhere = home is not node
         pair = kind(
             old,
             new,
-            sure,
+            confidence,
             old_node=home.before or home.any,
             new_node=node.any,
             is_of_another_node=elsewhere,
@@ -256,11 +260,11 @@ def _paired(
     # Each score only sees the objects that earlier scores left unmatched.
     for score, keys, least in likely:
         taken: set[_Unmatched[Declared]] = set()
-        for old_item, new_item, sure in _best_pairs(
+        for old_item, new_item, confidence in _best_pairs(
             left_old, left_new, score, least, keys
         ):
             yield paired(
-                old_item.home, new_item.home, old_item.thing, new_item.thing, sure
+                old_item.home, new_item.home, old_item.thing, new_item.thing, confidence
             )
             taken |= {old_item, new_item}
         left_old = [left for left in left_old if left not in taken]

@@ -40,12 +40,12 @@ Row = TypeVar("Row")
 class SideBySide(Generic[Thing]):
     """Object in both ICDs.
 
-    ``sure``: confidence of the match, 1 for equal names.
+    ``confidence``: that both are the same object, 0 to 1; 1 for equal names.
     """
 
     before: Thing | None
     after: Thing | None
-    sure: float = 1.0
+    confidence: float = 1.0
     # Declaration that moved to another node
     is_of_another_node: bool = field(default=False, kw_only=True)
 

@@ -32,7 +32,7 @@ class CheckResult(NamedTuple):
     addition: bool | None = None
     where: Where | None = None  # None: location of the pair
     places: Places | None = None  # None: places of the keys
-    pair: Pair | None = None  # of a check of the whole ICDs: pair of the finding
+    pair: Pair | None = None  # of a check of the whole ICDs: pair of the result
     code: str = ""  # code of the rule, if a check is registered for several rules
 
 
@@ -55,8 +55,9 @@ class DiffRule:
     check: Check
     severity: str = "error"  # "error" | "warning" | "note"
     addition: bool = False  # new object that existing software does not depend on
-    # Pairs on both sides, "gone": only in the old ICD, "come": only in the new one
-    when: str = "both"
+    # Pairs that the rule checks: "both" sides exist, the object was "removed" (only in
+    # the old ICD) or "added" (only in the new one)
+    presence: str = "both"
 
     @property
     def page(self) -> pages.RulePage:
@@ -77,13 +78,13 @@ def rule(
     *of: str,
     severity: str = "error",
     addition: bool = False,
-    when: str = "both",
+    presence: str = "both",
 ) -> Callable[[Check], Check]:
     """Register the decorated function as check of a rule. The name of its module is the
     theme.
 
-    A function that reports several kinds of changes is registered for each, and its
-    findings name their code.
+    A function that reports several kinds of changes is registered for each, and each
+    of its results names its code.
     """
 
     def register(check: Check) -> Check:
@@ -91,7 +92,14 @@ def rule(
             raise ValueError(f"two rules are called {code}")
         theme = check.__module__.rpartition(".")[2]
         REGISTERED[code] = DiffRule(
-            code, LAYERS[int(code[3]) - 1], of, theme, check, severity, addition, when
+            code,
+            LAYERS[int(code[3]) - 1],
+            of,
+            theme,
+            check,
+            severity,
+            addition,
+            presence,
         )
         return check
 

@@ -79,7 +79,7 @@ def renumbered(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult
         )
 
 
-@rule("DIF207", "member", severity="warning", when="gone")
+@rule("DIF207", "member", severity="warning", presence="removed")
 def member_removed(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"{pair.old.values} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
     yield CheckResult(
@@ -91,7 +91,7 @@ def member_removed(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckRe
     )
 
 
-@rule("DIF208", "member", severity="note", when="come", addition=True)
+@rule("DIF208", "member", severity="note", presence="added", addition=True)
 def member_added(pair: MemberPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"{pair.new.values} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
     yield CheckResult(

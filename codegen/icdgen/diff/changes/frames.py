@@ -24,13 +24,13 @@ def _summary(message: Message) -> str:
     return f"{message.kind} {ids(message.ids)}, {length_text(message)}"
 
 
-@rule("DIF101", "message", when="gone")
+@rule("DIF101", "message", presence="removed")
 def removed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"{quote(pair.old.name)} is gone: {pair.old.kind} {ids(pair.old.ids)} is no longer spoken"
     yield CheckResult(text, ("name",), _summary(pair.old), "")
 
 
-@rule("DIF102", "message", when="come", severity="note", addition=True)
+@rule("DIF102", "message", presence="added", severity="note", addition=True)
 def added(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     yield CheckResult(
         f"{quote(pair.new.name)} is new: {_summary(pair.new)}",
@@ -236,13 +236,13 @@ def end_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckResu
     )
 
 
-@rule("DIF130", "node", when="gone")
+@rule("DIF130", "node", presence="removed")
 def node_removed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"node `{pair.old.name}` is gone, with {count(len(pair.old.messages), 'message')}"
     yield CheckResult(text, ("name",), pair.old.name, "")
 
 
-@rule("DIF131", "node", when="come", severity="note", addition=True)
+@rule("DIF131", "node", presence="added", severity="note", addition=True)
 def node_added(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     text = f"node `{pair.new.name}` is new, with {count(len(pair.new.messages), 'message')}"
     yield CheckResult(text, ("name",), "", pair.new.name)

@@ -245,14 +245,14 @@ def id_width_changed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckRe
         )
 
 
-@rule("DIF113", "field", when="gone")
+@rule("DIF113", "field", presence="removed")
 def field_removed(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if not pair.old.is_read_only and not ctx.is_reported_for_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
         yield CheckResult(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
-@rule("DIF114", "field", when="come", severity="note", addition=True)
+@rule("DIF114", "field", presence="added", severity="note", addition=True)
 def field_added(pair: FieldPair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if not pair.new.is_read_only and not ctx.is_reported_for_message(pair):
         where = (

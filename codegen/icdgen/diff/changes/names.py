@@ -105,7 +105,7 @@ def node_renamed(pair: NodePair, ctx: ComparisonContext) -> Iterator[CheckResult
         yield CheckResult(text, ("name",), old, new, (f"It declares {what}.",))
 
 
-@rule("DIF306", "message", "field", "enum", "member", "node", when="gone")
+@rule("DIF306", "message", "field", "enum", "member", "node", presence="removed")
 def names_gone(pair: Pair, ctx: ComparisonContext) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
@@ -202,7 +202,7 @@ def declared_elsewhere(
     "enum",
     "member",
     "node",
-    when="come",
+    presence="added",
     severity="note",
     addition=True,
 )

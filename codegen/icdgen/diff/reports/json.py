@@ -90,7 +90,7 @@ def _change(
         "new": _place(change.new),
         "details": change.details,
         # Three digits are enough to compare matches.
-        "sure": round(change.sure, 3),
+        "sure": round(change.confidence, 3),
         "errata": change.errata,
         "generated": names_by_language,
     }

@@ -53,7 +53,7 @@ def _add_properties(result: dict[str, Any], change: Change) -> None:
     result["properties"] = {
         "layer": change.layer,
         "addition": change.addition,
-        "sure": round(change.sure, 3),
+        "sure": round(change.confidence, 3),
     }
     if change.old is not None and change.new is not None:
         where = {
