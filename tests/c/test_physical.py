@@ -108,7 +108,7 @@ def row(field: FieldDescription) -> dict[str, object]:
     for accessor in accessors_of(field, "integer"):
         keys["get_whole"] = f"{name}_{accessor.name}"
         keys["set_whole"] = f"{name}_set_{accessor.name}"
-        keys["whole"] = f"int{accessor.integers.bits}_t"
+        keys["whole"] = f"int{accessor.integer_access.bits}_t"
     return keys
 
 

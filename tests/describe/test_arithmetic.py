@@ -57,11 +57,11 @@ def test_a_division_of_doubles_is_the_correctly_rounded_value_where_the_arithmet
 ):
     p, c, q = case.steps.terms
     for raw in raws(case):
-        if case.is_exact_in_doubles:
+        if case.is_computable_in_doubles:
             assert (float(raw) * float(p) + float(c)) / float(q) == case.steps.double(
                 raw
             )
-        if case.is_exact_in_int64:
+        if case.is_exact_in_int64_and_double:
             assert -(1 << 63) <= raw * p + c < 1 << 63
             assert float(raw * p + c) / float(q) == case.steps.double(raw)
 
@@ -72,7 +72,7 @@ def test_a_division_of_singles_is_the_nearest_single_where_the_arithmetic_is_exa
     case,
 ):
     p, c, q = case.steps.terms
-    if case.is_exact_in_singles:
+    if case.is_computable_in_singles:
         for raw in raws(case):
             numerator = single(single(raw * float(p)) + float(c))
             assert numerator == raw * p + c and single(float(q)) == q
@@ -80,14 +80,14 @@ def test_a_division_of_singles_is_the_nearest_single_where_the_arithmetic_is_exa
 
 
 def test_no_language_has_to_convert_an_integer_of_64_bits_to_a_double_or_of_32_bits_to_a_single():
-    assert arithmetic("uint", 16, Fraction(1, 2)).is_exact_in_singles
-    assert not arithmetic("uint", 17, Fraction(1, 2)).is_exact_in_singles
-    assert arithmetic("uint", 32, Fraction(1, 2)).is_exact_in_doubles
-    assert not arithmetic("uint", 33, Fraction(1, 2)).is_exact_in_doubles
-    assert arithmetic("uint", 32, Fraction(1, 2)).is_exact_in_int64
+    assert arithmetic("uint", 16, Fraction(1, 2)).is_computable_in_singles
+    assert not arithmetic("uint", 17, Fraction(1, 2)).is_computable_in_singles
+    assert arithmetic("uint", 32, Fraction(1, 2)).is_computable_in_doubles
+    assert not arithmetic("uint", 33, Fraction(1, 2)).is_computable_in_doubles
+    assert arithmetic("uint", 32, Fraction(1, 2)).is_exact_in_int64_and_double
     assert not arithmetic(
         "uint", 33, Fraction(1, 2)
-    ).is_exact_in_int64  # its storage holds 2**64 - 1
+    ).is_exact_in_int64_and_double  # its storage holds 2**64 - 1
 
 
 @given(cases)
@@ -105,7 +105,7 @@ def test_every_term_of_a_usual_scale_is_a_literal_of_64_bits(case):
 @example(arithmetic("int", 16, Fraction(1, 1000)))
 @example(arithmetic("uint", 32, Fraction(-1), Fraction(1 << 31)))
 def test_integer_accessors_overflow_for_no_raw_value_and_no_value_that_is_set(case):
-    access = case.integers
+    access = case.integer_access
     if access is None:
         return
     factor, offset = access.scale.factor, access.scale.offset

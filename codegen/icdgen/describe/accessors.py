@@ -42,10 +42,10 @@ class Accessor(NamedTuple):
     scale: IntegerScale | None = None  # of an integer
 
     @property
-    def integers(self) -> IntegerAccess:
-        """Integers of 32 or 64 bits that compute an ``integer``."""
+    def integer_access(self) -> IntegerAccess:
+        """Integer types and limits of an accessor of the kind ``integer``."""
         access = (
-            self.field.arithmetic.integers
+            self.field.arithmetic.integer_access
             if self.field.arithmetic is not None
             else None
         )
@@ -90,7 +90,7 @@ def accessors_of(field: FieldDescription, *kinds: Kind) -> Iterator[Accessor]:
         yield Accessor(field, "single", f"{field.physical_name}_f32", False)
     scale = field.integer_scale
     if scale is not None:
-        kind = "long integer" if field.arithmetic.integers is None else "integer"
+        kind = "long integer" if field.arithmetic.integer_access is None else "integer"
         if kind in kinds:
             name = f"{field.declared_name}_{part_of_unit(field.model, scale.per)[0]}"
             yield Accessor(field, kind, name, field.is_settable, scale)

@@ -1,8 +1,9 @@
-"""Arithmetic of physical values: which integers and floats hold every step of it
-without an error.
+"""Arithmetic of linear scales, physical = (raw*p + c) / q: which integers and floats
+represent every step of it without an error.
 
-Languages differ in how they spell a step. They do not differ in which steps are exact,
-so that is decided here.
+`arithmetic_of` is the entry. Which steps are exact is decided here for all languages.
+The languages differ in which type they use: C computes raw*p + c in integers of 64
+bits, Rust in floats.
 """
 
 from __future__ import annotations
@@ -22,27 +23,31 @@ from icdgen.frozen import NamedTuple, dataclass
 from icdgen.once import cached_property
 
 _INT64_MAX = (1 << 63) - 1
-_BITS_IN_DOUBLE = 32
-"""The widest integers that every language converts to a double without a loss; the next
-ones have 64 bits.
-"""
-_BITS_IN_SINGLE = 16
-"""The widest integers that every language converts to a 32-bit float without a loss."""
+# Rust has `f64::from` only for integers of up to 32 bits, and `f32::from` only for
+# integers of up to 16 bits. Wider types have values that are no such floats.
+_WIDEST_STORAGE_FOR_DOUBLE = 32
+_WIDEST_STORAGE_FOR_SINGLE = 16
 
 
 class IntegerAccess(NamedTuple):
-    """Accessors of a physical value in whole parts of its unit, without floating point."""
+    """Integer types and limits of the accessors of a physical value in thousandths or
+    millionths of its unit, for programs without floating point.
+    """
 
     scale: IntegerScale
     bits: int  # 32 | 64: of the signed integer that callers give and get
-    setter_bits: int  # 32 | 64: of the integer in which a setter subtracts the offset
-    least: int | None  # a setter refuses smaller values; None if the integer holds none
-    most: int | None  # a setter refuses larger values; None if the integer holds none
+    setter_bits: int  # 32 | 64: of the difference `value - offset` in a setter in C
+    # A setter refuses smaller values than `least` and larger ones than `most`. None: no
+    # check, since the type has no such values.
+    least: int | None
+    most: int | None
 
 
 class Int64Terms(NamedTuple):
-    """p, c and q of `Steps` as literals of 64 bits; of a negated scale p and c have the
-    opposite signs.
+    """Terms p, c and q of a scale as literals of 64 bits.
+
+    If ``is_negated``, they compute the negative of the physical value. This is so only
+    for c = 2**63, for which there is no literal; -2**63 has one.
     """
 
     p: int
@@ -59,9 +64,10 @@ class ScaleArithmetic:
     storage: Storage
 
     @property
-    def is_exact_in_int64(self) -> bool:
-        """Whether raw*p + c is exact in a signed integer of 64 bits and as a double, so
-        that only the division rounds.
+    def is_exact_in_int64_and_double(self) -> bool:
+        """Whether raw*p + c is exact in a signed integer of 64 bits and also as a
+        double, so that only the division rounds. Generated C computes the integer and
+        divides it as a double (`icdgen_quotient`).
 
         The integer does not overflow for any value of the storage. The double is exact
         for the values of the field, which are fewer if the field has fewer bits than
@@ -75,18 +81,20 @@ class ScaleArithmetic:
         )
 
     @property
-    def is_exact_in_doubles(self) -> bool:
-        """Whether the raw value, raw*p and raw*p + c are exact as doubles, so that only
-        the division rounds.
+    def is_computable_in_doubles(self) -> bool:
+        """Whether code can compute in doubles so that only the division rounds.
+
+        In addition to `Steps.exact_in_doubles`, every value of the storage type is a
+        double, so that languages convert it without a loss.
         """
-        return self._is_exact(_BITS_IN_DOUBLE, EXACT_DOUBLE)
+        return self._is_exact(_WIDEST_STORAGE_FOR_DOUBLE, EXACT_DOUBLE)
 
     @property
-    def is_exact_in_singles(self) -> bool:
-        """Whether the raw value, raw*p and raw*p + c are exact as floats of 32 bits, so
-        that only the division rounds.
+    def is_computable_in_singles(self) -> bool:
+        """Whether code can compute in floats of 32 bits so that only the division
+        rounds.
         """
-        return self._is_exact(_BITS_IN_SINGLE, EXACT_SINGLE)
+        return self._is_exact(_WIDEST_STORAGE_FOR_SINGLE, EXACT_SINGLE)
 
     def _is_exact(self, most_bits: int, largest: int) -> bool:
         return (
@@ -99,10 +107,7 @@ class ScaleArithmetic:
 
     @property
     def int64_terms(self) -> Int64Terms:
-        """The terms of a scale that is not wide.
-
-        An offset of 2**63 has no literal, but its negative has.
-        """
+        """Terms of a scale that is not wide."""
         p, c, q = self.steps.terms
         return (
             Int64Terms(-p, -c, q, True)
@@ -111,9 +116,9 @@ class ScaleArithmetic:
         )
 
     @cached_property
-    def integers(self) -> IntegerAccess | None:
-        """The integer accessors; None if the values are not whole thousandths or
-        millionths, or a step may overflow.
+    def integer_access(self) -> IntegerAccess | None:
+        """Types and limits of the accessors in thousandths or millionths; None if the
+        values are not whole numbers of these, or a step may overflow.
         """
         scale = integer_scale(self.steps)
         bits = None if scale is None else integer_bits(scale, self.storage)
@@ -139,5 +144,7 @@ class ScaleArithmetic:
 
 @lru_cache(maxsize=4096)
 def arithmetic_of(steps: Steps, storage: Storage) -> ScaleArithmetic:
-    """Return the arithmetic of a scale."""
+    """Return the arithmetic of a scale; the same object for the same arguments, so
+    that `integer_access` is computed once.
+    """
     return ScaleArithmetic(steps, storage)

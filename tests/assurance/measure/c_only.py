@@ -52,7 +52,7 @@ def source(icd: Icd) -> str:
 
 def _message(message: MessageDescription) -> dict[str, Any]:
     integers = {
-        field.model.name: (accessor.name, accessor.integers)
+        field.model.name: (accessor.name, accessor.integer_access)
         for field in message.fields
         for accessor in accessors_of(field, "integer")
     }

@@ -80,16 +80,16 @@ def _double_code(accessor: Accessor) -> CAccessorCode:
 
 
 def _integer_code(accessor: Accessor) -> CAccessorCode:
-    field, integers = accessor.field, accessor.integers
-    refused = physical.integer_range(integers)
+    field, access = accessor.field, accessor.integer_access
+    refused = physical.integer_range(access)
     return CAccessorCode(
         accessor.name,
-        f"int{integers.bits}_t",
+        f"int{access.bits}_t",
         accessor.comment,
         accessor.title,
-        physical.integer_value(integers, _raw_value(field)),
+        physical.integer_value(access, _raw_value(field)),
         (
-            f"{_member_expression(field)} = {physical.integer_raw(integers, field.storage)};"
+            f"{_member_expression(field)} = {physical.integer_raw(access, field.storage)};"
             if accessor.is_settable
             else ""
         ),

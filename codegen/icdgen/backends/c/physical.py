@@ -105,7 +105,7 @@ def double_value(field: FieldDescription, raw: str) -> str:
     kind = _function_suffix(storage, 64)
     if steps.is_wide:
         return f"icdgen_wide_physical_{kind}({raw}, &scale)"
-    if field.arithmetic.is_exact_in_int64:
+    if field.arithmetic.is_exact_in_int64_and_double:
         p, c, q = steps.terms
         return f"icdgen_quotient({_linear_expression(raw, p, c, 64)}, {int64(q)})"
     *terms, is_negated = field.arithmetic.int64_terms
@@ -161,7 +161,7 @@ def integer_value(access: IntegerAccess, raw: str) -> str:
 def _linear_expression(raw: str, factor: int, offset: int, bits: int) -> str:
     # The type of `raw` is never `uint64_t`, which would make the product unsigned: the
     # product must not overflow for any of its values
-    # (`icdgen.describe.integer_scale.computable`).
+    # (`icdgen.describe.integer_scale.is_computable`).
     return _with_offset(
         raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits
     )

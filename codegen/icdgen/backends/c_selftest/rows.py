@@ -376,7 +376,7 @@ def _accessor_rows(accessor: Accessor, assignments: Assignments | None) -> Acces
     if accessor.kind == "text":
         type, rows = "char", _text_rows(assignments or [])
     elif accessor.kind == "integer":
-        type, rows = f"int{accessor.integers.bits}_t", _integer_rows(accessor)
+        type, rows = f"int{accessor.integer_access.bits}_t", _integer_rows(accessor)
     else:
         type = "double"
         rows = [] if assignments is None else _double_rows(accessor.field, assignments)
@@ -431,7 +431,7 @@ def _integer_rows(accessor: Accessor) -> list[str]:
     assert field.steps is not None
     for raw in values(field.model):
         assert isinstance(raw, int)
-        exact = field.steps.physical(raw) * accessor.integers.scale.per
+        exact = field.steps.physical(raw) * accessor.integer_access.scale.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned_literal(raw)}, {physical.int64(int(exact))}}},")
     return lines

@@ -70,9 +70,9 @@ def _accessor_code(accessor: Accessor) -> RustAccessorCode:
             accessor.name, "f32", accessor.comment, single_value(field)
         )
     if accessor.kind == "integer":
-        type, refused = f"i{accessor.integers.bits}", "if it does not fit"
-        value = integer_value(field, accessor.integers)
-        raw = integer_raw(field, accessor.integers)
+        type, refused = f"i{accessor.integer_access.bits}", "if it does not fit"
+        value = integer_value(field, accessor.integer_access)
+        raw = integer_raw(field, accessor.integer_access)
     else:
         type, value, raw = "f64", double_value(field), double_raw(field)
         refused = (

@@ -35,7 +35,7 @@ def has_constant(field: FieldDescription) -> bool:
     if not field.model.is_read_only:
         return arithmetic is not None or field.is_narrow
     return arithmetic is not None and not (
-        arithmetic.is_exact_in_doubles and arithmetic.is_exact_in_singles
+        arithmetic.is_computable_in_doubles and arithmetic.is_computable_in_singles
     )
 
 
@@ -84,7 +84,7 @@ def double_value(field: FieldDescription) -> str:
             # refuses `f64::from` of it.
             f"{curve_name(field)}.physical({raw if is_long else f'f64::from({raw})'})"
         )
-    if not field.arithmetic.is_exact_in_doubles:
+    if not field.arithmetic.is_computable_in_doubles:
         return f"{scale_name(field)}.physical({raw})"
     # Such a raw value has at most 32 bits: `f64` has no `From` for wider integers.
     return _quotient(field.arithmetic.steps, f"f64::from({raw})")
@@ -127,7 +127,7 @@ def integer_raw(field: FieldDescription, access: IntegerAccess) -> str:
 def single_value(field: FieldDescription) -> str:
     """Return the physical value of a field with a scale in single precision."""
     assert field.arithmetic is not None
-    if not field.arithmetic.is_exact_in_singles:
+    if not field.arithmetic.is_computable_in_singles:
         return f"{scale_name(field)}.single({raw_value(field)})"
     # Such a raw value has at most 16 bits: `f32` has no `From` for wider integers.
     return _quotient(field.arithmetic.steps, f"f32::from({raw_value(field)})")
