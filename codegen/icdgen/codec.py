@@ -371,7 +371,7 @@ def initial_frame(node: Node, message: Message) -> bytes:
 def initial_value(message: Message, field: FrameField) -> RawValue:
     """Return the raw value of a field of a new message: see `Scalar.initial_value`."""
     return field.scalar.initial_value(
-        field.bits, message.layout.smallest_raw(field.name)
+        field.bits, message.layout.smallest_raw_of_counter(field.name)
     )
 
 

@@ -47,7 +47,7 @@ def test_messages_with_parts_of_variable_length_accept_the_lengths_of_their_last
     single = [
         message.layout
         for message in messages
-        if message.layout.parts and not message.layout.has_gaps
+        if message.layout.parts and not message.layout.has_inner_gaps
     ]
     assert single
     for layout in single:
@@ -57,7 +57,7 @@ def test_messages_with_parts_of_variable_length_accept_the_lengths_of_their_last
             for length in range(layout.longest + 9)
             if all(passes(test, length) for test in tests)
         ]
-        assert accepted == list(layout.parts[0].lengths) == list(layout.lengths)
+        assert accepted == list(layout.parts[0].possible_ends) == list(layout.lengths)
 
 
 def test_a_decoder_accepts_exactly_the_counters_of_a_variable_part():

@@ -86,7 +86,7 @@ def _compared(
                 frame,
                 {field: field.const for field in fields if field.const is not None},
             )
-            if message.layout.parts and not message.layout.has_gaps:
+            if message.layout.parts and not message.layout.has_inner_gaps:
                 (part,) = message.layout.parts
                 has_more = has_variable_length(message) and not part.is_rest
                 more = (

@@ -354,7 +354,7 @@ class VariablePartDescription(NamedTuple):
         """Bytes up to the end of the part in the longest frame, by the number of
         elements beyond the fewest.
         """
-        return ElementBytes(self.model.shortest, self.model.step)
+        return ElementBytes(self.model.end_if_fewest, self.model.step)
 
     @property
     def chunks(self) -> tuple[Chunk, ...]:

@@ -101,14 +101,14 @@ class MessageDescription(Composite[Message]):
         return tuple(parts)
 
     @property
-    def has_gaps(self) -> bool:
+    def has_inner_gaps(self) -> bool:
         """Whether a frame can differ from the beginning of the longest frame."""
-        return self.model.layout.has_gaps
+        return self.model.layout.has_inner_gaps
 
     @property
-    def constant_bytes(self) -> int:
-        """Bytes that every frame has outside its parts of variable length."""
-        return self.model.layout.constant_bytes
+    def fixed_length(self) -> int:
+        """Number of bytes that every frame has outside its parts of variable length."""
+        return self.model.layout.fixed_length
 
     @property
     def counted_parts(self) -> tuple[VariablePartDescription, ...]:
@@ -138,7 +138,9 @@ class MessageDescription(Composite[Message]):
         last = self.last_part.model
         # Before these tests, a decoder of frames with gaps has put all that is in front
         # of the last part before it.
-        return length_tests(last.lengths, last.begin if self.has_gaps else 0)
+        return length_tests(
+            last.possible_ends, last.begin if self.has_inner_gaps else 0
+        )
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

@@ -32,10 +32,10 @@ from icdgen.icd.layout import (
     Array,
     Counted,
     Derived,
-    FixedNode,
     Layout,
     Orders,
     Overlay,
+    PlacedNode,
     Rest,
     Scalar,
     Size,
@@ -200,7 +200,7 @@ class NodeBuilder:
         as in the longest element.
         """
         fixed, length = self.fixed_nodes(item), item["length"]
-        nodes: list[FixedNode] = []
+        nodes: list[PlacedNode] = []
         for row in self.sequence_of_struct(item):
             size: Size | None = row.get("count")
             if variable_length.is_variable(row):
@@ -283,12 +283,12 @@ class NodeBuilder:
                 layout = replace(layout, derived=(*layout.derived, node))
         return layout
 
-    def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
+    def fixed_nodes(self, owner: Map) -> tuple[PlacedNode, ...]:
         """Return the nodes at fixed positions of a message or struct.
 
         A split field has one node per part.
         """
-        nodes: list[FixedNode] = []
+        nodes: list[PlacedNode] = []
         left_out = set(map(id, variable_length.sequence_of(owner)))
         fields: dict[str, Map] = {}  # by name, once a condition needs them
         for item in self.items("fields", owner):
@@ -316,7 +316,7 @@ class NodeBuilder:
                 nodes += self.parts_of_split_field(owner, item)
         return tuple(nodes)
 
-    def parts_of_split_field(self, owner: Map, item: Map) -> Iterator[FixedNode]:
+    def parts_of_split_field(self, owner: Map, item: Map) -> Iterator[PlacedNode]:
         """Yield the parts of a split field at their positions in the frame; the field
         itself if it cannot be split.
         """
@@ -340,7 +340,7 @@ class NodeBuilder:
             )
             yield _overlaid(scalar, part)
 
-    def sequence(self, message: Map) -> tuple[FixedNode, ...]:
+    def sequence(self, message: Map) -> tuple[PlacedNode, ...]:
         """Return the nodes of variable length and those behind them; an empty tuple if
         one has an error, because their positions are dependent.
         """
@@ -361,7 +361,7 @@ class NodeBuilder:
             for item in uses
         ):
             return ()
-        nodes: list[FixedNode] = []
+        nodes: list[PlacedNode] = []
         for item in items:
             size: Size | None = item.get("count")
             if variable_length.is_variable(item):
@@ -384,7 +384,7 @@ class NodeBuilder:
             counter_of_rest(item["name"], identifier, is_array, most, item), most
         )
 
-    def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
+    def node_of(self, item: Map, at: int, size: Size | None) -> PlacedNode | None:
         """Return the node of a line; None if it refers to an unknown struct, or to one
         of variable length without a counter.
 
@@ -500,7 +500,7 @@ def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:
     return overlay_of(scalar) if item.get("view", False) else scalar
 
 
-def _is_without_fields(node: FixedNode) -> bool:
+def _is_without_fields(node: PlacedNode) -> bool:
     """Return whether a node is a struct, or an array of structs, without readable
     fields.
     """

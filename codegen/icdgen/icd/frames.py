@@ -22,12 +22,12 @@ from icdgen.icd.layout import (
     Array,
     Condition,
     Derived,
-    FixedNode,
     Gap,
     Layout,
     LayoutNode,
     Orders,
     Overlay,
+    PlacedNode,
     Rest,
     Scalar,
     Sizes,
@@ -295,7 +295,7 @@ def _without_gaps(
 
 
 def _scalars(
-    node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders
+    node: PlacedNode, steps: tuple[PathStep, ...], at: int, orders: Orders
 ) -> Iterator[FrameField]:
     """Yield the scalars of a node of fixed size that begins at bit `at`."""
     match node:

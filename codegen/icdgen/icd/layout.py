@@ -1,5 +1,8 @@
 """Layout of a message or a struct as a tree with one node per line of the ICD.
 
+A `LayoutNode` is a field, an array or another line of a layout. It is not a `Node` of
+`icdgen.icd.model`, which is a device.
+
 `icdgen.icd.build` makes the nodes from the mappings of a file.
 `icdgen.icd.layout_nodes.walk` visits all declarations. Nodes store positions and orders
 as the ICD declares them. Orders in effect are resolved on the way down, because
@@ -64,11 +67,11 @@ UNDECLARED = Orders()
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """Number of elements that a field of the fixed part counts: its raw value plus
-    `plus`.
+    """Number of elements that another field counts: its raw value plus `plus`. Also of
+    an array in a struct: the field is in the message, not in the struct.
     """
 
-    counter: str  # name of the field
+    counter: str  # name of the field (`Rest.counter` is the field itself)
     most: int  # elements
     plus: int = 0
 
@@ -89,8 +92,9 @@ class LayoutNode:
     """A line of the ICD: attributes that all kinds of nodes have."""
 
     name: str
-    # First bit in the layout, counted in its own bit order; in the sequence of a
-    # message: the end of the fixed part.
+    # First bit in the layout, counted in its own bit order. All nodes of the `sequence`
+    # of a message have the end of the fixed part here; their positions follow from
+    # `Layout.parts`.
     at: int = 0
     identifier: str | None = None
     aliases: tuple[str, ...] = ()  # other names that a search matches
@@ -152,11 +156,12 @@ class Scalar(LayoutNode):
         return (1 << (self.bits - self.is_signed)) - 1
 
     def initial_value(self, bits: int, smallest_raw: int) -> int | bytes:
-        """Return the raw value in a new message: the constant, or else the smallest
-        valid value. For a float, the raw value is its bit pattern.
+        """Return the raw value in a new message: the constant; for a field that counts
+        elements, its smallest valid value; else 0. For a float, the raw value is its
+        bit pattern. For bytes and text, return zero bytes.
 
         ``bits`` is the width of the field in the frame, ``smallest_raw`` the result of
-        `Layout.smallest_raw`.
+        `Layout.smallest_raw_of_counter`.
         """
         # For a constant 0, `smallest_raw` is 0, too: a counter cannot be a constant.
         return bytes(bits // 8) if self.is_bytes else self.const or smallest_raw
@@ -227,7 +232,7 @@ class Derived(LayoutNode):
     derivation: Derivation
 
 
-FixedNode: TypeAlias = Scalar | Array | StructRef | Overlay
+PlacedNode: TypeAlias = Scalar | Array | StructRef | Overlay
 
 
 VariableNode: TypeAlias = Scalar | Array
@@ -240,18 +245,19 @@ class Layout:
     In a message, the sequence begins with the first node of variable length. Nodes of
     fixed size can follow it.
 
-    A struct has fixed nodes only. An array of variable length in a struct is placed as
-    in the longest element, with the nodes behind it; `inner_parts` lists these arrays.
+    A struct has no `sequence`: its arrays of variable length are in `fixed`, placed as
+    in the longest element, with the nodes behind them. `inner_parts` lists these
+    arrays.
     """
 
     name: str
     length: int  # bytes of the fixed part
-    fixed: tuple[FixedNode, ...]  # at fixed bits, in the order of the ICD
-    sequence: tuple[FixedNode, ...] = ()  # behind the fixed part, contiguous
+    fixed: tuple[PlacedNode, ...]  # at fixed bits, in the order of the ICD
+    sequence: tuple[PlacedNode, ...] = ()  # behind the fixed part, contiguous
     derived: tuple[Derived, ...] = ()
     orders: Orders = UNDECLARED  # as the message declares them
     may_end_early: bool = False
-    owner: str = ""  # name of the ICD node that declares it
+    owner: str = ""  # name of the device (`icdgen.icd.model.Node`) that declares it
 
     @cached_property
     def nodes(self) -> tuple[LayoutNode, ...]:
@@ -259,21 +265,21 @@ class Layout:
         return (*self.fixed, *self.sequence, *self.derived)
 
     @cached_property
-    def constant_bytes(self) -> int:
-        """Bytes that every frame has outside its variable parts."""
+    def fixed_length(self) -> int:
+        """Number of bytes that every frame has outside its variable parts."""
         return self.length + sum(part.behind for part in self.parts)
 
     @cached_property
     def longest(self) -> int:
         """Length of the longest frame in bytes."""
-        return self.constant_bytes + sum(part.most * part.step for part in self.parts)
+        return self.fixed_length + sum(part.most * part.step for part in self.parts)
 
     @property
     def shortest(self) -> int:
-        """Length of the shortest frame in bytes; at least 1 if frames may end early,
-        unless the message is empty.
+        """Length of the shortest frame in bytes. If frames may end early: 1, or 0 if it
+        would be 0 anyway.
         """
-        shortest = self.constant_bytes + sum(
+        shortest = self.fixed_length + sum(
             part.fewest * part.shortest_step for part in self.parts
         )
         return min(1, shortest) if self.may_end_early else shortest
@@ -356,7 +362,7 @@ class Layout:
             for part in self.parts
         }
 
-    def smallest_raw(self, counter: str) -> int:
+    def smallest_raw_of_counter(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
         if not self.sequence:
             return 0
@@ -365,14 +371,14 @@ class Layout:
             default=0,
         )
 
-    def largest_raw(self, counter: str) -> int:
+    def largest_raw_of_counter(self, counter: str) -> int:
         """Return the largest raw value of a field that counts."""
         return min(part.high for part in self.counted_parts if part.counter == counter)
 
     @property
-    def has_gaps(self) -> bool:
-        """Whether a frame can differ from the beginning of the longest frame: a
-        variable part is not the end of it.
+    def has_inner_gaps(self) -> bool:
+        """Whether a frame can differ from the beginning of the longest frame: bytes can
+        be absent between others, not only at the end.
         """
         return len(self.parts) > 1 or any(
             part.inner or part.behind for part in self.parts
@@ -380,7 +386,7 @@ class Layout:
 
     def gaps(self, sizes: Sizes) -> Iterator[Gap]:
         """Yield the bytes of the longest frame that a frame of these sizes does not
-        have, in order.
+        have, in order; also those at its end. A gap can have the length 0.
         """
         for part in self.parts:
             size = sizes[part.name]
@@ -418,7 +424,7 @@ class Layout:
 
     def size_of_frame(self, sizes: Sizes) -> int:
         """Return the length in bytes of a frame of these sizes."""
-        return self.constant_bytes + sum(
+        return self.fixed_length + sum(
             sizes[part.name] * part.step_of(sizes) for part in self.parts
         )
 
@@ -442,14 +448,17 @@ class VariablePart(NamedTuple):
     Its elements can have variable-length arrays themselves. All elements of a frame
     then have the same number of bytes. A frame can have fewer elements than `most`.
     Generated code sets absent elements to 0 when it decodes a frame.
+
+    All offsets are in bytes of the longest frame; of an array in a struct, in bytes of
+    its longest element.
     """
 
     node: VariableNode
     counter: str  # name of the field that counts the elements
     # The counter has no bits: its value follows from the length of the frame.
     is_rest: bool
-    begin: int  # offset in bytes
-    step: int  # bytes of an element
+    begin: int  # offset
+    step: int  # bytes of an element with all that it can have
     most: int  # elements
     plus: int  # number of elements minus value of the counter
     behind: int = 0  # bytes of fields of fixed size directly behind it
@@ -506,8 +515,8 @@ class VariablePart(NamedTuple):
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """Numbers of bytes of which lengths consist: the shortest element, and an
-        element of each array in it.
+        """Numbers of bytes by which lengths of frames can differ: of the shortest
+        element, and of an element of each array in it.
         """
         return self.shortest_step, *(inner.step for inner in self.inner)
 
@@ -527,18 +536,18 @@ class VariablePart(NamedTuple):
         return self.most - self.plus
 
     @property
-    def shortest(self) -> int:
-        """Offset of its end in bytes if it has the fewest elements and all parts before
+    def end_if_fewest(self) -> int:
+        """Offset of its end if it has the fewest elements and all parts before
         it have the most.
         """
         return self.begin + self.fewest * self.step
 
     @property
-    def lengths(self) -> range:
-        """Offsets that its end can have in bytes if all parts before it have the most
+    def possible_ends(self) -> range:
+        """Offsets that its end can have if all parts before it have the most
         elements.
         """
-        return range(self.shortest, self.end + 1, self.step)
+        return range(self.end_if_fewest, self.end + 1, self.step)
 
 
 def is_variable(node: LayoutNode) -> TypeGuard[VariableNode]:
@@ -559,8 +568,8 @@ def size_of(node: VariableNode) -> Counted | Rest:
 
 
 def bits_of_node(node: LayoutNode) -> int:
-    """Return the width in bits of a node of fixed size, of an array of all elements
-    together; of variable length as in the longest frame.
+    """Return the width of a node in bits: of an array, of all elements together; of a
+    variable-length array, of the most elements. Not for variable-length bytes and text.
     """
     return stride(node) * (node.most if isinstance(node, Array) else 1)
 

@@ -256,7 +256,9 @@ def places_of(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
 def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
     orders = layout.orders.within(outer)
     places = [
-        _place_of_node(node, orders, smallest_raw=layout.smallest_raw(node.name))
+        _place_of_node(
+            node, orders, smallest_raw=layout.smallest_raw_of_counter(node.name)
+        )
         for node in layout.fixed
     ]
     end, parts = 8 * layout.length, iter(layout.parts)

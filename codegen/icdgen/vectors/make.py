@@ -133,7 +133,7 @@ def _refused_lengths(message: Message) -> tuple[int, ...]:
     layout = message.layout
     if not layout.parts:
         ends = [layout.longest]
-    elif layout.has_gaps:
+    elif layout.has_inner_gaps:
         # Any length from the shortest to the longest may be permitted.
         ends = [layout.shortest, layout.shortest + 1, layout.longest]
     else:
@@ -151,7 +151,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         return
     # The last part takes the remaining bytes, so its count determines the length.
     last = message.layout.parts[-1]
-    if message.layout.has_gaps:
+    if message.layout.has_inner_gaps:
         for count in (last.fewest, last.most):
             yield from _miscounted_with_gaps(node, message, count)
         return
@@ -199,7 +199,7 @@ def _miscounted_with_gaps(node: Node, message: Message, count: int) -> Iterator[
         if part.is_rest:
             continue
         counter = _counter(message, node, part)
-        highest[counter] = message.layout.largest_raw(part.counter)
+        highest[counter] = message.layout.largest_raw_of_counter(part.counter)
         # One less or more, far too many, and another highest bit
         for step in (-1, 1, part.most, 1 << counter.bits - 1):
             stated = sizes[name] - part.plus + step

@@ -158,8 +158,8 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     counters: dict[str, int] = {}
     for part in message.layout.parts:
         for inner in part.inner:
-            low = message.layout.smallest_raw(inner.counter)
-            high = message.layout.largest_raw(inner.counter)
+            low = message.layout.smallest_raw_of_counter(inner.counter)
+            high = message.layout.largest_raw_of_counter(inner.counter)
             value = counters.setdefault(
                 inner.counter, max(low, min(choose(inner) - inner.plus, high))
             )
@@ -331,8 +331,8 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 
     Every second value is the maximum, so that all elements are tested.
     """
-    low = message.layout.smallest_raw(part.counter)
-    high = message.layout.largest_raw(part.counter)
+    low = message.layout.smallest_raw_of_counter(part.counter)
+    high = message.layout.largest_raw_of_counter(part.counter)
     return [
         max(low, min(number - part.plus, high))
         for count in _counts(part)
@@ -343,8 +343,8 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 def refused_raws(message: Message, field: FrameField) -> list[int]:
     """Return raw values that encoding must refuse."""
     if any(field.name == part.counter for part in message.layout.counted_parts):
-        low = message.layout.smallest_raw(field.name)
-        high = message.layout.largest_raw(field.name)
+        low = message.layout.smallest_raw_of_counter(field.name)
+        high = message.layout.largest_raw_of_counter(field.name)
         return list(
             dict.fromkeys((high + 1, low - 1, field.raw_max + 1, field.raw_min - 1))
         )

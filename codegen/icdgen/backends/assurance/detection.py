@@ -19,7 +19,7 @@ from typing import Any
 from icdgen import codec
 from icdgen.frozen import NamedTuple
 from icdgen.icd.frames import frame_fields
-from icdgen.icd.layout import FixedNode, Layout
+from icdgen.icd.layout import Layout, PlacedNode
 from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.layout_nodes import overlay_of
 from icdgen.icd.model import Enum, Message, Node
@@ -143,7 +143,7 @@ class MessageWatch:
 
     def _message_of(self, *fields: NodePlace) -> Message:
         """Return the message in its longest form, reduced to the given fields."""
-        fixed: list[FixedNode] = []
+        fixed: list[PlacedNode] = []
         for field in fields:
             scalar = replace(
                 field.scalar,

@@ -46,8 +46,8 @@ def size_terms(message: MessageDescription) -> list[str]:
             if has_one_size
             else f"{count} * ({_size_of_element(part)})"
         )
-    fixed = message.constant_bytes
-    if message.has_gaps:
+    fixed = message.fixed_length
+    if message.has_inner_gaps:
         return [f"{fixed}u", *parts]
     if not fixed:
         return parts

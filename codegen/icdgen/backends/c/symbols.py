@@ -174,7 +174,7 @@ class CNames(NamingPolicy):
         if (
             last is not None
             and last.element_struct is not None
-            and not composite.has_gaps
+            and not composite.has_inner_gaps
         ):
             yield composite.identifier(
                 FILE, names.received_element_reader(composite, last.field.name)

@@ -303,7 +303,7 @@ def _vectors_in_c(
     """Return the vectors as C represents optional fields: absent members have initial
     values, and other bits are 0.
     """
-    if message.has_gaps:  # the position of reserved bits varies between frames
+    if message.has_inner_gaps:  # the position of reserved bits varies between frames
         return replace(
             vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows)
         )

@@ -43,7 +43,7 @@ def message_plan(
     if message.may_end_early:
         plan["endsEarly"] = True
     parts = message.layout.parts
-    if message.layout.has_gaps:
+    if message.layout.has_inner_gaps:
         plan["inner"] = [
             _part_plan(part, places)
             for part in parts

@@ -55,7 +55,7 @@ def _variable_lengths(relations: Relations, message: Message) -> list[dict[str, 
         return [{"least": own.shortest, "step": 1, "pieces": []}]
     if not parts:
         return []
-    if own.has_gaps:  # the decoder evaluates the counters in the frame
+    if own.has_inner_gaps:  # the decoder evaluates the counters in the frame
         return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
     tail, node = parts[-1], relations.icd.node(message.node)
     # A part up to the end of the frame has no counter.

@@ -159,7 +159,9 @@ class ContainerBuilder:
             else:
                 entries.append(self._entry(frame, part, run))
         last = message.last_part
-        can_stand = not message.has_gaps and not any(entry.needs for entry in entries)
+        can_stand = not message.has_inner_gaps and not any(
+            entry.needs for entry in entries
+        )
         behind = (
             self._variable_entry(frame, last)
             if last is not None and can_stand

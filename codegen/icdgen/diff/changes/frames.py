@@ -140,7 +140,7 @@ def length_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckR
         if (
             old.layout.sequence
             and new.layout.sequence
-            and old.layout.constant_bytes != new.layout.constant_bytes
+            and old.layout.fixed_length != new.layout.fixed_length
         ):
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield CheckResult(text, ("length",), length_text(old), length_text(new))

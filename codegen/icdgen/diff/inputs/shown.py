@@ -25,9 +25,9 @@ from icdgen.icd.formula import FormulaError, Scale
 from icdgen.icd.layout import (
     Array,
     Counted,
-    FixedNode,
     Layout,
     Orders,
+    PlacedNode,
     Rest,
     Scalar,
     Size,
@@ -289,7 +289,7 @@ class _ShownNodeReader:
         )
         return struct
 
-    def layout_node(self, item: Map, part: Map | None) -> FixedNode:
+    def layout_node(self, item: Map, part: Map | None) -> PlacedNode:
         """Return the node of a field.
 
         ``part``: shown size of a variable-length field.
