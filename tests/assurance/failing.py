@@ -82,7 +82,7 @@ class Vectors:
         for field in message["fields"]:
             at = self._after(node, at, field)
             own = [
-                *cases.unfit(field),
+                *cases.values_out_of_range(field),
                 *(cases.settings(field) if "set" in field else ()),
             ]
             yield at, [_only(constants, field["name"]), *own]
