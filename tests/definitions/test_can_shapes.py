@@ -426,6 +426,40 @@ def test_messages_with_equal_names_are_renamed_by_sender_or_id(tmp_path):
     model(read, tmp_path)
 
 
+def test_equal_signals_with_other_value_names_stay_two_fields(tmp_path):
+    pages = "\n".join(
+        f"[Status]\n{head}Len=2\nMux=Page{value} 0,8 {value}h\nVar=Mode unsigned 8,8 /e:{enum}\n"
+        for value, enum, head in (
+            (1, "Power", "ID=100h\n"),
+            (2, "Heat", ""),
+            (3, "Power", ""),
+        )
+    )
+    path = tmp_path / "status.sym"
+    path.write_text(
+        'FormatVersion=6.0 // Do not edit this line!\nTitle="Status"\n\n{ENUMS}\n'
+        'Enum=Power(0="off", 1="on")\nEnum=Heat(0="cold", 1="hot")\n\n{SENDRECEIVE}\n\n'
+        + pages
+    )
+    read = run.read(path, can.Sym())
+    names = {
+        enum["name"]: [member["name"] for member in enum["members"]]
+        for enum in tree_of(read)["enums"]
+    }
+    assert [
+        (field["name"], field["when"], names[field["enum"]])
+        for field in message(read, "Status")["fields"]
+        if "when" in field
+    ] == [
+        ("Mode", {"Page1": [1, 3]}, ["off", "on"]),
+        ("Mode Page1 2", {"Page1": 2}, ["cold", "hot"]),
+    ]
+    assert [
+        (finding.code, finding.severity) for finding in read.definitions.import_findings
+    ] == [("IMP092", "note")]
+    model(read, tmp_path)
+
+
 KCD = """\
 <NetworkDefinition xmlns="http://kayak.2codeornot2code.org/1.0">
   <Document name="Vehicle"/>

@@ -17,6 +17,7 @@ from icdgen.definitions import can_accounting, dbc, frames, safe_xml
 from icdgen.definitions.accounting import Account, AccountedObject
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.model import (
+    SAME_NAME,
     Definitions,
     Item,
     Network,
@@ -279,6 +280,7 @@ def _message(
         )
     )
     placed: list[tuple[Item, frames.FrameBits]] = []
+    value_names: list[dict[int, str]] = []  # of each field in `placed`
     for signal in signals:
         place = signal_place(signal)
         if not 0 <= place.at <= place.at + place.bits <= 8 * message.length:
@@ -294,17 +296,23 @@ def _message(
             signal.settle()
             continue
         # SYM declares a signal of several multiplexer values several times. These
-        # become one field.
+        # become one field, unless their values have other names.
+        names = _value_names(signal)
         same = next(
             (
                 candidate
-                for candidate, candidate_place in placed
-                if candidate_place == place and _is_alternative(candidate, field)
+                for (candidate, candidate_place), candidate_names in zip(
+                    placed, value_names, strict=True
+                )
+                if candidate_place == place
+                and candidate_names == names
+                and _is_alternative(candidate, field)
             ),
             None,
         )
         if same is None:
             placed.append((field, place))
+            value_names.append(names)
         else:
             (by,) = field["when"]
             same["when"] = {
@@ -313,6 +321,7 @@ def _message(
                     *frames.values_of_condition(field["when"][by]),
                 ]
             }
+    _name_fields_apart(message.name, [field for field, _ in placed], to)
     # A multiplexer that was left out takes the signals that depend on it along.
     missing = {name for field, _ in placed for name in field.get("when", ())} - {
         field["name"] for field, _ in placed
@@ -344,6 +353,9 @@ def _sentences(*texts: str | None) -> str:
 def _is_alternative(field: Item, other: Item) -> bool:
     """Return whether two fields are the same signal, declared for several values of a
     multiplexer (SYM).
+
+    The caller compares the names of their values, because the key `enum` is set later
+    (`Enumerations.declared`).
     """
     plain = [
         {key: value for key, value in item.items() if key not in ("when", "enum")}
@@ -354,6 +366,25 @@ def _is_alternative(field: Item, other: Item) -> bool:
         and "when" in field
         and field["when"].keys() == other.get("when", {}).keys()
     )
+
+
+def _name_fields_apart(owner: str, fields: list[Item], to: Definitions) -> None:
+    """Add a value of the multiplexer to the name of a field that an earlier field has
+    (IMP092).
+
+    SYM files declare different signals of equal name for several values.
+    """
+    names: set[str] = set()
+    for field in fields:
+        name = field["name"]
+        if name in names and "when" in field:
+            ((multiplexer, condition),) = field["when"].items()
+            value = frames.values_of_condition(condition)[0]
+            field["name"] = f"{name} {multiplexer} {value}"
+            text = f"message `{owner}`: several signals have the name `{name}`: one is imported as `{field['name']}`"
+            help = "rename it in the ICD if you want another name"
+            to.warn(SAME_NAME, text, help, "note")
+        names.add(field["name"])
 
 
 def signal_place(signal: Any) -> frames.FrameBits:
@@ -399,9 +430,7 @@ def _field(
     )
     field |= formula(factor, offset) | limits(low, high, ends[0], ends[1])
     where = f"message `{message.name}`, `{signal.name}`"
-    if choices := {
-        int(value): str(name) for value, name in (signal.choices or {}).items()
-    }:
+    if choices := _value_names(signal):
         enums.assign_value_names(
             field, signal.length, choices, signal.name, message.name, where, to
         )
@@ -417,6 +446,11 @@ def _field(
     if when := _condition(signal, signals):
         field["when"] = when
     return field
+
+
+def _value_names(signal: Any) -> dict[int, str]:
+    """Return the names of raw values of a signal."""
+    return {int(value): str(name) for value, name in (signal.choices or {}).items()}
 
 
 def _is_flag(signal: Any) -> bool:

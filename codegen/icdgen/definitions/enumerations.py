@@ -210,15 +210,26 @@ class Enumerations:
             to |= special(named, where, notes)
 
     def declared(self) -> list[Item]:
-        """Return the enumerations, and set the key `enum` in their fields."""
+        """Return the enumerations, and set the key `enum` in their fields.
+
+        Enumerations of equal name get the owner as prefix. If an owner has several of
+        them, each except the first gets a number as suffix.
+        """
         kinds: dict[str, set[object]] = {}
         for _, name, _, values in self.uses:
             kinds.setdefault(name, set()).add(values)
         enums: dict[str, Item] = {}
         for to, name, owner, values in self.uses:
-            unique_name = name if len(kinds[name]) == 1 else f"{owner} {name}"
-            to["enum"] = unique_name
+            preferred_name = name if len(kinds[name]) == 1 else f"{owner} {name}"
             enum_members = [_member(*value) for value in values]
+            unique_name, number = preferred_name, 1
+            while (
+                enums.get(unique_name, {"members": enum_members})["members"]
+                != enum_members
+            ):
+                number += 1
+                unique_name = f"{preferred_name} {number}"
+            to["enum"] = unique_name
             enums.setdefault(
                 unique_name, {"name": unique_name, "members": enum_members}
             )
