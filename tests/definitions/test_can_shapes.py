@@ -426,6 +426,48 @@ def test_messages_with_equal_names_are_renamed_by_sender_or_id(tmp_path):
     model(read, tmp_path)
 
 
+def test_limits_of_floats_depend_on_their_size(tmp_path):
+    limits = {
+        "Far": (64, "-1E+30|2.5E+37"),
+        "Near": (32, "-1E+30|2.5E+37"),
+        "Beyond": (64, "-1E+38|1E+200"),
+        "Full": (64, "-1.7E+308|1.7E+308"),
+        "Whole": (32, "-3.4E+38|3.4E+38"),
+    }
+    text = HEAD + "".join(
+        f'BO_ {id} {name}: 8 Engine\n SG_ Value : 0|{bits}@1- (1,0) [{ends}] "" Display\n\n'
+        for id, (name, (bits, ends)) in enumerate(limits.items(), 1)
+    )
+    for id, (bits, _) in enumerate(limits.values(), 1):
+        text += f"SIG_VALTYPE_ {id} Value : {bits // 32};\n"
+    read = imported(text, tmp_path)
+    keys = {
+        name: {
+            key: value
+            for key, value in field(read, name, "Value").items()
+            if key in ("min", "max")
+        }
+        for name in limits
+    }
+    stated = {"min": -(10**30), "max": 25 * 10**36}
+    assert keys == {
+        "Far": stated,
+        "Near": stated,
+        "Beyond": {},
+        "Full": {},
+        "Whole": {},
+    }
+    assert [
+        finding.message
+        for finding in read.definitions.import_findings
+        if "limit" in finding.message
+    ] == [
+        "message `Beyond`, `Value`: the limit -1e+38 is not used",
+        "message `Beyond`, `Value`: the limit 1e+200 is not used",
+    ]
+    model(read, tmp_path)
+
+
 def test_equal_signals_with_other_value_names_stay_two_fields(tmp_path):
     pages = "\n".join(
         f"[Status]\n{head}Len=2\nMux=Page{value} 0,8 {value}h\nVar=Mode unsigned 8,8 /e:{enum}\n"

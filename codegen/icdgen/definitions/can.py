@@ -14,7 +14,7 @@ from pathlib import PurePath
 from typing import Any
 
 from icdgen.definitions import can_accounting, dbc, frames, safe_xml
-from icdgen.definitions.accounting import Account, AccountedObject
+from icdgen.definitions.accounting import UNUSED, Account, AccountedObject
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.model import (
     SAME_NAME,
@@ -25,6 +25,7 @@ from icdgen.definitions.model import (
     unreadable,
 )
 from icdgen.definitions.wording import (
+    MOST_LIMIT,
     formula,
     limits,
     line,
@@ -430,6 +431,15 @@ def _field(
     )
     field |= formula(factor, offset) | limits(low, high, ends[0], ends[1])
     where = f"message `{message.name}`, `{signal.name}`"
+    for limit, end in ((low, signal.minimum), (high, signal.maximum)):
+        if limit is None or abs(limit) < MOST_LIMIT:
+            continue
+        if ends[0] < limit < ends[1]:
+            text = f"{where}: the limit {printed(end)} is not used"
+            help = (
+                "limits have at most 38 digits: state it in the `summary` of the field"
+            )
+            to.warn(UNUSED, text, help, "note")
     if choices := _value_names(signal):
         enums.assign_value_names(
             field, signal.length, choices, signal.name, message.name, where, to
@@ -460,9 +470,14 @@ def _is_flag(signal: Any) -> bool:
 
 
 def _range(signal: Any) -> tuple[int, int]:
-    """Return the smallest and largest raw value; for floats, approximate bounds."""
+    """Return the smallest and largest raw value.
+
+    For floats, these are powers of two below the largest finite number: limits such as
+    3.4E+38, the rounded range of the type, state nothing.
+    """
     if signal.is_float:
-        return -(2**127), 2**127
+        largest = 2**1023 if signal.length == 64 else 2**127
+        return -largest, largest
     return integer_range(signal.length, signal.is_signed)
 
 

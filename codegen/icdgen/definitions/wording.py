@@ -87,12 +87,17 @@ def formula(factor: str, offset: str = "0") -> dict[str, str]:
     return {"formula": text}
 
 
+# An ICD takes longer integers for text (`icd.source`).
+MOST_LIMIT = 10**38
+
+
 def limits(
     low: Fraction | None, high: Fraction | None, first: Fraction, last: Fraction
 ) -> dict[str, int | float]:
     """Return the keys `min` and `max`.
 
-    Limits outside ``first`` to ``last``, the range of the field, are left out.
+    Limits outside ``first`` to ``last``, the range of the field, are left out, as are
+    limits from `MOST_LIMIT` on and those that only an exponent can state.
 
     An empty intersection gives no keys.
     """
@@ -106,6 +111,8 @@ def limits(
 
 
 def _number(key: str, value: Fraction) -> dict[str, int | float]:
+    if abs(value) >= MOST_LIMIT:
+        return {}
     if value.denominator == 1:
         return {key: value.numerator}
     number = float(value)
