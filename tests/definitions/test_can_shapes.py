@@ -426,6 +426,27 @@ def test_messages_with_equal_names_are_renamed_by_sender_or_id(tmp_path):
     model(read, tmp_path)
 
 
+def test_values_that_the_multiplexer_cannot_have_are_reported(tmp_path):
+    read = imported(
+        f'{HEAD}BO_ 1 Status: 4 Engine\n SG_ Page M : 0|2@1+ (1,0) [0|0] "" Display\n'
+        ' SG_ Speed m1 : 8|8@1+ (1,0) [0|0] "" Display\n\nSG_MUL_VAL_ 1 Speed Page 1-1, 3-9;\n',
+        tmp_path,
+    )
+    assert field(read, "Status", "Speed")["when"] == {"Page": [1, 3]}
+    assert [
+        (finding.code, finding.severity, finding.message)
+        for finding in read.definitions.import_findings
+        if finding.code != "IMP085"
+    ] == [
+        (
+            "IMP076",
+            "warning",
+            "message `Status`, `Speed`: it depends on `Page`, which never has the value 4, 5, 6, 7, 8 ...",
+        )
+    ]
+    model(read, tmp_path)
+
+
 def test_limits_of_floats_depend_on_their_size(tmp_path):
     limits = {
         "Far": (64, "-1E+30|2.5E+37"),

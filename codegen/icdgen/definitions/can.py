@@ -39,6 +39,7 @@ from icdgen.icd.layout import integer_range
 from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
 
 BEYOND_FRAME = "IMP072"
+CONTRADICTION = "IMP076"
 _DISCARDING = logging.NullHandler()
 # Attributes of cantools objects without meaning for an ICD, and attributes that are
 # used under another name.
@@ -453,7 +454,7 @@ def _field(
                 *field.get("special", ()),
                 {"value": int(invalid), "meaning": "invalid"},
             ]
-    if when := _condition(signal, signals):
+    if when := _condition(signal, signals, where, to):
         field["when"] = when
     return field
 
@@ -481,8 +482,11 @@ def _range(signal: Any) -> tuple[int, int]:
     return integer_range(signal.length, signal.is_signed)
 
 
-def _condition(signal: Any, signals: list[Any]) -> Item:
-    """Return the multiplexer and its values for which the signal is present."""
+def _condition(signal: Any, signals: list[Any], where: str, to: Definitions) -> Item:
+    """Return the multiplexer and its values for which the signal is present.
+
+    Values that the multiplexer cannot have are left out (IMP076).
+    """
     if signal.multiplexer_ids is None:
         return {}
     name = signal.multiplexer_signal
@@ -502,6 +506,10 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
     within = [value for value in values if first <= value <= last]
     if not within:
         raise NotSupported(f"it depends on values of `{name}` that it cannot have")
+    if beyond := [value for value in values if value not in within]:
+        shown = ", ".join(map(str, beyond[:5])) + (" ..." if len(beyond) > 5 else "")
+        text = f"{where}: it depends on `{name}`, which never has the value {shown}"
+        to.warn(CONTRADICTION, text, "the other values are imported")
     condition: list[Any] = (
         [bool(value) for value in within] if _is_flag(multiplexer) else within
     )
