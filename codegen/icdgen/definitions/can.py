@@ -41,9 +41,9 @@ from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_S
 BEYOND_FRAME = "IMP072"
 CONTRADICTION = "IMP076"
 _DISCARDING = logging.NullHandler()
-# Attributes of cantools objects without meaning for an ICD, and attributes that are
-# used under another name.
-_WITHOUT_MEANING = frozenset(
+# Attributes of cantools objects whose absence in the ICD needs no finding: they have no
+# meaning for it, or are read in another way.
+_NOT_REPORTED = frozenset(
     {
         "conversion", "is_multiplexer", "minimum", "maximum", "initial", "invalid", "comments", "signal_tree", "codecs",
         "signals", "unused_bit_pattern", "header_byte_order", "autosar", "dbc", "receivers_of_signals", "is_fd", "frame_id",
@@ -56,20 +56,20 @@ _UNKNOWN_SENDERS = ("", "Vector__XXX")  # placeholder of DBC files for an unknow
 class _Database:
     """Reader shared by the four database formats.
 
-    ``name`` is the format name of cantools; ``begins`` is a pattern that recognizes a
-    file of the format.
+    ``name`` is the format name of cantools; ``signature`` is a pattern that recognizes
+    a file of the format.
     """
 
     needs: tuple[str, ...] = ("cantools",)
-    name = title = begins = ""
+    name = title = signature = ""
 
     def knows(self, start: str) -> bool:
-        return re.search(self.begins, start) is not None
+        return re.search(self.signature, start) is not None
 
     def read(self, file: str, data: bytes) -> Definitions:
         """Read a database. Raises `Findings` if cantools cannot read the file."""
         to = Definitions(file)
-        account = Account(_WITHOUT_MEANING)
+        account = Account(_NOT_REPORTED)
         for bus, messages in _buses(self.database(file, data, to)).items():
             stem = PurePath(file).stem
             to.networks.append(_network(f"{stem} {bus}".strip(), messages, account, to))
@@ -82,8 +82,9 @@ class _Database:
     def account_for(
         self, file: str, data: bytes, account: Account, reported: set[int | None]
     ) -> None:
-        """Count unused parts of the file, except in lines of ``reported``, which have a
-        finding.
+        """Count unused parts of the file.
+
+        ``reported`` (DBC only) has the lines that already have a finding.
         """
         raise NotImplementedError
 
@@ -120,7 +121,7 @@ class Dbc(_Database):
 
     name = "dbc"
     title = "a CAN database (DBC)"
-    begins = r"(?m)^(?:BO_ \d+ |BU_\s*:)"
+    signature = r"(?m)^(?:BO_ \d+ |BU_\s*:)"
 
     def load(self, text: str, to: Definitions) -> Any:
         plain = dbc.with_short_names(text.replace("\r\n", "\n"))
@@ -141,7 +142,7 @@ class Sym(_Database):
 
     name = "sym"
     title = "a symbol file (SYM)"
-    begins = r"\A\s*FormatVersion\s*="
+    signature = r"\A\s*FormatVersion\s*="
 
     def account_for(
         self, file: str, data: bytes, account: Account, reported: set[int | None]
@@ -390,13 +391,14 @@ def _name_fields_apart(owner: str, fields: list[Item], to: Definitions) -> None:
 
 
 def signal_place(signal: Any) -> frames.FrameBits:
-    """Return the position of a signal.
+    """Return the position of a signal of any of the four formats.
 
-    DBC numbers the bits of a byte from the least significant bit in both byte orders.
+    cantools numbers bits as DBC does: from the least significant bit of a byte, in both
+    byte orders.
     """
     if signal.byte_order == "little_endian":
         return frames.FrameBits(signal.start, signal.length, frames.LITTLE)
-    # In a DBC, a big-endian signal starts at its most significant bit, from which `BIG`
+    # A big-endian signal starts at its most significant bit, from which `BIG`
     # counts as well.
     return frames.FrameBits(
         signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG
