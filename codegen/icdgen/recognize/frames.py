@@ -36,8 +36,9 @@ def recognize(
     """Return the frames in a text, or in bytes as received.
 
     ``node``, ``key`` and ``kind`` restrict the messages, as for
-    `icdgen.values.find_message`. If each line is a complete frame, the lines are
-    recognized separately. Raise `BadHex`, `BadLength`, `NotFound` or `Ambiguous`.
+    `icdgen.values.find_message`; ``key`` only together with ``node``. If each line is a
+    complete frame, the lines are recognized separately. Raise `BadHex`, `BadLength`,
+    `NotFound` or `Ambiguous`.
     """
     owner = find_node(icd, node) if node is not None else None
     selection = selection_of(icd, owner, key, kind)
@@ -89,7 +90,7 @@ def _readings(
             icd, endpoints, pasted, selection
         )
     left_out = [text for reading in results for text in reading.left_out]
-    results = selection.preferred_of(results)
+    results = selection.matching_or_all(results)
     if selection.messages and not any(map(selection.is_of, results)):
         text = f"the frame is not {selection.names} but {results[0].title}"
         raise NotFound(text, "leave the message out, or name that one")
@@ -276,7 +277,7 @@ def _no_packet_error(
     syncs = list(filter(None, dict.fromkeys(map(framed.sync_of, endpoints))))
     begin = f", which begin with {' or '.join(syncs)}" if syncs else ""
     text = f"{byte_count(len(data))} are no packet of {nodes}{begin}"
-    candidates = selection.preferred_of(
+    candidates = selection.matching_or_all(
         [*match.by_id(endpoints, data), *match.by_length(endpoints, data)]
     )
     if candidates:

@@ -198,7 +198,7 @@ def most_likely(
     acknowledge is less likely than other messages. If the named message has equal
     frames in both directions, the direction remains open.
     """
-    candidates = selection.preferred_of(candidates)
+    candidates = selection.matching_or_all(candidates)
     # An acknowledge is short and has few fixed bits, so other data often looks like
     # one.
     likely = (

@@ -15,7 +15,9 @@ from icdgen.values.find import find_message, find_sharing
 class Selection:
     """Messages, one of which the frame must be, and their kind.
 
-    Several messages share an id. Without messages or kind, everything is accepted.
+    There are several messages if they share an id. Without messages, `fits` accepts each
+    message; `is_of` and `can_have_length` accept none. Without a kind, `fits` accepts
+    each kind.
     """
 
     messages: tuple[Message, ...] = ()
@@ -37,13 +39,14 @@ class Selection:
     def fits(self, reading: FrameReading) -> bool:
         """Return whether a reading matches messages and kind.
 
-        A configuration message matches each kind that it is sent as.
+        The kind is that of the reading, or that of its message (of a request, an
+        acknowledge, or a configuration message).
         """
         if self.messages and not self.is_of(reading):
             return False
         return self.kind in (None, reading.what, reading.message.kind)
 
-    def preferred_of(self, candidates: Sequence[FrameReading]) -> list[FrameReading]:
+    def matching_or_all(self, candidates: Sequence[FrameReading]) -> list[FrameReading]:
         """Return the matching readings, or all readings if none matches."""
         matches = [reading for reading in candidates if self.fits(reading)]
         # If none matches, the caller can report what the frame is instead.
@@ -53,9 +56,11 @@ class Selection:
 def selection_of(
     icd: Icd, node: Node | None, key: str | None, kind: str | None
 ) -> Selection:
-    """Return the messages that ``key`` names, as for `icdgen.values.find_message`.
+    """Return the kind, and the messages of ``node`` that ``key`` names, as for
+    `icdgen.values.find_message`. Without a node, the key is ignored.
 
-    Raise `NotFound`, or `Ambiguous` unless the messages share an id.
+    Raise `NotFound`. Raise `Ambiguous` if the key fits several messages, except if it is
+    an id that they share in one direction.
     """
     if node is None or key is None:
         return Selection(kind=kind)
