@@ -32,6 +32,7 @@ from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
+from icdgen.backends.template_functions import functions_by_name
 from icdgen.describe import MessageDescription, NodeDescription, describe
 from icdgen.describe.arrays import all_struct_arrays
 from icdgen.describe.comments import presence_comment, sentence, words
@@ -218,9 +219,8 @@ def procedure_headers(node: NodeDescription) -> list[str]:
     return ["link.h", *included, *(["enums.h"] if node.enums else [])]
 
 
-_FUNCTIONS = {
-    function.__name__: function
-    for function in (
+_FUNCTIONS = functions_by_name(
+    (
         accessors.double_accessors, accessors.integer_accessors, accessors.of_kind, accessors.overlay_comment,
         all_struct_arrays, bits.excess_type, byte_count, call, client_headers, comment, conditional.absent_value,
         conditional.presence_test, conditional.write_optional, constants.constant_value, constants.field_table,
@@ -236,5 +236,5 @@ _FUNCTIONS = {
         types.declaration, types.type_of,
         words,
     )
-}  # fmt: skip
-"""Functions with which templates spell names and text."""
+)  # fmt: skip
+"""Functions that templates call, by name."""

@@ -18,6 +18,7 @@ from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.backends.python import names
 from icdgen.backends.python.symbols import PYTHON_NAMES, PythonNames
+from icdgen.backends.template_functions import functions_by_name
 from icdgen.describe import describe
 from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
@@ -66,7 +67,7 @@ class PythonBackend:
             "project": self.package.replace("_", "-"),
             "nodes": description.nodes,
             "types": names.TYPES,
-            **_functions(),
+            **_template_functions(),
         }
         linked = links_of(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
@@ -121,8 +122,8 @@ class PythonBackend:
         return iter(symbols(describe(icd), PythonNames(self.package)))
 
 
-def _functions() -> dict[str, object]:
-    """Return the functions with which templates spell names and text."""
+def _template_functions() -> dict[str, object]:
+    """Return the functions that templates call, by name."""
     from icdgen.backends.python import fields, nodes, procedures, text
 
     functions = (
@@ -132,4 +133,4 @@ def _functions() -> dict[str, object]:
         nodes.listing, nodes.literals, nodes.mapping, nodes.node_docstring, nodes.public_of_node,
         procedures.procedure_imports, procedures.procedures_docstring, text.docstring, text.documented, text.literal, text.prose,
     )  # fmt: skip
-    return {function.__name__: function for function in functions}
+    return functions_by_name(functions)
