@@ -1,10 +1,10 @@
 """Rust backend: a `no_std` crate for all nodes, with a module per node and a file per
 message.
 
-`RustBackend.files` renders the templates of ``templates/rust`` and copies the crate of
-``runtime/rust``. Templates get the descriptions of `icdgen.describe`, and the functions
-in `_functions` that spell these in Rust. To follow a field into the code, read
-`messages`, then `bits`.
+`RustBackend.files` renders the templates of ``templates/rust`` and copies the folder
+``support`` of ``runtime/rust`` and, if a node has a link, its folder ``wire``. Templates
+get the descriptions of `icdgen.describe`, and the functions in `_template_functions`
+that spell these in Rust. To follow a field into the code, read `messages`, then `bits`.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.backends.rust import names
 from icdgen.backends.rust.symbols import RUST_NAMES
+from icdgen.backends.template_functions import functions_by_name
 from icdgen.describe import describe
 from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
@@ -48,38 +49,45 @@ class RustBackend:
         return self.packages.rust
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """List the files of the crate."""
+        """Yield the files of the crate."""
         from icdgen.backends.rust.procedures import NodeProcedures
         from icdgen.describe.links import links_of
 
         description = describe(icd)
-        common = {
+        crate_values = {
             "origin": origin(),
             "version": __version__,
             "crate": self.crate,
             "id_bits": description.id_bits,
-            **_functions(),
+            **_template_functions(),
         }
-        has_tails = any(
+        has_variable_length = any(
             message.layout.sequence for node in icd.nodes for message in node.messages
         )
         links = links_of(description)
         # Nodes come after the nodes that they include, so the procedures of these are
         # in the table when a node asks for their code.
         procedures_by_node: dict[str, NodeProcedures] = {}
-        yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        of_crate = {
-            "has_tails": has_tails,
-            "nodes": icd.nodes,
-            "wired": bool(links),
-        }
-        yield PurePosixPath("src/lib.rs"), render("lib.rs.j2", **of_crate, **common)
+        yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **crate_values)
+        yield (
+            PurePosixPath("src/lib.rs"),
+            render(
+                "lib.rs.j2",
+                has_variable_length=has_variable_length,
+                nodes=icd.nodes,
+                wired=bool(links),
+                **crate_values,
+            ),
+        )
         yield from _runtime("src/support", render, self.crate)
         for node in description.nodes:
             folder = PurePosixPath("src") / node.name
-            digested = {**common, "origin": origin(node.model, with_digest=True)}
+            module_values = {
+                **crate_values,
+                "origin": origin(node.model, with_digest=True),
+            }
             link = links.get(node.name)
-            shared = {**common, "origin": origin(node.model)}
+            file_values = {**crate_values, "origin": origin(node.model)}
             if link and link.facts.procedures:
                 procedures = NodeProcedures(
                     link, description, procedures_by_node, self.crate
@@ -87,33 +95,33 @@ class RustBackend:
                 procedures_by_node[node.name] = procedures
                 yield (
                     folder / "procedures.rs",
-                    render("procedures.rs.j2", procedures=procedures, **shared),
+                    render("procedures.rs.j2", procedures=procedures, **file_values),
                 )
             yield (
                 folder / "mod.rs",
-                render("node.rs.j2", node=node, link=link, **digested),
+                render("node.rs.j2", node=node, link=link, **module_values),
             )
             if node.enums:
                 yield (
                     folder / "enums.rs",
-                    render("enums.rs.j2", enums=node.enums, **shared),
+                    render("enums.rs.j2", enums=node.enums, **file_values),
                 )
             for struct in node.structs:
-                text = render("struct.rs.j2", m=struct, **shared)
+                text = render("struct.rs.j2", m=struct, **file_values)
                 yield folder / f"{struct.name}.rs", text
             for message in node.messages:
-                text = render("message.rs.j2", m=message, **shared)
+                text = render("message.rs.j2", m=message, **file_values)
                 yield folder / f"{message.name}.rs", text
         if links:
-            yield from _wire(links, render, common)
+            yield from _wire(links, render, crate_values)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the crate declares, by scope."""
         return iter(symbols(describe(icd), RUST_NAMES))
 
 
-def _functions() -> dict[str, object]:
-    """Return the functions with which templates spell names and text."""
+def _template_functions() -> dict[str, object]:
+    """Return the functions that templates call, by name."""
     from icdgen.backends.rust import (
         accessors,
         conditional,
@@ -144,18 +152,18 @@ def _functions() -> dict[str, object]:
         text.described, text.doc, text.integer, text.mask, text.prose, text.signature, text.string,
         types.enum_path, types.message_path, types.open_type, types.raw_type, types.reason_number, words,
     )  # fmt: skip
-    # Templates find a function by its bare name. Of two functions with the same name,
-    # the later one would replace the other without a warning.
-    return {function.__name__: function for function in functions}
+    return functions_by_name(functions)
 
 
 def _wire(
-    linked: dict[str, LinkDescription], render: Renderer, common: dict[str, object]
+    linked: dict[str, LinkDescription],
+    render: Renderer,
+    crate_values: dict[str, object],
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """List the files of the wire layer and of the links."""
+    """Yield the files of the wire layer and of the links."""
     from icdgen.backends.rust import links, procedures
 
-    yield from _runtime("src/wire", render, str(common["crate"]))
+    yield from _runtime("src/wire", render, str(crate_values["crate"]))
     folder = PurePosixPath(LINKS)
     yield (
         folder / "mod.rs",
@@ -163,7 +171,7 @@ def _wire(
             "links.rs.j2",
             nodes=list(linked),
             sizes=procedures.buffer_sizes(linked.values()),
-            **common,
+            **crate_values,
         ),
     )
     for name, link in linked.items():
@@ -180,12 +188,12 @@ def _wire(
 def _runtime(
     folder: str, render: Renderer, crate: str
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """List the files that are the same for every ICD.
+    """Yield the files that are the same for every ICD.
 
     The runtime is developed as a crate of its own, with links of a sample ICD that are
     left out here. Examples in its documentation get the name of the generated crate.
     """
     for name in render.runtime_files(folder):
-        if not name.startswith(LINKS):
+        if not name.startswith(f"{LINKS}/"):
             text = render.source(name).replace(f"{RUNTIME}::", f"{crate}::")
             yield PurePosixPath(name), f"// {origin()}\n\n{text}"
