@@ -98,7 +98,12 @@ def cubeacp() -> Link:
         ("tcp://localhost", "`tcp://localhost` is no address"),
         ("tcp://localhost:0", "`tcp://localhost:0` is no address"),
         ("tcp://localhost:65536", "`tcp://localhost:65536` is no address"),
+        ("tcp://localhost:80/path", "`tcp://localhost:80/path` is no address"),
+        ("udp://localhost:80?rate=9600", "is no address"),
+        ("udp://localhost:80#1", "is no address"),
+        ("tcp://user@localhost:80", "is no address"),
         ("tcp://127.0.0.1:1", "cannot connect to tcp://127.0.0.1:1"),
+        ("tcp://[::1]:1", r"cannot connect to tcp://\[::1\]:1:"),
         ("ftp://x:1", "there is no port `ftp://x:1`"),
         ("/dev/no-such-port", "no such file"),
         ("can://x", "`can://x` is no CAN bus"),
@@ -109,6 +114,31 @@ def cubeacp() -> Link:
 def test_a_port_that_cannot_be_opened_is_reported(name, words):
     with pytest.raises(PortError, match=words):
         open_port(name, {})
+
+
+@pytest.mark.parametrize("kind", ["tcp", "udp"])
+@pytest.mark.parametrize("host", ["a..b", "x" * 64])
+def test_an_invalid_host_name_is_reported(kind, host):
+    with pytest.raises(PortError, match="the host name is invalid") as error:
+        open_port(f"{kind}://{host}:80", {})
+    assert error.value.help == "check the host name"
+
+
+@pytest.mark.parametrize("kind", ["tcp", "udp"])
+def test_a_host_name_without_an_address_is_reported(kind, monkeypatch):
+    def getaddrinfo(*arguments, **options):
+        raise socket.gaierror(socket.EAI_NONAME, "Name or service not known")
+
+    monkeypatch.setattr(socket, "getaddrinfo", getaddrinfo)
+    with pytest.raises(PortError, match="my-bench:80: Name or service") as error:
+        open_port(f"{kind}://my-bench:80", {})
+    assert error.value.help == "check the host name"
+
+
+def test_a_server_that_does_not_run_is_reported():
+    with pytest.raises(PortError) as error:
+        open_port("tcp://127.0.0.1:1", {})
+    assert error.value.help == "is it running?"
 
 
 @pytest.mark.parametrize(

@@ -69,9 +69,13 @@ class Socket:
         self, kind: str, host: str, port: int, piece: int = MOST_OF_A_PACKET
     ) -> None:
         self.piece = piece
-        self.name = f"{kind}://{host}:{port}"
-        with _failures(
-            f"cannot connect to {self.name}", OSError, help="is it running?"
+        # Brackets separate the colons of an IPv6 address from that of the port.
+        shown_host = f"[{host}]" if ":" in host else host
+        self.name = f"{kind}://{shown_host}:{port}"
+        failure = f"cannot connect to {self.name}"
+        with (
+            _failures(failure, OSError, help="is it running?"),
+            _failures(failure, socket.gaierror, help="check the host name"),
         ):
             if kind == "tcp":
                 self.socket = socket.create_connection((host, port), CONNECT_TIMEOUT)
@@ -295,15 +299,34 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | CanBus:
 
 
 def address(text: str) -> tuple[str, int]:
-    """Return host and port of ``tcp://HOST:PORT``. Raise `PortError`."""
+    """Return host and port of ``tcp://HOST:PORT`` or ``udp://HOST:PORT``.
+
+    An IPv6 address is in brackets in the text, but not in the result. Raise `PortError`
+    for an invalid host name, a port that is not from 1 to 65535, and any other part of
+    a URL, such as a path or a user.
+    """
     try:
         parts = urlsplit(text)
         host, port = parts.hostname, parts.port
     except ValueError:
-        host = port = None
-    if not host or not port:
-        raise PortError(f"`{text}` is no address", f"a port is named so: {FORMS}")
+        raise _no_address(text) from None
+    has_other_parts = (
+        parts.path not in ("", "/") or parts.query or parts.fragment or "@" in text
+    )
+    if not host or not port or has_other_parts:
+        raise _no_address(text)
+    try:
+        # `socket` encodes the name in this way, and otherwise raises UnicodeError.
+        host.encode("idna")
+    except UnicodeError:
+        raise PortError(
+            f"`{text}` is no address: the host name is invalid", "check the host name"
+        ) from None
     return host, port
+
+
+def _no_address(text: str) -> PortError:
+    return PortError(f"`{text}` is no address", f"a port is named so: {FORMS}")
 
 
 def _can(path: str, section: dict[str, Any]) -> CanBus:
