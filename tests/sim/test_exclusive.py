@@ -12,7 +12,7 @@ import time
 import pytest
 
 from icdgen.link.exclusive import users_of
-from icdgen.link.ports import PortError, Serial, Terminal
+from icdgen.link.ports import PortError, PseudoTerminal, Serial
 from tests.sim.device import simulator
 
 pytestmark = pytest.mark.pty
@@ -97,7 +97,7 @@ def test_send_during_a_monitor_names_the_program_and_sends_nothing():
 @pytest.mark.parametrize("second", ["terminal", "serial"])
 @pytest.mark.parametrize("first", ["terminal", "serial"])
 def test_a_port_is_opened_once(line, first, second):
-    makers = {"terminal": Terminal, "serial": lambda path: Serial(path, {})}
+    makers = {"terminal": PseudoTerminal, "serial": lambda path: Serial(path, {})}
     device, path = line
     port = makers[first](path)
     with pytest.raises(PortError, match="is in use") as error:
@@ -119,7 +119,7 @@ def test_the_program_that_has_a_port_is_named(line):
             time.sleep(0.05)
         time.sleep(0.2)
         with pytest.raises(PortError, match=rf"process {other.pid}\)"):
-            Terminal(path)
+            PseudoTerminal(path)
     finally:
         other.kill()
         other.wait()

@@ -1,7 +1,8 @@
 """Ports for bytes or CAN packets.
 
-A port has a text: ``tcp://host:port``, ``udp://host:port``, the path of a terminal, the
-name of a serial port, or ``can://interface/channel`` (of python-can).
+`open_port` opens a port from its text: ``tcp://host:port``, ``udp://host:port``, the
+path of a pseudo-terminal, the name of a serial port, or ``can://interface/channel`` (of
+python-can). `icdgen.link.session` runs the client of an ICD on it.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ from icdgen.link.exclusive import busy_error, lock_port
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
-# Bytes of a stream in one datagram. With the headers of IP and UDP they fit into an
-# Ethernet frame of 1,500 bytes, so that the datagram is not fragmented.
-MOST_OF_A_PACKET = 1400
+# With the headers of IP and UDP, these bytes fit into an Ethernet frame of 1,500 bytes,
+# so that the datagram is not fragmented.
+STREAM_BYTES_PER_DATAGRAM = 1400
 # An IPv4 packet has up to 65,535 bytes: 20 are the header of IP, 8 that of UDP.
-MOST_OF_A_DATAGRAM = 65507
+LARGEST_DATAGRAM = 65507
 # Host and port without tcp:// or udp://.
 _BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")
 FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
@@ -62,13 +63,19 @@ def _failures(name: str, *kinds: type[Exception], help: str = "") -> Iterator[No
 class Socket:
     """A TCP or UDP socket.
 
-    ``piece`` is the maximum length of a datagram. Longer data is split.
+    TCP transfers a byte stream. UDP preserves datagrams: `read` returns the bytes of
+    one. ``largest_datagram`` is the maximum number of bytes that `write` sends in a
+    datagram; longer data is split.
     """
 
     def __init__(
-        self, kind: str, host: str, port: int, piece: int = MOST_OF_A_PACKET
+        self,
+        kind: str,
+        host: str,
+        port: int,
+        largest_datagram: int = STREAM_BYTES_PER_DATAGRAM,
     ) -> None:
-        self.piece = piece
+        self.largest_datagram = largest_datagram
         # Brackets separate the colons of an IPv6 address from that of the port.
         shown_host = f"[{host}]" if ":" in host else host
         self.name = f"{kind}://{shown_host}:{port}"
@@ -112,15 +119,19 @@ class Socket:
             if self.stream:
                 self.socket.sendall(data)
             else:
-                for at in range(0, len(data), self.piece):
-                    self.socket.send(data[at : at + self.piece])
+                for at in range(0, len(data), self.largest_datagram):
+                    self.socket.send(data[at : at + self.largest_datagram])
 
     def close(self) -> None:
         self.socket.close()
 
 
-class Terminal:
-    """A pseudo-terminal, by its path."""
+class PseudoTerminal:
+    """A pseudo-terminal of Linux, by its path: ``/dev/pts/3`` or a link to it.
+
+    It needs no pyserial, and has no line settings. Other systems open a pseudo-terminal
+    as a serial port.
+    """
 
     def __init__(self, path: str) -> None:
         import tty
@@ -171,7 +182,11 @@ class Terminal:
 
 
 class Serial:
-    """A serial port, with pyserial."""
+    """A serial port, with pyserial.
+
+    ``settings`` is the section ``line`` of the ICD. Missing keys have the defaults
+    115,200 Bd, 8 data bits, no parity and 1 stop bit.
+    """
 
     def __init__(self, name: str, settings: dict[str, Any]) -> None:
         serial = _library("serial", "pyserial")
@@ -214,7 +229,10 @@ class Serial:
 
 
 class CanBus:
-    """A CAN bus, with python-can. It transfers packets."""
+    """A CAN bus, with python-can. It transfers packets with 29-bit identifiers.
+
+    ``bit_rate`` is in bit/s. SocketCAN ignores it; `ip link` sets the rate there.
+    """
 
     def __init__(self, interface: str, channel: str, bit_rate: int) -> None:
         self.can = _library("can", "python-can")
@@ -229,9 +247,9 @@ class CanBus:
             )
 
     def receive(self, timeout: float) -> CanPacket | None:
-        """Return the next packet with a 29-bit identifier, or None after ``timeout``.
+        """Return the next frame if it is a data frame with a 29-bit identifier.
 
-        Raise `PortError`.
+        Return None for any other frame, or after ``timeout`` (s). Raise `PortError`.
         """
         with _failures(self.name, *self.errors):
             message = self.bus.recv(max(timeout, 0))
@@ -255,13 +273,15 @@ class CanBus:
 def open_port(text: str, protocol: dict[str, Any]) -> Port | CanBus:
     """Open a port.
 
-    ``protocol`` is the section of the ICD, with settings such as baud rate.
+    ``protocol`` is the section of the ICD. It has the settings of a serial port and the
+    bit rate of a CAN bus (default 500 kbit/s). If datagrams delimit its messages, only
+    a UDP port is possible.
 
-    Raise `icdgen.errors.UserError`.
+    Raise `PortError`.
     """
     scheme, separator, remainder = text.partition("://")
-    is_packet = protocol.get("link", {}).get("framing", {}).get("by") == "datagram"
-    if is_packet and scheme != "udp":
+    has_datagrams = protocol.get("link", {}).get("framing", {}).get("by") == "datagram"
+    if has_datagrams and scheme != "udp":
         raise PortError(
             f"{text} keeps no packets apart, and only they delimit messages here",
             "udp://HOST:PORT does",
@@ -272,7 +292,7 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | CanBus:
             "udp": lambda: Socket(
                 "udp",
                 *address(text),
-                MOST_OF_A_DATAGRAM if is_packet else MOST_OF_A_PACKET,
+                LARGEST_DATAGRAM if has_datagrams else STREAM_BYTES_PER_DATAGRAM,
             ),
             "can": lambda: _can(remainder, buses_of(protocol).get("can", {})),
         }
@@ -282,7 +302,7 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | CanBus:
             )
         return openers[scheme]()
     if _is_pty(text):
-        return Terminal(text)
+        return PseudoTerminal(text)
     if text.isdecimal() and not os.path.exists(text):
         raise PortError(
             f"there is no port `{text}`", f"did you mean tcp://localhost:{text}?"
