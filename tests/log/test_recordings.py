@@ -12,12 +12,12 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from icdgen_runtime.wire.stream import stream_encode
+from icdgen_runtime.wire.stream import StreamEvent, stream_encode
 
 from icdgen import codec
 from icdgen.icd.variants import ids_of
 from icdgen.loading import load
-from icdgen.logfile.recording import Recording
+from icdgen.logfile.recording import Recording, Tally
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from icdgen.values.frame import decoded_frame
@@ -503,3 +503,24 @@ def test_messages_in_sequence_have_no_note(tmp_path):
         )
     )
     assert "sequence numbers" not in icdgen(path, "--icd", LINKS / "ccsds.yaml").stdout
+
+
+def test_requests_and_packets_without_a_message_are_no_errors():
+    tally = Tally()
+    for event in ("request", "packet", "packet", "checksum"):
+        tally.fault(StreamEvent(event, 3))
+    assert tally.notes() == [
+        "not taken: wrong checksum (1)",
+        "requests of telemetry: 1",
+        "packets without a message: 2",
+    ]
+
+
+def test_unknown_ids_beyond_the_limit_are_in_the_list_of_ids():
+    tally = Tally()
+    for id in range(100):
+        tally.fault(StreamEvent("unknown_id", id))
+    assert tally.notes() == [
+        "ids that the ICD does not have: 0 (1), 1 (1), 2 (1), 3 (1), 4 (1), 5 (1), "
+        "6 (1), 7 (1) and at least 57 others"
+    ]

@@ -51,16 +51,23 @@ class ReceivedMessage(NamedTuple):
 
 @dataclass(slots=True)
 class Tally:
-    """Numbers of messages, their bytes by `key`, and numbers of errors."""
+    """Numbers of messages, their bytes by `key`, numbers of other valid packets, and
+    numbers of errors.
+    """
 
     messages: Counter[Key] = field(default_factory=Counter)
     sizes: Counter[Key] = field(default_factory=Counter)
+    # Events of ids that the ICD does not have; `has_more_unknown` if not all such ids
+    # have a counter.
     unknown: Counter[int] = field(default_factory=Counter)
-    faults: Counter[str] = field(default_factory=Counter)
-    missing: int = 0
-    repeated: int = 0
-    lost: int = 0
-    cut: int = 0
+    has_more_unknown: bool = False
+    faults: Counter[str] = field(default_factory=Counter)  # by description
+    requests: int = 0  # valid packets that request telemetry
+    packets: int = 0  # valid packets of formats without a message
+    missing: int = 0  # messages, by the gaps in their sequence numbers
+    repeated: int = 0  # events with the sequence number of the previous message
+    lost: int = 0  # bytes that belong to no message
+    cut: int = 0  # bytes at the end of the file that may begin a message
 
     def fault(self, event: StreamEvent) -> None:
         """Count an event that is not a message."""
@@ -68,11 +75,19 @@ class Tally:
             self.missing += event.missing
             self.repeated += event.missing == 0
             return
+        if event.event == "request":
+            self.requests += 1
+            return
+        if event.event == "packet":
+            self.packets += 1
+            return
         if event.event == "unknown_id" and event.id is not None:
             # Noise can have any id, so the number of counters is limited.
             if event.id in self.unknown or len(self.unknown) < _MOST_IDS:
                 self.unknown[event.id] += 1
-                return
+            else:
+                self.has_more_unknown = True
+            return
         self.faults[FAULTS.get(event.event, event.event)] += 1
 
     def notes(self) -> list[str]:
@@ -86,8 +101,14 @@ class Tally:
             ]
             note = f"ids that the ICD does not have: {', '.join(listed)}"
             remaining = len(self.unknown) - len(listed)
-            notes.append(note + (f" and {remaining} others" if remaining else ""))
+            if self.has_more_unknown:
+                note += f" and at least {remaining + 1} others"
+            elif remaining:
+                note += f" and {remaining} others"
+            notes.append(note)
         counts = {
+            "requests of telemetry": self.requests,
+            "packets without a message": self.packets,
             "messages missing, by their sequence numbers": self.missing,
             "messages that came again, by their sequence numbers": self.repeated,
             "bytes that belong to no message": self.lost,
