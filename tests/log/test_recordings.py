@@ -505,6 +505,43 @@ def test_messages_in_sequence_have_no_note(tmp_path):
     assert "sequence numbers" not in icdgen(path, "--icd", LINKS / "ccsds.yaml").stdout
 
 
+def test_the_notes_of_the_first_messages_are_about_the_bytes_up_to_them(
+    capture, monkeypatch
+):
+    icd = load([UBX]).icd
+    capture.write_bytes(b"noise" + capture.read_bytes())
+    lost = []
+    # Whether the file is read in one piece or in many makes no difference.
+    for piece_bytes in (1 << 18, 64, 7, 1):
+        monkeypatch.setattr("icdgen.logfile.recording._PIECE", piece_bytes)
+        recording = Recording(icd, icd.nodes[0], capture)
+        for head in (1, 2, 3, None):
+            tally = recording.survey(head, lambda size: None)
+            assert tally.cut == (9 if head is None else 0), "the end was not read"
+            lost.append(tally.lost)
+    between = len(ubx(OTHER)) + len(ubx(EPOCH)) + 5
+    assert lost == [5, 5, 5 + between, 5 + between] * 4
+
+
+@pytest.mark.parametrize("name", ["tsip", "hdlc", "sbp"])
+def test_lost_bytes_before_the_first_messages_are_counted_in_all_framings(
+    name, tmp_path
+):
+    icd = load([LINKS / f"{name}.yaml"]).icd
+    node = icd.nodes[0]
+    frames = {
+        message.message.name: [row.frame for row in message.rows[:2]]
+        for message in make_vectors(icd, node).messages
+    }
+    sent = recorded(icd, node, frames)["telemetry"]
+    lost = []
+    for data in (sent, sent[3:] + sent, sent[3:] + sent + sent[3:]):
+        (tmp_path / "sent").write_bytes(data)
+        tally = Recording(icd, node, tmp_path / "sent").survey(1, lambda size: None)
+        lost.append(tally.lost)
+    assert lost[0] == 0 and lost[1] == lost[2] > 0
+
+
 def test_requests_and_packets_without_a_message_are_no_errors():
     tally = Tally()
     for event in ("request", "packet", "packet", "checksum"):

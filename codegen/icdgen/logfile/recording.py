@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -177,16 +178,26 @@ class Recording:
         """
         decoder, count = StreamDecoder(self.link, self.direction), 0
         for piece in self._pieces() if head != 0 else ():
-            for event in decoder.feed(piece):
+            # Only `head` can end the iteration within a piece.
+            before = decoder if head is None else deepcopy(decoder)
+            events = decoder.feed(piece)
+            for number, event in enumerate(events, 1):
                 received = self._received(event, tally)
-                if received is not None:
-                    count += 1
-                    yield received
-                    if count == head:
-                        return
+                if received is None:
+                    continue
+                count += 1
+                if count == head:
+                    # The decoder has already discarded bytes after this message.
+                    tally.lost = before.discarded
+                    if decoder.discarded > before.discarded:
+                        tally.lost = _discarded_before_event(before, piece, number)
+                yield received
+                if count == head:
+                    return
             # The decoder counts over all pieces.
-            tally.lost, tally.cut = decoder.discarded, decoder.pending
+            tally.lost = decoder.discarded
             done(len(piece))
+        tally.cut = decoder.pending
 
     def survey(self, head: int | None, done: Done) -> Tally:
         """Count the events up to the last chosen message.
@@ -246,6 +257,26 @@ def key(message: Message) -> Key:
     They are unique for a node.
     """
     return message.node, message.name
+
+
+def _discarded_before_event(decoder: StreamDecoder, piece: bytes, number: int) -> int:
+    """Return how many bytes a decoder discards until an event.
+
+    The event is the one with this number, from 1, of those that the decoder returns for
+    ``piece``. The decoder does not report positions of events, so that the shortest
+    piece that gives the event is searched by halving.
+    """
+    while len(piece) > 1:
+        half = len(piece) // 2
+        trial = deepcopy(decoder)
+        events = len(trial.feed(piece[:half]))
+        if events >= number:
+            piece = piece[:half]
+        else:
+            decoder, piece, number = trial, piece[half:], number - events
+    decoder = deepcopy(decoder)
+    decoder.feed(piece)
+    return decoder.discarded
 
 
 def _has_equal_frames(message: Message) -> bool:
