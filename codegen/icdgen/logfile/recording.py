@@ -38,9 +38,10 @@ Key = tuple[str, str]  # node that declares a message, and its name
 class ReceivedMessage(NamedTuple):
     """A received message, with the frame fields that its sender chose.
 
-    ``data`` is padded with zeros to the longest frame. ``present`` are the names of the
-    fields present, or None for all. ``ends`` is the first byte after each
-    variable-length field.
+    ``data`` has each byte at its position in the longest frame of the message; absent
+    bytes are 0. ``present`` are the names of the fields present, or None for all.
+    ``ends`` has the offset in ``data`` of the first byte after each variable-length
+    field.
     """
 
     message: Message
@@ -141,10 +142,10 @@ class Recording:
             self._messages_by_id[id] = messages
             self.messages |= {key(message): message for message in messages}
         # Most messages, which then need no pass of the slow reference codec.
-        self._with_equal_frames = {
+        self._with_fixed_fields = {
             name
             for name, message in self.messages.items()
-            if _has_equal_frames(message)
+            if _has_fixed_fields(message)
         }
         self.chosen = {key(message) for message in chosen} or set(self.messages)
         if unknown := self.chosen - set(self.messages):
@@ -170,9 +171,10 @@ class Recording:
     def received_messages(
         self, tally: Tally, head: int | None, done: Done
     ) -> Iterator[ReceivedMessage]:
-        """Iterate over the chosen messages, up to ``head``.
+        """Iterate over the chosen messages: the first ``head`` of them, or all if it is
+        None.
 
-        Count all events in ``tally``.
+        Count all events in ``tally``, also those of messages that are not chosen.
 
         Raise `icdgen.errors.UserError`.
         """
@@ -200,7 +202,10 @@ class Recording:
         tally.cut = decoder.pending
 
     def survey(self, head: int | None, done: Done) -> Tally:
-        """Count the events up to the last chosen message.
+        """Count the events up to the chosen message number ``head``, or of the complete
+        file if ``head`` is None.
+
+        ``done`` receives the number of bytes of each processed piece of the file.
 
         Raise `icdgen.errors.UserError`, also if there is no message.
         """
@@ -226,7 +231,7 @@ class Recording:
             message = codec.message_of_frame_if_any(self.icd, messages, event.data)
         unpacked: Unpacked = (event.data, None, {})
         try:
-            if message is not None and key(message) not in self._with_equal_frames:
+            if message is not None and key(message) not in self._with_fixed_fields:
                 unpacked = _unpacked(self.icd.node(message.node), message, event.data)
         except codec.LengthError:
             message = None
@@ -279,8 +284,10 @@ def _discarded_before_event(decoder: StreamDecoder, piece: bytes, number: int) -
     return decoder.discarded
 
 
-def _has_equal_frames(message: Message) -> bool:
-    """Return whether all frames of a message have the same fields."""
+def _has_fixed_fields(message: Message) -> bool:
+    """Return whether all frames of a message have the same fields at the same
+    positions.
+    """
     return not message.layout.parts and not any(
         node.present_if for node in message.layout.nodes
     )
