@@ -366,7 +366,7 @@ def _simulator(subject: Subject) -> object:
 
 
 def _answers(program: Program, now: int) -> list[bytes | None]:
-    return [program.frame(now, id) for id in program.facts.telemetry]
+    return [program.requested_frame(now, id) for id in program.facts.telemetry]
 
 
 def _recordings(subject: Subject) -> tuple[object, object]:
