@@ -363,3 +363,14 @@ def test_damage_between_two_decoded_chunks_is_reported(
         assert len(numbers) == COUNT - 1 and numbers == sorted(
             set(range(1, COUNT + 1)) & set(numbers)
         )
+
+
+def test_damage_at_the_border_of_the_first_entries_leaves_the_others(icd, path):
+    """Although their data contain the time, too."""
+    data, entries = log_of(icd, "own time", steady(1000))
+    start = len(data) - ENTRY * COUNT
+    for place in range(25, 43):
+        damaged = bytearray(data)
+        damaged[start + place : start + place + 24] = Random(0).randbytes(24)
+        rows, _ = read(icd, path, bytes(damaged))
+        assert rows[-(COUNT - 2) :] == entries[2:], place

@@ -224,8 +224,14 @@ class LogSurvey:
                 if first is not None and 0 <= (self._time(at) or 0) - first <= MONTH
             ]
             pool = recent or fresh
-            # Starts that are farther away can be later entries of these.
-            near = [at for at in pool if at < pool[0] + size]
+            # The first start at each place within an entry; others are later entries of
+            # these. Two entries are looked at, since damage can hide the first start.
+            near: list[int] = []
+            for at in pool:
+                if at >= pool[0] + 2 * size:
+                    break
+                if all((at - other) % size for other in near):
+                    near.append(at)
             ending = [at for at in near if (self.size - at) % size == 0]
             steadier = [
                 at
