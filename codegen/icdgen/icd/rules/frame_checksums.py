@@ -242,7 +242,7 @@ def _check_covers(packet: LinkPacket, part: str, field: Map) -> Iterator[Fault]:
 
 @rule("ICD174")
 def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
-    """Report messages that share an id and differ in seed or `may_end_early`.
+    """Report messages that share an id and differ in packet, seed or `may_end_early`.
 
     A receiver can distinguish them only by their data, after it has checked and removed
     the framing.
@@ -253,6 +253,15 @@ def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
             first_of_id: dict[int, Message] = {}
             for id, message in messages_with_ids(ctx, link.node, direction):
                 first = first_of_id.setdefault(id, message)
+                packet, packet_of_first = (
+                    link.declared.packets_of_message(each.name, direction)[:1]
+                    for each in (message, first)
+                )
+                # ICD184 reports a message that is in no packet.
+                if packet and packet_of_first and packet != packet_of_first:
+                    text = f"{quote(message.name)} is sent in another packet than {quote(first.name)}, which has the same id"
+                    help = "list both in one packet, or give them different ids"
+                    yield Fault.at(message.source, "name", text, help)
                 if bool(message.may_end_early) != bool(first.may_end_early):
                     early = message if message.may_end_early else first
                     text = f"zeros of {quote(early.name)} may be omitted, but not the zeros of another message with its id"
