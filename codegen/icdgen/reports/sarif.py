@@ -17,7 +17,7 @@ from icdgen.diagnostics import Finding, Place
 from icdgen.icd import rules
 
 
-class RulePage(Protocol):
+class PrintedPage(Protocol):
     """Page of a rule, as far as SARIF needs it."""
 
     @property
@@ -34,7 +34,7 @@ class Explained(Protocol):
     def title(self) -> str: ...
 
     @property
-    def page(self) -> RulePage: ...
+    def page(self) -> PrintedPage: ...
 
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"

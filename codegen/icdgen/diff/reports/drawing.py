@@ -67,7 +67,7 @@ class BitRow:
         ) != ends.get(NEW_Y)
 
 
-class FrameDrawing(NamedTuple):
+class ComparedDrawing(NamedTuple):
     """Drawing of two layouts.
 
     ``parts``: rows, and texts in place of unchanged rows.
@@ -82,7 +82,7 @@ class FrameDrawing(NamedTuple):
     middle: int = HEIGHT
 
 
-def draw(pair: MessagePair, changes: list[Change]) -> FrameDrawing | None:
+def draw(pair: MessagePair, changes: list[Change]) -> ComparedDrawing | None:
     """Return the layouts of a message; None if no bit changed its position or meaning.
 
     The frame is empty on a side without the message.
@@ -112,7 +112,9 @@ def draw(pair: MessagePair, changes: list[Change]) -> FrameDrawing | None:
         ]
     if not any(row.is_new for row in rows):
         return None
-    return FrameDrawing(_folded(rows), f"Bit layouts of {pair.any.name}, old above new")
+    return ComparedDrawing(
+        _folded(rows), f"Bit layouts of {pair.any.name}, old above new"
+    )
 
 
 def _kind(pair: FieldPair, changes: list[Change]) -> str:

@@ -13,7 +13,7 @@ from icdgen.diff.accepted import about_stale
 from icdgen.diff.layers import ABOUT, TEXT
 from icdgen.diff.pairs import MessagePair
 from icdgen.diff.report import DiffReport
-from icdgen.diff.reports.drawing import FrameDrawing, draw
+from icdgen.diff.reports.drawing import ComparedDrawing, draw
 from icdgen.diff.reports.groups import ChangeGroup, groups
 from icdgen.reports.excerpt import printable
 
@@ -81,7 +81,7 @@ def coded(text: str) -> list[tuple[str, bool]]:
     ]
 
 
-def layouts(group: ChangeGroup) -> FrameDrawing | None:
+def layouts(group: ChangeGroup) -> ComparedDrawing | None:
     """Return both layouts of a message, if any of its bits changed position or meaning;
     None otherwise.
     """
