@@ -383,6 +383,14 @@ def test_strict_refuses_unknown_enum_values():
             "--host is an address of this machine",
         ),
         (
+            ("--tcp", "0", "--node", "cubeacp", "--host", "a..b"),
+            "the host name is invalid",
+        ),
+        (
+            ("--udp", "0", "--node", "cubeacp", "--host", "x" * 64),
+            "the host name is invalid",
+        ),
+        (
             ("--tcp", "0", "--node", "cubeacp", "--file", "2:1=missing.bin"),
             "cannot read missing.bin",
         ),

@@ -102,7 +102,7 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
 
     try:
         listening = await asyncio.start_server(serve, host, port)
-    except OSError as error:
+    except (OSError, UnicodeError) as error:
         raise _listen_error("tcp", host, port, error) from None
     return f"tcp://{host}:{listening.sockets[0].getsockname()[1]}", listening
 
@@ -148,7 +148,7 @@ async def udp(
             )
             return f"to udp://{host}:{port}", transport
         transport, _ = await loop.create_datagram_endpoint(Protocol, (host, port))
-    except OSError as error:
+    except (OSError, UnicodeError) as error:
         raise _listen_error("udp", host, port, error) from None
     return f"udp://{host}:{transport.get_extra_info('sockname')[1]}", transport
 
@@ -226,8 +226,16 @@ async def pty(server: Server) -> tuple[str, object]:
     return os.ttyname(slave), (master, slave)
 
 
-def _listen_error(kind: str, host: str, port: int, error: OSError) -> UserError:
-    """Return the error for an address that cannot be opened."""
+def _listen_error(
+    kind: str, host: str, port: int, error: OSError | UnicodeError
+) -> UserError:
+    """Return the error for an address that cannot be opened.
+
+    `socket` raises UnicodeError for a host name with an empty or too long part.
+    """
+    if isinstance(error, UnicodeError):
+        text = f"cannot listen on {kind} {host}:{port}: the host name is invalid"
+        return UserError(text, "check the host name")
     is_taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
     if error.errno and error.errno > 0:
         why = os.strerror(error.errno)
