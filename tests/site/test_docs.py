@@ -168,7 +168,7 @@ def test_docs_serve_serves_until_it_is_interrupted(demo):
         address = re.search(r"http://localhost:(\d+)/ \(\d+ files\)", line)
         assert address, line
         for _ in range(2):
-            connection = HTTPConnection("localhost", int(address[1]), timeout=20)
+            connection = HTTPConnection("127.0.0.1", int(address[1]), timeout=20)
             connection.request("GET", "/demo/")
             answer = connection.getresponse()
             assert answer.status == 200 and b"Estimated Roll" in answer.read()
