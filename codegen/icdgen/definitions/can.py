@@ -34,6 +34,7 @@ from icdgen.definitions.wording import (
     summary,
     unit,
 )
+from icdgen.frozen import NamedTuple
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.layout import integer_range
 from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
@@ -252,6 +253,14 @@ def _network(
     return network
 
 
+class _PlacedField(NamedTuple):
+    """Field of a message, its bits in the frame, and the names of its raw values."""
+
+    field: Item
+    place: frames.FrameBits
+    value_names: dict[int, str]
+
+
 def _message(
     message: Any,
     signals: list[Any],
@@ -282,8 +291,7 @@ def _message(
             f"Also sent by {', '.join(senders[1:])}." if len(senders) > 1 else "",
         )
     )
-    placed: list[tuple[Item, frames.FrameBits]] = []
-    value_names: list[dict[int, str]] = []  # of each field in `placed`
+    placed: list[_PlacedField] = []
     for signal in signals:
         place = signal_place(signal)
         if not 0 <= place.at <= place.at + place.bits <= 8 * message.length:
@@ -300,22 +308,19 @@ def _message(
             continue
         # SYM declares a signal of several multiplexer values several times. These
         # become one field, unless their values have other names.
-        names = _value_names(signal)
+        value_names = _value_names(signal)
         same = next(
             (
-                candidate
-                for (candidate, candidate_place), candidate_names in zip(
-                    placed, value_names, strict=True
-                )
-                if candidate_place == place
-                and candidate_names == names
-                and _is_alternative(candidate, field)
+                candidate.field
+                for candidate in placed
+                if candidate.place == place
+                and candidate.value_names == value_names
+                and _is_alternative(candidate.field, field)
             ),
             None,
         )
         if same is None:
-            placed.append((field, place))
-            value_names.append(names)
+            placed.append(_PlacedField(field, place, value_names))
         else:
             (by,) = field["when"]
             same["when"] = {
@@ -324,12 +329,13 @@ def _message(
                     *frames.values_of_condition(field["when"][by]),
                 ]
             }
-    _name_fields_apart(message.name, [field for field, _ in placed], to)
+    fields = [candidate.field for candidate in placed]
+    _name_fields_apart(message.name, fields, to)
     # A multiplexer that was left out takes the signals that depend on it along.
-    missing = {name for field, _ in placed for name in field.get("when", ())} - {
-        field["name"] for field, _ in placed
+    missing = {name for field in fields for name in field.get("when", ())} - {
+        field["name"] for field in fields
     }
-    for field, _ in placed:
+    for field in fields:
         if missing & set(field.get("when", ())):
             to.without_field(
                 message.name,
@@ -338,7 +344,11 @@ def _message(
             )
     return frames.laid_out(
         item,
-        [pair for pair in placed if not missing & set(pair[0].get("when", ()))],
+        [
+            (field, place)
+            for field, place, _ in placed
+            if not missing & set(field.get("when", ()))
+        ],
         order,
         to,
     )

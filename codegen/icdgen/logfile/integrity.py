@@ -533,16 +533,14 @@ class LogSurvey:
         """
         size = self.entry_bytes
         for place in self.other_times:
-            compared, has_match = 0, False
+            matches: list[bool] = []
             for start in (at, at + size, at + 2 * size):
                 if start + place + self.time_end > self.size:
-                    continue
-                compared += 1
+                    break
                 own = self._time(start, self.time_end)
                 other = self._time(start + place, self.time_end)
-                if own is not None and other is not None:
-                    has_match |= abs(other - own) <= self.limit
-            if compared and not has_match:
+                matches.append(self._deviation(own, other) < NEVER)
+            if matches and not any(matches):
                 return False
         return True
 

@@ -108,8 +108,8 @@ def messages_of_direction(
     ``exchanges``: exchanges of telecommands, by name. ``requestable_ids``: ids of the
     telemetry that the packet of `Stream.request` can request. Messages that share an id
     form one row with the packet format, checksum seed and `may_end_early` of the first.
-    Rule ICD174 ensures that they have the same seed and `may_end_early`, rule ICD178
-    that telecommands have the same responses.
+    Rule ICD174 ensures that they have the same of each, rule ICD178 that telecommands
+    have the same responses.
     """
     rows = []
     for id, variants in sorted(ids.items()):

@@ -1,4 +1,5 @@
-"""Rules of the checksums of links with roles of fields (ICD173 and ICD174).
+"""Rules of the checksums of links with roles of fields (ICD173), and of all that a
+receiver must know before it knows the message (ICD174).
 
 `link: checksums` declares a checksum. A field with the role `checksum` sends it and says
 with `covers` over which bytes it is computed; steps of procedures can compare it.
@@ -241,7 +242,7 @@ def _check_covers(packet: LinkPacket, part: str, field: Map) -> Iterator[Fault]:
 
 
 @rule("ICD174")
-def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
+def messages_of_one_id_are_framed_alike(ctx: Context) -> Iterator[Fault]:
     """Report messages that share an id and differ in packet, seed or `may_end_early`.
 
     A receiver can distinguish them only by their data, after it has checked and removed
