@@ -11,6 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from icdgen import config
+from icdgen.backends import packages
+from icdgen.errors import UserError
+from tests.limits import assert_limits
+
 PROJECTS = ("alpha", "beta")
 ICD = """\
 icdgen: 1
@@ -164,15 +169,6 @@ def test_the_self_test_of_prefixed_c_passes(projects, tmp_path):
     run(tmp_path / "main", cwd=tmp_path)
 
 
-def icdgen(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "icdgen", *words],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-    )
-
-
 @pytest.mark.parametrize(
     ("text", "place", "words"),
     [
@@ -209,20 +205,55 @@ def icdgen(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     ],
 )
 def test_a_name_that_cannot_be_used_is_an_error_with_its_place(
-    tmp_path, text, place, words
+    icdgen, tmp_path, text, place, words
 ):
     (tmp_path / "icdgen.toml").write_text(text)
-    for command in ("check", "generate"):
-        done = icdgen(
-            command,
-            *(["--lang", "python"] if command == "generate" else []),
-            cwd=tmp_path,
-        )
-        assert (
-            done.returncode == 2
-            and f"icdgen.toml:{place}: " in done.stderr
-            and words in done.stderr
-        ), done.stderr
+    for command in (["check"], ["generate", "--lang", "python"]):
+        result = icdgen(*command)
+        assert result.status == 2 and words in result.err, result.err
+        assert f"icdgen.toml:{place}: " in result.err
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("icds = []", ("icdgen_messages", "icd", "")),
+        ('name = "Red-Pump"', ("red_pump", "red_pump", "")),
+        ('name = "pump"\npython.package = "a"', ("a", "pump", "")),
+        ('name = "pump"\nc.prefix = "a"', ("pump", "pump", "a_")),
+        ('name = "json"\npython.package = "a"', ("a", "json", "")),
+        ('name = "match"\nrust.crate = "a"', ("match", "a", "")),
+        (
+            'name = "class"\npython.package = "a"\nrust.crate = "class"',
+            ("a", "class", ""),
+        ),
+        (
+            'name = "icdgen"\npython.package = "a"\nrust.crate = "b"',
+            ("a", "b", ""),
+        ),
+    ],
+)
+def test_an_explicit_package_name_replaces_that_of_the_project(tmp_path, text, names):
+    """A project can have a name that a language reserves if `icdgen.toml` gives the
+    name of the package in that language.
+    """
+    (tmp_path / "icdgen.toml").write_text(text)
+    generated = packages.of_project(config.find(tmp_path))
+    assert (generated.python, generated.rust, generated.c_prefix) == names
+
+
+@pytest.mark.parametrize("key", ["name", "python.package", "rust.crate", "c.prefix"])
+def test_the_name_of_a_package_has_at_most_40_characters(tmp_path, key):
+    def is_accepted(length: int) -> bool:
+        (tmp_path / "icdgen.toml").write_text(f'{key} = "{"a" * length}"')
+        try:
+            packages.of_project(config.find(tmp_path))
+        except UserError as error:
+            assert "has more than 40 characters" in str(error) or not length
+            return False
+        return True
+
+    assert_limits(is_accepted, most=40)
 
 
 def test_the_site_shows_the_names_of_the_project(projects):
