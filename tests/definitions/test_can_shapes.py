@@ -546,7 +546,7 @@ Title="Vehicle"
 ID=100h
 Len=8
 Timeout=500
-Var=Level unsigned 0,8 /u:"/x:" /d:3 // comment with /e:
+Var=Level unsigned 0,8 /u:"/x:" /d:3 // "was" /h:2 /e:
 Var=Serial string 8,32 /ln:"serial number"
 """
 ARXML = """\

@@ -166,20 +166,54 @@ def test_table_files_of_every_source_give_the_same(tmp_path, name):
     assert table_files.read_tables(tmp_path / "tables") == tables
 
 
-def test_a_range_that_a_spreadsheet_made_a_date_is_an_error(tmp_path):
+def test_each_value_that_a_spreadsheet_program_changed_is_an_error_at_its_cell(
+    tmp_path,
+):
     book = openpyxl.Workbook()
-    book.active.append(["Byte", "Name"])
-    book.active.append([datetime.date(2026, 1, 2), "Speed"])
-    book.active.append(["=A1+1", "Load"])
+    for row in (
+        ["Byte", "Name"],
+        [datetime.date(2026, 1, 2), "Speed"],  # 1-2
+        [datetime.time(1, 30), "Load"],  # 1:30
+        [datetime.datetime(2026, 1, 2, 3, 4), "Mode"],
+        ["=A1+1", "Sum"],
+        ["#REF!", "#4"],
+        ["#NAME?", 0.1],
+        ["#N/A", 2.0],
+        [True, False],
+    ):
+        book.active.append(row)
     book.save(tmp_path / "motor.xlsx")
-    document, _ = sources.read(tmp_path / "motor.xlsx", profile.load())
-    date, formula = [t for t in document.import_findings if t.severity == "error"]
-    assert (
-        "sheet `Sheet`, cell A2: the spreadsheet program made the date 2026-01-02"
-        in date.message
-    )
-    assert "range such as 1-2" in date.help
-    assert "cell A3: the formula `=A1+1` has no stored value" in formula.message
+    document, (table,) = sources.read(tmp_path / "motor.xlsx", profile.load())
+    made, error = "the spreadsheet program made the date", "its formula gives the error"
+    assert [
+        (finding.code, finding.severity, finding.spot.line, finding.message)
+        for finding in document.import_findings
+    ] == [
+        ("IMP023", "error", line, f"sheet `Sheet`, cell A{line}: {message}")
+        for line, message in enumerate(
+            (
+                f"{made} 2026-01-02 00:00:00 of what was typed",
+                f"{made} 01:30:00 of what was typed",
+                f"{made} 2026-01-02 03:04:00 of what was typed",
+                "the formula `=A1+1` has no stored value",
+                f"{error} `#REF!`",
+                f"{error} `#NAME?`",
+                f"{error} `#N/A`",
+            ),
+            2,
+        )
+    ]
+    assert "range such as 1-2" in document.import_findings[0].help
+    assert [[cell.text for cell in row.cells] for row in table.rows[1:]] == [
+        ["2026-01-02 00:00:00", "Speed"],
+        ["01:30:00", "Load"],
+        ["2026-01-02 03:04:00", "Mode"],
+        ["", "Sum"],
+        ["#REF!", "#4"],
+        ["#NAME?", "0.1"],
+        ["#N/A", "2"],
+        ["TRUE", "FALSE"],
+    ]
 
 
 def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(
