@@ -128,8 +128,3 @@ def test_no_line_of_a_comment_begins_a_list_a_heading_or_a_quotation():
         "a - b",
     ]
     assert commented(["word - word"], 8, "// ") == ["// word", "// \\-", "// word"]
-    assert commented(["one", "", "two"], 80, "/// ", is_spaced=True) == [
-        "/// one",
-        "///",
-        "/// two",
-    ]
