@@ -100,6 +100,21 @@ def test_an_entry_that_no_longer_applies_is_reported(
     assert stale["place"]["line"] == 3 and stale["reason"] == "Agreed in review 7."
 
 
+def test_the_first_of_two_entries_about_a_change_gives_the_reason(
+    icdgen, releases, tmp_path
+):
+    """Neither entry is unused: a general one can follow one about a single message."""
+    general = "  - {code: DIF103, node: demo, reason: All ids are new.}\n"
+    for entries, reason in (
+        ((ID, general), "Agreed in review 7."),
+        ((general, ID), "All ids are new."),
+    ):
+        accept(tmp_path, *entries)
+        document = json.loads(icdgen("diff", "old", "new", "--format", "json").out)
+        accepted = [change.get("accepted") for change in document["changes"]]
+        assert (accepted, document["stale"]) == ([reason, None], [])
+
+
 def test_an_unused_entry_is_reported_if_nothing_changed(icdgen, releases, tmp_path):
     accept(tmp_path, ID)
     assert "does not happen" in icdgen("diff", "old", "old").out

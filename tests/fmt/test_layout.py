@@ -62,6 +62,13 @@ def test_shipped_files_are_in_the_canonical_layout(path):
     assert formatted(text) == text
 
 
+@pytest.mark.parametrize("kind", ["icd", "overlay"])
+def test_words_in_comments_do_not_change_the_layout(kind):
+    text = expected(HERE / f"{kind}.in.yaml").read_text("utf-8")
+    text += "# The keys `icdgen: 1`, `errata: 1` and `accepted: 1` begin files.\n"
+    assert formatted(text) == text
+
+
 def test_line_ends_and_byte_order_mark_are_normalised():
     assert formatted("\ufefficdgen: 1\r\nnode: {}\r\n") == "icdgen: 1\nnode: {}\n"
 

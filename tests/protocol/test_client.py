@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from icdgen_runtime._errors import LengthError, UnknownIdError
-from icdgen_runtime.wire.awaited import Request
+from icdgen_runtime.wire.awaited import MOST_AWAITED, Request
 from icdgen_runtime.wire.can import CanMessage, can_split
 from icdgen_runtime.wire.client import Client
 from icdgen_runtime.wire.errors import BusyError
@@ -17,7 +17,7 @@ from icdgen_runtime.wire.events import (
     Refused,
     Timeout,
 )
-from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.i2c import I2cTransfer, i2c_write
 from icdgen_runtime.wire.link import Settings
 from icdgen_runtime.wire.uart import uart_encode
 
@@ -98,6 +98,32 @@ def test_on_can_a_frame_is_split_and_joined(link):
     packets = can_split(link, CanMessage("reply", 206, NODE, OURS, data))
     (event,) = [event for packet in packets for event in client.packet(5, packet)]
     assert event.data == data
+
+
+@pytest.mark.parametrize("cancelled", [9, 10])
+def test_on_i2c_a_cancelled_request_leaves_the_transaction_of_an_equal_one(
+    link, cancelled
+):
+    """The application takes no more transactions while eight have no result, also if
+    their requests have ended.
+    """
+    client = Client(link, "i2c", settings=QUICK._replace(in_flight=10))
+    for _ in range(MOST_AWAITED):
+        client.start(0, Request("telemetry", 146))
+    assert len(client.transfers()) == MOST_AWAITED == 8
+    client.cancel()
+    client.tick(10**6)  # when no late responses are expected any more
+    for _ in range(2):
+        client.start(10**6, Request("telemetry", 146))
+    assert client.transfers() == []
+    client.cancel(handle=cancelled)
+    for _ in range(MOST_AWAITED):
+        (late,) = client.transferred(10**6, bytes(6))
+        assert isinstance(late, Late)
+    assert client.transfers() == [I2cTransfer(b"\x92", 6)]
+    (done,) = client.transferred(10**6, bytes([2, *bytes(5)]))
+    assert (done.handle, done.data[0]) == (19 - cancelled, 2)
+    assert client.transfers() == [] and not client.busy
 
 
 @st.composite

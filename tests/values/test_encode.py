@@ -274,6 +274,26 @@ def test_a_single_is_the_nearest_to_the_exact_decimal_not_to_a_double(bits, betw
         assert numbers.float_bits(text, 32) == expected
 
 
+@pytest.mark.parametrize(
+    ("bits", "largest"), [(32, 0x7F7FFFFF), (64, 0x7FEFFFFFFFFFFFFF)]
+)
+def test_numbers_up_to_the_largest_float_are_accepted(bits, largest):
+    """The next number would be 2**128 (2**1024); half the distance rounds up to it."""
+    highest = Fraction(floats.value_of(largest, bits))
+    distance = highest - Fraction(floats.value_of(largest - 1, bits))
+    assert highest + distance == 2 ** (128 if bits == 32 else 1024)
+    for sign, sign_bit in ((1, 0), (-1, 1 << bits - 1)):
+        for number, raw in (
+            (highest, largest),
+            (highest - distance, largest - 1),
+            (highest + distance * Fraction(499, 1000), largest),
+            ((highest + distance) / 2, largest + 1 - (1 << (23 if bits == 32 else 52))),
+        ):
+            assert floats.nearest(sign * number, bits) == raw | sign_bit
+        with pytest.raises(OverflowError):
+            floats.nearest(sign * (highest + distance / 2), bits)
+
+
 def test_the_shortest_text_of_a_float_is_read_back():
     for bits in (
         0,
