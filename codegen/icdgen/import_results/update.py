@@ -212,13 +212,13 @@ def _merge(
     for key, value in item.items():
         child: Child | None = before.get(key)  # type: ignore[no-redef]
         if inner and key == inner[0]:
-            children = (
-                child.value.children
+            before_lines = (
+                child.value
                 if child is not None and isinstance(child.value, Branch)
-                else []
+                else Branch(False, False, 0)
             )
             lines = _merge_items(
-                children,
+                before_lines.children,
                 value,
                 inner[1],
                 f"{where}{kind} {title}: ",
@@ -228,7 +228,7 @@ def _merge(
             if child is None:
                 child = Child(ScalarText(key, key))
                 result.children.append(child)
-            child.value = Branch(False, False, 0, lines)
+            child.value = Branch(False, False, 0, lines, tail=before_lines.tail)
         elif child is None:
             result.children.append(Child(ScalarText(key, key), emit.node(value)))
             # Neither is a fact of the device, so the list of changes omits them.
