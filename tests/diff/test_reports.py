@@ -15,7 +15,7 @@ import pytest
 from icdgen.diff import inputs, report, reports
 from icdgen.diff.reports.json import SCHEMA
 from tests.conftest import ROOT
-from tests.diff.cases import CASES, compared
+from tests.diff.cases import CASES, FOLDER, compared
 from tests.diff.release.make import facts, make
 
 FORMATS = sorted(reports.FORMATS)
@@ -67,13 +67,33 @@ class TestSarif:
         for result, change in zip(run["results"], release.changes, strict=True):
             assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == change.code
             region = result["locations"][0]["physicalLocation"]["region"]
-            assert (region["startLine"], region["startColumn"]) == change.place[1:3]
+            place = change.new or change.old
+            assert (region["startLine"], region["startColumn"]) == place[1:3]
             assert ("relatedLocations" in result) == (
                 change.old is not None and change.new is not None
             )
         assert all(
             rule["help"]["text"].startswith(f"# {rule['id']}: ") for rule in rules
         )
+
+    def test_a_change_is_at_its_place_in_the_new_icd_and_related_to_the_old_one(self):
+        run = json.loads(reports.get("sarif")(compared(FOLDER / "DIF134")))["runs"][0]
+        places = [
+            [
+                (where["artifactLocation"]["uri"], *where["region"].values())
+                for where in (
+                    location["physicalLocation"]
+                    for key in ("locations", "relatedLocations")
+                    for location in result.get(key, ())
+                )
+            ]
+            for result in run["results"]
+        ]
+        assert places == [
+            [("current/demo.yaml", 7, 45, 49), ("previous/demo.yaml", 7, 45, 49)],
+            [("current/demo.yaml", 12, 75, 81), ("previous/demo.yaml", 11, 75, 77)],
+            [("current/demo.yaml", 10, 9, 10)],
+        ]
 
 
 class TestGithub:
@@ -84,6 +104,53 @@ class TestGithub:
         for line, change in zip(lines, release.changes, strict=True):
             assert line.startswith(words[change.severity]) and change.code in line
 
+    def test_a_command_has_the_place_in_the_new_icd_and_the_message(self):
+        _, line, _ = reports.get("github")(compared(FOLDER / "DIF134")).splitlines()
+        assert line == (
+            "::error title=icdgen DIF120,file=current/demo.yaml,line=12,endLine=12,"
+            "col=75,endColumn=81::DIF120: wire: "
+            "`protocol.link.trailer.checksum.covers.from` is length, was id"
+        )
+
+
+MARKDOWN = """\
+## ICD changes: previous → current
+
+Version of the generated packages: **major** – 1 change of the wire format, the first: ids of `demo` have 16 bits, had 8.
+
+| layer | changes | additions | |
+|---|---:|---:|---|
+| **wire** | 1 |  | values are at other bits or are read differently |
+| **meaning** | 0 |  | the raw values are the same, their meaning differs |
+| **source** | 0 |  | generated names and types change |
+| **text** | 0 |  | words only |
+
+| | | frames as before |
+|---|---|---|
+| Can an old ground station read the new device's telemetry? | **partly** | 1 of 1 |
+| Can old telecommands still be sent? | **partly** | 0 of 0 |
+| Can new software read old log files? | **yes** | 1 of 1 |
+
+<details><summary>Can an old ground station read the new device's telemetry? <b>partly</b></summary>
+
+- ids of `demo` have 16 bits, had 8
+
+</details>
+
+<details><summary>Can old telecommands still be sent? <b>partly</b></summary>
+
+- ids of `demo` have 16 bits, had 8
+
+</details>
+
+### wire: values are at other bits or are read differently
+
+**demo** (node, demo)
+
+- error `DIF116` ids of `demo` have 16 bits, had 8 – previous/demo.yaml:2 → current/demo.yaml:2
+  - An id is sent as 2 bytes, was as 1 byte.
+"""
+
 
 class TestMarkdown:
     def test_the_report_has_the_verdicts_and_every_change(self, release):
@@ -93,6 +160,9 @@ class TestMarkdown:
             text.count(f"`{code}`") for code in {c.code for c in release.changes}
         ) >= len(release.changes)
         assert text.count("<details>") == text.count("</details>")
+
+    def test_a_change_that_concerns_all_frames_is_a_reason_of_each_direction(self):
+        assert reports.get("markdown")(compared(FOLDER / "DIF116")) == MARKDOWN
 
 
 class Page(HTMLParser):

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from icdgen.diff import rule
-from icdgen.diff.compare import RULES
+from icdgen.diff.compare import RULES, compare
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.report import make_report
 from icdgen.loading import load
 from tests.diff.cases import CASES, compared, printed
-from tests.icd.files import write
+from tests.icd.files import HEAD, status, write
 
 
 def name(case) -> str:
@@ -58,8 +58,6 @@ def test_both_icds_of_every_pair_pass_the_check():
 
 @pytest.mark.parametrize("code", RULES)
 def test_the_example_of_a_rule_shows_it(code, tmp_path):
-    from icdgen.diff.compare import compare
-
     sides = []
     for side, text in (
         ("before", RULES[code].page.wrong),
@@ -108,3 +106,23 @@ def test_the_report_of_equal_icds_states_no_change():
     with chdir(CASES[0]):
         equal_report = make_report(*inputs.sides(["current", "current"], []))
     assert reports.get("text")(equal_report) == "current -> current\nno change\n"
+
+
+@pytest.mark.parametrize(
+    ("bits", "codes"),
+    [((8, 8), ["DIF411"]), ((8, 16), ["DIF112"]), ((16, 16), ["DIF112"])],
+)
+def test_another_byte_order_is_a_note_only_if_it_concerns_no_field(
+    tmp_path, bits, codes
+):
+    rows = [
+        f"at: {at}, bits: {size}, name: Field {at}, type: uint"
+        for at, size in zip((0, bits[0]), bits, strict=True)
+    ]
+    sides = []
+    for order in ("little", "big"):
+        head = HEAD.replace("byte_order: little", f"byte_order: {order}")
+        loaded = load([write(tmp_path, head + status(*rows, length=sum(bits) // 8))])
+        assert loaded.findings == []
+        sides.append(loaded.icd)
+    assert [change.code for change in compare(*sides).changes] == codes
