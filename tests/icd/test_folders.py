@@ -72,7 +72,15 @@ def test_hidden_folders_output_and_environments_are_not_searched(tmp_path):
         write(tmp_path, f"{name}/copy.yaml", f"{name}/deep/copy.yaml")
     write(tmp_path, ".hidden.yaml", text="a: 1\n")
     assert nodes(tmp_path) == ["battery"]
-    assert nodes(tmp_path / "generated" / "deep") == ["copy"]  # named by the user
+    # Named by the user.
+    assert nodes(tmp_path / "generated" / "deep") == ["copy"]
+    assert nodes(tmp_path / "environment") == ["one"]
+
+
+def test_a_project_that_is_a_virtual_environment_itself_is_searched(tmp_path):
+    write(tmp_path, "battery.yaml", "icd/pump.yaml", "lib/venv/copy.yaml")
+    (tmp_path / "pyvenv.cfg").write_text("")
+    assert nodes(tmp_path) == ["battery", "pump"]
 
 
 @pytest.mark.parametrize("text", ["", "node: {name: a}\nmessages: []\n", "\x00\x01"])
