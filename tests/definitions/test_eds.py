@@ -398,6 +398,61 @@ def test_unsupported_and_recursive_containers_are_left_out(types, says, tmp_path
     assert says in refused(sheet(types), tmp_path)
 
 
+def ranged(kind, calibration=""):
+    """Return a sheet with a byte and a 32-bit float of a range, in one container."""
+    range = f'<Range><MinMaxRange rangeType="{kind}" min="1" max="9.5"/></Range>'
+    types = (
+        BYTE.replace('"byte"', '"B"').replace("</Integer", f"{range}</Integer")
+        + FLOAT.replace("</FloatDataType", f"{range}</FloatDataType")
+        + container(
+            "A", "".join(entry(of, of.upper(), inner=calibration) for of in "Bf")
+        )
+    )
+    return sheet(types)
+
+
+def limits_of(read):
+    """Return the limits of the byte and of the float."""
+    return [
+        {
+            key: field(read, "A", name).get(key)
+            for key in ("min", "max", "above", "below")
+        }
+        for name in "BF"
+    ]
+
+
+def limits(min=None, max=None, above=None, below=None):
+    return {"min": min, "max": max, "above": above, "below": below}
+
+
+@pytest.mark.parametrize(
+    ("kind", "of_byte", "of_float"),
+    [
+        ("inclusiveMinInclusiveMax", limits(1, 9), limits(1, 9.5)),
+        ("inclusiveMinExclusiveMax", limits(1, 9), limits(1, below=9.5)),
+        ("exclusiveMinInclusiveMax", limits(2, 9), limits(max=9.5, above=1)),
+        ("exclusiveMinExclusiveMax", limits(2, 9), limits(above=1, below=9.5)),
+        ("atLeast", limits(1), limits(1)),
+        ("greaterThan", limits(2), limits(above=1)),
+        ("atMost", limits(max=9), limits(max=9.5)),
+        ("lessThan", limits(max=9), limits(below=9.5)),
+    ],
+)
+def test_ranges_become_limits_of_numbers_without_a_calibration(
+    kind, of_byte, of_float, tmp_path
+):
+    calibration = '<PolynomialCalibrator><Term coefficient="0.5" exponent="1"/></PolynomialCalibrator>'
+    file = tmp_path / "one.xml"
+    file.write_text(ranged(kind))
+    assert limits_of(run.read(file, eds.Eds())) == [of_byte, of_float]
+    # The range is about raw values, limits of an ICD about physical ones.
+    file.write_text(ranged(kind, calibration))
+    read = run.read(file, eds.Eds())
+    assert limits_of(read) == [limits(), limits()]
+    assert field(read, "A", "B")["formula"] == "raw*0.5"
+
+
 LONG = '<IntegerDataType name="long"><IntegerDataEncoding sizeInBits="16" byteOrder="littleEndian"/></IntegerDataType>'
 
 
