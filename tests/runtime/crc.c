@@ -1,4 +1,7 @@
-/* The CRC of the digits 1 to 9, in two pieces; its parameters are the arguments. */
+/*
+ * The CRC of the digits 1 to 9, in pieces of which some are empty; its parameters are the arguments. The CRC of no bytes
+ * is another one.
+ */
 #include "wire/crc.h"
 
 #include <stdio.h>
@@ -21,9 +24,16 @@ int main(int argc, char **argv)
     form.reflect_in = argv[4][0] == '1';
     form.reflect_out = argv[5][0] == '1';
     form.xor_out = (uint32_t)strtoul(argv[6], NULL, 10);
+    form.has_empty = true;
+    form.empty = 0xA5u;
     icd_crc_init(&crc, &form);
+    icd_crc_feed(&crc, digits, 0);
+    if (icd_crc_result(&crc) != form.empty || icd_crc(&form, digits, 0) != form.empty) {
+        return 1;
+    }
     icd_crc_feed(&crc, digits, 4);
     icd_crc_feed(&crc, digits + 4, 5);
+    icd_crc_feed(&crc, digits, 0);
     if (icd_crc_result(&crc) != icd_crc(&form, digits, sizeof digits)) {
         return 1;
     }

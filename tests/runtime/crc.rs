@@ -1,4 +1,5 @@
-//! The CRC of the digits 1 to 9, in two pieces, with a table and without; its parameters are the arguments.
+//! The CRC of the digits 1 to 9, in pieces of which some are empty, with a table and without; its parameters are the
+//! arguments. The CRC of no bytes is another one.
 
 use icdgen_runtime::wire::link::CrcForm;
 use icdgen_runtime::wire::{Crc, Table};
@@ -15,12 +16,15 @@ fn main() {
         reflect_in: given[3] == 1,
         reflect_out: given[4] == 1,
         xor_out: given[5],
-        empty: None,
+        empty: Some(0xA5),
     };
     let table = Table::new(&form);
     let results = [Crc::new(&form), Crc::with_table(&form, &table)].map(|mut crc| {
+        crc.feed(b"");
+        assert_eq!(crc.result(), 0xA5);
         crc.feed(b"1234");
         crc.feed(b"56789");
+        crc.feed(b"");
         crc.result()
     });
     assert_eq!(results[0], results[1]);

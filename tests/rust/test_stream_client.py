@@ -146,6 +146,11 @@ fn main() {
         assert_eq!(pass(&mut client, 4100 + 100 * attempt), "");
     }
     assert_eq!((sent(&mut client), client.deadline()), (None, None));
+
+    // A response after the time-out is late, also if no tick came in between.
+    client.send(5000, &speed).unwrap();
+    assert_eq!(sent(&mut client), Some(2));
+    assert_eq!(come(&mut client, 5201, Ack { command: 2 }), "late 6 Some(2)");
 }
 """
 
