@@ -85,6 +85,9 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/describe/": ("tests/describe", "tests/generation", *_MESSAGES),
     "codegen/icdgen/diagnostics.py": ("tests/reports", "tests/wrong"),
     "codegen/icdgen/diff/": ("tests/diff",),
+    "codegen/icdgen/diff/change.py": ("tests/diff/test_reports.py", "tests/diff"),
+    "codegen/icdgen/diff/changes/": ("tests/diff/test_rules.py", "tests/diff"),
+    "codegen/icdgen/diff/reports/": ("tests/diff/test_reports.py", "tests/diff"),
     "codegen/icdgen/fingerprints.py": ("tests/cli/test_cached_models.py",),
     "codegen/icdgen/frozen.py": ("tests/test_frozen.py",),
     "codegen/icdgen/generation/": ("tests/generation", "tests/cli/test_generate.py"),
@@ -127,6 +130,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/every_language",
         "tests/hostile",
     ),
+    "runtime/c/wire/crc.c": (
+        "tests/runtime/test_checksums.py",
+        "tests/c/test_checksums.py",
+        *_LINKS,
+    ),
     "runtime/c-selftest/": ("tests/c/test_cmake.py", "tests/features"),
     "runtime/python/": (
         "tests/python",
@@ -134,6 +142,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         *_MESSAGES,
         *_LINKS,
         "tests/sim",
+    ),
+    "runtime/python/icdgen_runtime/_conditions.py": (
+        "tests/python/test_optional_fields.py",
+        "tests/python",
+        *_MESSAGES,
     ),
     "runtime/python/icdgen_runtime/wire/": (
         "tests/protocol",
@@ -143,6 +156,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/sim",
     ),
     "runtime/rust/": ("tests/rust", "tests/runtime", *_MESSAGES, *_LINKS),
+    "runtime/rust/src/wire/client/": (
+        "tests/rust/test_stream_client.py",
+        "tests/rust",
+        *_LINKS,
+    ),
     "scripts/": ("tests/cli/test_readme.py", "tests/test_house.py"),
     "templates/assurance/": ("tests/assurance",),
     "templates/c/": ("tests/c", *_MESSAGES, *_LINKS),
