@@ -38,7 +38,7 @@ messages:
   - name: Values
     id: 1
     kind: telemetry
-    length: 34
+    length: 40
     fields:
       - {at: 0, bits: 16, name: Quadratic, type: uint, formula: "0.0000001*raw^2 + 0.0045*raw - 40.2", unit: C}
       - {at: 16, bits: 16, name: Thirds, type: int, formula: "raw/3"}
@@ -52,6 +52,9 @@ messages:
       - {at: 224, bits: 16, name: Table, type: uint, points: [[0, -40], [512, 20.5], [1023, 125]], outside: clamp}
       - {at: 240, bits: 16, name: Large, type: uint, formula: raw*1000}
       - {at: 256, bits: 16, name: Plain Count, type: uint}
+      - {at: 272, bits: 16, name: Falling Thirds, type: int, formula: "-raw/3"}
+      - {at: 288, bits: 16, name: Six Decimals, type: int, formula: raw*0.000001}
+      - {at: 304, bits: 16, name: Seventh Decimal, type: uint, formula: raw + 0.0000001}
     derived:
       - {name: Sum, formula: "0.1*Hundredths + 0.2*Sixteenths"}
 """
@@ -64,6 +67,9 @@ BY_NUMBER = [
     "Sixteenths",
     "Table",
     "Large",
+    "Falling Thirds",
+    "Six Decimals",
+    "Seventh Decimal",
 ]
 
 
@@ -87,6 +93,11 @@ def float_raw(field: NodePlace, number: float) -> int:
         ("Thirds", 1, "0.3"),
         ("Thirds", 3, "1"),
         ("Thirds", -1, "-0.3"),
+        ("Falling Thirds", 1, "-0.3"),
+        ("Falling Thirds", 32767, "-10922.3"),
+        ("Falling Thirds", -2, "0.7"),
+        ("Six Decimals", -32767, "-0.032767"),
+        ("Seventh Decimal", 7, "7"),
         ("Fahrenheit", 70, "21.1"),
         ("Binary", 1, "0.00006"),
         ("Binary", 16384, "1"),

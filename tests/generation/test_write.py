@@ -55,12 +55,13 @@ def test_a_stale_file_that_was_edited_is_kept_and_named(tmp_path):
     assert (tmp_path / "b.h").read_text() == "mine now\n"
 
 
-def test_files_of_others_are_never_touched(tmp_path):
+@pytest.mark.parametrize("content", ["by hand", ""])
+def test_files_of_others_are_never_touched(tmp_path, content):
     (tmp_path / "notes.txt").write_text("keep")
-    (tmp_path / "a.h").write_text("by hand")
+    (tmp_path / "a.h").write_text(content)
     with pytest.raises(UserError, match=r"a\.h was not written by icdgen"):
         generate(tmp_path, a_h="one\n")
-    assert (tmp_path / "a.h").read_text() == "by hand"
+    assert (tmp_path / "a.h").read_text() == content
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.h", "notes.txt"]
 
 

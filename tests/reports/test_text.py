@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icdgen.diagnostics import Finding, Place
+from icdgen.diagnostics import Finding, Fix, Place
 from icdgen.reports import get
 from icdgen.reports.excerpt import WIDTH, Lines, excerpt, printable
 from tests.reports.findings import CORRECTED, ERROR, NOTE, TEXTS, TWICE, WARNING
@@ -69,6 +69,43 @@ def test_the_place_in_another_file_is_named():
         "   | ---- the first of this name",
         "   = help: rename one",
     ]
+
+
+@pytest.mark.parametrize(
+    ("line", "fixed", "rows"),
+    [
+        (
+            9,
+            10,
+            [
+                "   |",
+                " 9 | nine",
+                "   | ^^^^",
+                "   = help: correct it",
+                "10 | TEN",
+                "   | ~~~",
+            ],
+        ),
+        (
+            10,
+            9,
+            [
+                "   |",
+                "10 | ten",
+                "   | ^^^",
+                "   = help: correct it",
+                " 9 | NINE",
+                "   | ~~~~",
+            ],
+        ),
+    ],
+)
+def test_bars_are_aligned_if_line_numbers_have_different_lengths(line, fixed, rows):
+    places = {9: Place("d.yaml", 9, 1, 4), 10: Place("d.yaml", 10, 1, 3)}
+    fix = Fix(places[fixed], {9: "NINE", 10: "TEN"}[fixed])
+    finding = Finding("ICD020", "wrong", places[line], "correct it", fix=fix)
+    texts = {"d.yaml": "\n" * 8 + "nine\nten\n"}
+    assert get("text")([finding], texts).splitlines()[1:7] == rows
 
 
 def test_the_last_line_counts():
