@@ -96,6 +96,10 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/icd/rules/": ("tests/wrong", "tests/icd"),
     "codegen/icdgen/import_results/": ("tests/importer", "tests/definitions"),
     "codegen/icdgen/importer/": ("tests/importer",),
+    "codegen/icdgen/importer/reading/pdf.py": (
+        "tests/importer/test_bad_pdf.py",
+        "tests/importer",
+    ),
     "codegen/icdgen/importer/reading/spreadsheet.py": (
         "tests/importer/rules/test_sources.py",
         "tests/importer",

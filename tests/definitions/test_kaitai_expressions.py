@@ -31,6 +31,7 @@ def comparison(path, value, mask=None, is_negated=False):
         ("kind.to_i == 2", [comparison("kind", "2")]),
         ("kind == kinds::power", [comparison("kind", "kinds::power")]),
         ("(head.flags & 0x13) == 3", [comparison("head.flags", "3", 0x13)]),
+        ("(a == 1) and (flag)", [comparison("a", "1"), comparison("flag", "true")]),
         ("a == 1 and flag", [comparison("a", "1"), comparison("flag", "true")]),
         # Names contain the operator.
         ("command == 1", [comparison("command", "1")]),
@@ -88,6 +89,7 @@ def test_another_compared_value_is_not_supported(text):
         ("a / 2", True, None),  # drops the remainder
         ("a ^ 2", False, None),  # exclusive or
         ("a * a", False, None),
+        ("a * a + a", False, None),
         ("a + b", False, None),
         ("5", False, None),
         ("a * 0", False, None),

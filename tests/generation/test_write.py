@@ -36,14 +36,15 @@ def test_a_second_run_writes_no_file(tmp_path):
 def test_only_files_whose_content_changes_are_written(tmp_path):
     generate(tmp_path, a_h="one\n", b_h="two\n")
     old = (tmp_path / "a.h").stat().st_mtime_ns
-    assert generate(tmp_path, a_h="one\n", b_h="three\n").write == ["b.h"]
+    plan = generate(tmp_path, a_h="one\n", b_h="three\n")
+    assert plan.write == ["b.h"] and plan.changes
     assert (tmp_path / "a.h").stat().st_mtime_ns == old
     assert (tmp_path / "b.h").read_text() == "three\n"
 
 
 def test_a_file_that_is_no_longer_generated_is_removed_with_its_empty_folder(tmp_path):
     generate(tmp_path, a_h="one\n", sub__b_h="two\n")
-    generate(tmp_path, a_h="one\n")
+    assert generate(tmp_path, a_h="one\n").changes
     assert not (tmp_path / "sub").exists()
 
 

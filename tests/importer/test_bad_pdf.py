@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from io import BytesIO
+from pathlib import Path
 
 import pytest
+from PIL import Image
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.pdfencrypt import StandardEncryption
+from reportlab.lib.utils import ImageReader
 from reportlab.pdfgen.canvas import Canvas
 
 from icdgen.diagnostics import Findings
+from icdgen.errors import UserError
+from icdgen.importer import profile
+from icdgen.importer.reading import pdf
 from tests.importer.conftest import imported
 from tests.importer.manuals import content
 from tests.importer.manuals.layouts import LAYOUTS
@@ -25,9 +31,6 @@ def drawn(
     canvas = Canvas(data, pagesize=A4, encrypt=encrypt, invariant=1)
     for number in range(pages):
         if picture:
-            from PIL import Image
-            from reportlab.lib.utils import ImageReader
-
             canvas.drawImage(
                 ImageReader(Image.new("L", (60, 80), 200)), 50, 50, 480, 700
             )
@@ -66,6 +69,56 @@ def test_an_unreadable_pdf_is_a_finding_with_a_remedy(tmp_path, data, message, h
     assert message in finding.message
     assert help in finding.help
     assert finding.place.file == str(path)
+
+
+@pytest.fixture
+def spoiled(tmp_path, monkeypatch) -> Path:
+    """A PDF of a readable page, a picture, a page with too much on it, and text."""
+    monkeypatch.setattr(pdf, "MOST_CONTENTS", 2000)
+    path = tmp_path / "spoiled.pdf"
+    canvas = Canvas(str(path), pagesize=A4, invariant=1, pageCompression=0)
+    canvas.drawString(72, 700, "Readable.")
+    canvas.showPage()
+    canvas.drawImage(ImageReader(Image.new("L", (60, 80), 200)), 50, 50, 480, 700)
+    canvas.showPage()
+    for row in range(100):
+        canvas.drawString(72, row, "A drawing of many strokes.")
+    canvas.showPage()
+    canvas.drawString(72, 700, "Readable, and")
+    canvas.drawString(72, 1700, "outside the page")
+    canvas.save()
+    return path
+
+
+@pytest.mark.parametrize(
+    ("only", "findings"),
+    [
+        (None, [("IMP011", 2), ("IMP010", 3), ("IMP013", 4)]),
+        ((1, 1), []),
+        ((3, 9), [("IMP010", 3), ("IMP013", 4)]),
+    ],
+)
+def test_a_page_that_cannot_be_read_is_reported_with_its_number(
+    spoiled, only, findings
+):
+    document = pdf.read(spoiled, profile.load(), jobs=1, only=only)
+    assert [(f.code, f.spot.page) for f in document.import_findings] == findings
+
+
+def test_a_document_without_a_readable_page_is_refused(spoiled):
+    with pytest.raises(Findings) as error:
+        pdf.read(spoiled, profile.load(), jobs=1, only=(3, 3))
+    (finding,) = error.value.findings
+    assert finding.code == "IMP003"
+    assert "pages can be read (ValueError: its contents are more" in finding.message
+
+
+def test_a_range_of_pages_beyond_the_end_is_refused(tmp_path):
+    path = tmp_path / "manual.pdf"
+    path.write_bytes(drawn(pages=2))
+    assert pdf.read(path, profile.load(), jobs=1, only=(2, 3)).pages == 1
+    with pytest.raises(UserError, match="the manual has 2 pages: none from 3 to 4"):
+        pdf.read(path, profile.load(), jobs=1, only=(3, 4))
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.99])

@@ -65,6 +65,53 @@ def test_without_telemetry_an_acknowledge_is_no_reply(tmp_path):
     assert uart_kind(link, bytes([7, 0])) == "acknowledge"
 
 
+CHECKED = """\
+icdgen: 1
+node: {{name: demo, title: Demo, byte_order: little, bit_order: lsb0}}
+protocol:
+  link:
+    packets:
+      telecommand:
+        from: host
+        buses: [{}]
+        trailer: [{{bits: 8, role: checksum, checksum: all, covers: {{from: data, to: data}}, optional: {}}}]
+      telemetry:
+        from: device
+        buses: [{}]
+        trailer: [{{bits: 8, role: checksum, checksum: all, covers: {{from: data, to: data}}, optional: {}}}]
+    checksums:
+      all: {{kind: xor, width: 8}}
+    buses:
+      uart: {{line: {{baud_rate: 115200}}, framing: {{by: escape, escape: 0x1F, start: 0x7F, end: 0xFF, data: 0x1F}}}}
+      i2c: {{write: {{address_7bit: 0x20}}}}
+messages:
+  - {{name: Stop, id: 7, kind: telecommand, length: 0}}
+  - {{name: State, id: 130, kind: telemetry, length: 1, fields: [{{at: 0, bits: 8, name: Mode, type: uint}}]}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("telecommands", "telemetry", "expected"),
+    [
+        (("uart, i2c", "true"), ("uart", "false"), ("uart i2c", "uart", "", "uart")),
+        (("i2c", "false"), ("uart", "true"), ("i2c", "uart", "i2c", "")),
+        (("uart", "false"), ("i2c", "false"), ("uart", "i2c", "uart", "i2c")),
+    ],
+)
+def test_a_checksum_is_on_the_buses_of_its_packet_and_optional_if_stated(
+    telecommands, telemetry, expected, tmp_path
+):
+    (tmp_path / "demo.yaml").write_text(CHECKED.format(*telecommands, *telemetry))
+    icd = load([tmp_path]).icd
+    checksum = facts.of(icd, icd.node("demo")).checksum
+    assert (
+        checksum.telecommand_buses,
+        checksum.telemetry_buses,
+        checksum.telecommand_always,
+        checksum.telemetry_always,
+    ) == tuple(tuple(buses.split()) for buses in expected)
+
+
 def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(acp_facts):
     assert max(m.length for m in acp_facts.telemetry.values()) == 504
     assert acp_facts.longest_data == 504

@@ -19,7 +19,7 @@ from icdgen_runtime.wire.procedures import Procedure
 from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
-from icdgen.runtime_objects.procedures import procedure_of
+from icdgen.runtime_objects.procedures import procedure, procedure_of
 from icdgen.vectors.wire.recording import ClientReport, RecordedDevice, record
 from tests import links
 from tests.conftest import ROOT
@@ -204,6 +204,32 @@ def test_information_about_another_program_is_ignored(boot):
     procedure = Procedure(boot, "program_information", {"program": 4})
     assert result_of(procedure, other, "0401000000000000", own) == "done"
     assert (procedure.output("size"), procedure.output("checksum")) == (7, 0x1234)
+
+
+def test_a_script_shows_the_request_the_deadline_and_the_result_after_each_row(boot):
+    def done(data):
+        return {"event": "done", "bytes": data}
+
+    script = [
+        {"at": 0},
+        {"at": 5, "event": done("")},
+        {"at": 110, "event": done("01")},  # busy: asks again after 50 ms
+        {"at": 159},
+        {"at": 160},
+        {"at": 200, "event": done("00")},
+    ]
+    inputs = {"program": 3}
+    row = {"name": "program_copy", "inputs": inputs, "script": script}
+    steps = procedure(boot, row)["steps"]
+    copy = {"telecommand": 103, "bytes": "0300", "repeat": True}
+    assert [tuple(step.values()) for step in steps] == [
+        (copy, None, None),
+        ({"telemetry": 233}, None, None),
+        (None, 160, None),
+        (None, 160, None),
+        ({"telemetry": 233}, None, None),
+        (None, None, "done"),
+    ]
 
 
 KINDS = [

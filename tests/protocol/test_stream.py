@@ -109,6 +109,53 @@ def test_a_message_after_noise_is_found_within_the_length_of_a_longest_message(
     assert sent[0][0] in [event.id for event in events if event.event == "message"]
 
 
+@pytest.mark.parametrize(
+    ("numbers", "gaps"),
+    [
+        ([7], []),
+        ([254, 255, 0, 1], []),
+        ([255, 0, 0], [0]),
+        ([255, 0, 2], [1]),
+        ([3, 6], [2]),
+        ([3, 2], [254]),
+        ([255, 1, 2, 1], [1, 254]),
+        ([0, 255, 0], [254]),
+    ],
+)
+def test_a_gap_states_how_many_messages_of_the_sequence_are_missing(numbers, gaps):
+    link = links()["rover"]
+    line = b"".join(
+        stream_encode(link, 2, bytes(12), "telemetry", sequence=number)
+        for number in numbers
+    )
+    events = StreamDecoder(link).feed(line)
+    assert [(event.id, event.missing) for event in events if event.event == "gap"] == [
+        (2, missing) for missing in gaps
+    ]
+
+
+@pytest.mark.parametrize(
+    ("node", "ids", "gaps"),
+    [
+        ("gauge", [(63, 0), (2, 7), (63, 1), (2, 9)], [(2, 1)]),
+        ("rover", [(0, 0), (2, 1), (0, 1)], [(0, 0)]),
+    ],
+)
+def test_messages_of_other_ids_count_unless_each_id_has_its_own_sequence(
+    node, ids, gaps
+):
+    link = links()[node]
+    lengths = {row.id: row.most for row in link.stream.rows("telemetry")}
+    line = b"".join(
+        stream_encode(link, id, bytes(lengths[id]), "telemetry", sequence=number)
+        for id, number in ids
+    )
+    events = StreamDecoder(link).feed(line)
+    assert [
+        (event.id, event.missing) for event in events if event.event == "gap"
+    ] == gaps
+
+
 SEEDED = """
 icdgen: 1
 node: {name: device, title: Device, byte_order: big, bit_order: msb0}
