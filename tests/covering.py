@@ -50,6 +50,18 @@ COVERING: dict[str, tuple[str, ...]] = {
     ),
     "codegen/icdgen/backends/c_selftest/": ("tests/c/test_cmake.py", "tests/features"),
     "codegen/icdgen/backends/html/": ("tests/site",),
+    "codegen/icdgen/backends/html/errata.py": (
+        "tests/site/test_long_lists.py",
+        "tests/site",
+    ),
+    "codegen/icdgen/backends/html/packet_formats.py": (
+        "tests/site/test_packets.py",
+        "tests/site",
+    ),
+    "codegen/icdgen/backends/html/units.py": (
+        "tests/site/test_long_lists.py",
+        "tests/site",
+    ),
     "codegen/icdgen/backends/python/": (
         "tests/python",
         "tests/test_symbols.py",
