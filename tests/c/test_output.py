@@ -224,3 +224,19 @@ def test_identifiers_contain_the_name_of_the_node_once(tmp_path):
         and "`PUMP_STATUS_" in clash.message
         and clash.message.endswith("in C/C++")
     )
+
+
+@pytest.mark.parametrize(("packets", "bitmap"), [(7, 1), (8, 1), (9, 2), (16, 2)])
+def test_a_bitmap_has_a_bit_for_each_packet_of_the_largest_block(
+    tmp_path, packets, bitmap
+):
+    text = (ROOT / "tests/procedures/other_steps.yaml").read_text("utf-8")
+    path = tmp_path / "store.yaml"
+    path.write_text(text.replace("size: 160", f"size: {8 * packets}"), "utf-8")
+    header = files(load([path]).icd)["store/procedures.h"]
+    sizes = dict(re.findall(r"^#define STORE_(\w+_BYTES) (\d+)u$", header, re.M))
+    assert sizes == {
+        "READ_BLOCK_BYTES": f"{8 * packets}",
+        "READ_BITMAP_BYTES": f"{bitmap}",
+        "WRITE_BITMAP_BYTES": f"{bitmap}",
+    }

@@ -126,6 +126,13 @@ def test_digits_of_the_arithmetic_in_doubles_are_not_shown(fields):
     assert FieldValue(fields["Plain"], float_raw(fields["Plain"], 0.1)).text == "0.1"
 
 
+@pytest.mark.parametrize("name", ["Double Float", "Plain"])
+@pytest.mark.parametrize("number", ["nan", "inf", "-inf"])
+def test_numbers_that_are_not_finite_are_shown_as_such(fields, name, number):
+    raw = floats.bits_of(float(number), fields[name].bits)
+    assert FieldValue(fields[name], raw).text == number
+
+
 def test_json_has_the_full_precision(fields):
     field = fields["Quadratic"]
     assert FieldValue(field, 13001).to_json()["value"] == codec.physical_double(

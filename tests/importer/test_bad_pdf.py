@@ -19,6 +19,7 @@ from icdgen.importer.reading import pdf
 from tests.importer.conftest import imported
 from tests.importer.manuals import content
 from tests.importer.manuals.layouts import LAYOUTS
+from tests.limits import assert_limits
 
 
 def drawn(
@@ -111,6 +112,30 @@ def test_a_document_without_a_readable_page_is_refused(spoiled):
     (finding,) = error.value.findings
     assert finding.code == "IMP003"
     assert "pages can be read (ValueError: its contents are more" in finding.message
+
+
+def test_the_number_of_pages_is_limited(tmp_path, monkeypatch):
+    monkeypatch.setattr(pdf, "MOST_PAGES", 3)
+    path = tmp_path / "manual.pdf"
+
+    def is_accepted(pages: int) -> bool:
+        path.write_bytes(drawn(pages=pages))
+        try:
+            pdf.read(path, profile.load(), jobs=1)
+        except Findings as error:
+            assert f"the PDF has {pages} pages, more" in error.findings[0].message
+            return False
+        return True
+
+    assert_limits(is_accepted, most=3)
+
+
+def test_progress_is_reported_as_pages_and_captions(tmp_path):
+    path = tmp_path / "manual.pdf"
+    path.write_bytes(drawn(pages=3, text="Table 7:"))
+    progress = []
+    pdf.read(path, profile.load(), lambda *row: progress.append(row), jobs=1)
+    assert progress == [(1, 3, 1), (2, 3, 2), (3, 3, 3)]
 
 
 def test_a_range_of_pages_beyond_the_end_is_refused(tmp_path):

@@ -152,6 +152,11 @@ def test_numpy_is_not_needed_until_columns_are(shipped):
     assert run(shipped, code) == "False"
 
 
+def test_a_node_type_and_an_interface_version_of_zero_are_constants(odd):
+    node = odd.module("odd")
+    assert (node.NODE_TYPE, node.INTERFACE_VERSION) == (0, 0)
+
+
 def test_every_listed_name_of_a_node_exists(package):
     for node in package.icd.nodes:
         module = package.module(node.name)
