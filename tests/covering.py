@@ -171,6 +171,12 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/every_language",
         "tests/sim",
     ),
+    "runtime/rust/src/support/": (
+        "tests/rust/test_equivalence.py",
+        "tests/rust",
+        "tests/runtime",
+        *_MESSAGES,
+    ),
     "runtime/rust/": ("tests/rust", "tests/runtime", *_MESSAGES, *_LINKS),
     "runtime/rust/src/wire/client/": (
         "tests/rust/test_stream_client.py",
@@ -179,6 +185,11 @@ COVERING: dict[str, tuple[str, ...]] = {
     ),
     "scripts/": ("tests/cli/test_readme.py", "tests/test_house.py"),
     "templates/assurance/": ("tests/assurance",),
+    "templates/c/accessors.h.j2": (
+        "tests/every_language/test_stories.py",
+        "tests/c",
+        *_MESSAGES,
+    ),
     "templates/c/": ("tests/c", *_MESSAGES, *_LINKS),
     "templates/c-selftest/": ("tests/c/test_cmake.py", "tests/features"),
     "templates/diff/": ("tests/diff",),
