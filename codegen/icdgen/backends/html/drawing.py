@@ -17,6 +17,7 @@ from icdgen.backends.html.labels import Box, BoxLabel, fit_name
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
+from icdgen.frame_bits import ReservedBits
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace
 
@@ -99,7 +100,7 @@ class _Canvas:
     ) -> None:
         self.node, self.first, self.length = node, first, end - first
         repeats = links.repeats(message)
-        self.gaps = [gap for gap in repeats.gaps if first <= gap.at // 8 < end]
+        self.gaps = _within(repeats.gaps, 8 * first, 8 * end)
         self.fields = [
             field
             for field in repeats.fields
@@ -300,6 +301,12 @@ class _Canvas:
                 left_out = self.rows[index + 1] - self.rows[index - 1] - self.across
                 skips.append((self._y(index), f"{left_out} more bytes"))
         return skips
+
+
+def _within(gaps: Iterable[ReservedBits], first: int, end: int) -> list[ReservedBits]:
+    """Return the parts of runs of reserved bits from bit ``first`` to before ``end``."""
+    clipped = ((max(gap.at, first), min(gap.at + gap.bits, end)) for gap in gaps)
+    return [ReservedBits(at, stop - at) for at, stop in clipped if at < stop]
 
 
 def _runs(row: Iterable[int]) -> Iterator[tuple[int, int, int]]:
