@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,7 +16,9 @@ from icdgen_runtime.wire.events import (
     OUTCOMES,
     Done,
     Late,
+    LineError,
     Refused,
+    Stray,
     Timeout,
 )
 from icdgen_runtime.wire.i2c import I2cTransfer, i2c_write
@@ -124,6 +128,32 @@ def test_on_i2c_a_cancelled_request_leaves_the_transaction_of_an_equal_one(
     (done,) = client.transferred(10**6, bytes([2, *bytes(5)]))
     assert (done.handle, done.data[0]) == (19 - cancelled, 2)
     assert client.transfers() == [] and not client.busy
+
+
+@pytest.mark.parametrize(
+    ("request_", "read", "event"),
+    [
+        (None, b"\1\2", Stray(b"\1\2")),
+        (None, None, Stray(b"")),
+        (Request("telemetry", 146), None, Late(146, b"")),
+        (Request("telemetry", 146), bytes(6), Late(146, bytes(6))),
+        (Request("telemetry", 146), bytes(5), LineError("length", 146)),
+        (Request("telecommand", 31, b"\1"), None, Late(31, b"")),
+        (Request("telecommand", 31, b"\1"), b"", Late(31, b"")),
+    ],
+)
+def test_the_result_of_an_i2c_transaction_without_request_is_an_event(
+    link, request_, read, event
+):
+    client = Client(link, "i2c", settings=QUICK)
+    if request_ is not None:
+        client.start(0, request_)
+        assert len(client.transfers()) == 1
+        client.cancel()
+    (result,) = client.transferred(1, read)
+    if isinstance(result, Late):
+        result = replace(result, type=None)
+    assert result == event
 
 
 @st.composite

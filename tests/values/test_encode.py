@@ -294,6 +294,18 @@ def test_numbers_up_to_the_largest_float_are_accepted(bits, largest):
             floats.nearest(sign * (highest + distance / 2), bits)
 
 
+@pytest.mark.parametrize("low", [0, 1, 2, 0x7FFFFF, 0x3F800000, 0x3F800001, 0x7F7FFFFE])
+def test_a_number_near_the_middle_of_two_singles_is_rounded_once(low):
+    """A double cannot tell such a number from the middle."""
+    first, second = (Fraction(floats.value_of(raw, 32)) for raw in (low, low + 1))
+    middle, little = (first + second) / 2, (second - first) / 2**60
+    assert float(middle + little) == float(middle)
+    even = low + (low & 1)
+    numbers = (first, middle - little, middle, middle + little, second)
+    expected = [low, low, even, low + 1, low + 1]
+    assert [floats.nearest(number, 32) for number in numbers] == expected
+
+
 def test_the_shortest_text_of_a_float_is_read_back():
     for bits in (
         0,
