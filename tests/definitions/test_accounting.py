@@ -7,7 +7,13 @@ from __future__ import annotations
 import pytest
 
 from icdgen.definitions import safe_xml
-from icdgen.definitions.accounting import Account, AccountedElement, accounted
+from icdgen.definitions.accounting import (
+    Account,
+    AccountedElement,
+    AccountedObject,
+    accounted,
+    settle,
+)
 from icdgen.definitions.model import Definitions
 
 DEVICE = b"""<device version="2">
@@ -113,6 +119,44 @@ def test_unread_keys_of_json_and_yaml_are_reported_with_their_path():
         ("`license` of `meta` is not used (meta)", None),
         ("`doc` of `types` is not used (types.point)", None),
     ]
+
+
+def test_parts_that_another_finding_names_are_not_reported_as_unused():
+    tree = accounted({"a": {"b": [{"c": 1}]}, "d": {"e": 1}, "f": [{"g": 1}]})
+    assert tree["a"] and tree["d"] and tree["f"]
+    settle(tree["a"])
+    settle(1)
+    account = Account()
+    account.mappings(tree)
+    assert unused(account) == [
+        ("`e` of `d` is not used (d)", None),
+        ("`g` of `f` is not used (f[0])", None),
+    ]
+
+
+class Signal:
+    """Object of a library."""
+
+    name, unit, empty, missing, is_float = "Speed", "rpm", "", None, False
+    zero, choices, _private = 0, {1: "on"}, "private"
+
+    def decode(self) -> None:
+        """Do nothing."""
+
+
+def test_attributes_of_an_object_that_have_a_value_and_were_not_read_are_reported():
+    account, signal = Account(), AccountedObject(Signal())
+    assert signal.name == "Speed"
+    account.attributes(signal, "signal", "`Speed`")
+    assert unused(account) == [
+        ("`choices` of `signal` is not used (`Speed`)", None),
+        ("`unit` of `signal` is not used (`Speed`)", None),
+        ("`zero` of `signal` is not used (`Speed`)", None),
+    ]
+    signal.settle()
+    account = Account()
+    account.attributes(signal, "signal", "`Speed`")
+    assert unused(account) == []
 
 
 def test_an_xml_that_nests_deeper_than_python_does_is_accounted_for():

@@ -65,6 +65,7 @@ def test_the_value_of_an_example_is_a_number_in_its_frame(path):
         ([WORD + ", formula: raw*0.5, below: 617"], "Level", 123, 61.5),
         ([WORD + ", formula: raw*10, max: 1229"], "Level", 12, 120.0),
         ([WORD + ", formula: raw*10, min: 12340"], "Level", 1234, 12340.0),
+        ([WORD + ", formula: raw*10, max: 0"], "Level", 0, 0.0),
         (["at: 0, bits: 1, name: Flag, type: bool"], "Flag", 1, None),
         (["at: 0, bits: 8, name: Mode, type: enum, enum: Mode"], "Mode", 5, None),
         (["at: 0, bits: 32, name: Gain, type: float"], "Gain", 0x3FC00000, None),

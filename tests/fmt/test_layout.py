@@ -92,6 +92,31 @@ def test_what_has_no_one_meaning_is_refused(text, code):
     assert code in {finding.code for finding in caught.value.findings}
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        ({"a": 1, "b": 2}, {"b": 2, "a": 1}, True),
+        ({"a": 1}, {"a": 1, "b": 2}, False),
+        ({"a": 1}, {"b": 1}, False),
+        ({"a": 1}, {"a": True}, False),
+        ({"a": 1}, {"a": 1.0}, False),
+        ({"a": "1"}, {"a": 1}, False),
+        ({"a": {}}, {"a": []}, False),
+        ({"a": []}, {"a": {}}, False),
+        ({"a": None}, {"a": ""}, False),
+        ([1, [2, {"a": 3}]], [1, [2, {"a": 3}]], True),
+        ([1, [2, {"a": 3}]], [1, [2, {"a": 4}]], False),
+        ([1, 2], [2, 1], False),
+        ([1, 2], [1], False),
+        ([1], [1, 2], False),
+    ],
+)
+def test_trees_are_equal_with_their_types_and_the_order_of_lists(
+    first, second, expected
+):
+    assert same(first, second) is expected
+
+
 def test_only_the_keys_that_all_rows_begin_with_are_aligned():
     rows = [
         {"at": "at: 0", "name": "name: A", "type": "type: int"},

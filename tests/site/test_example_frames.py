@@ -52,6 +52,29 @@ def test_the_values_of_each_type_are_shown_in_its_format(tmp_path):
     ]
 
 
+def test_an_absent_field_is_named_and_an_array_has_all_elements(tmp_path):
+    text = status(
+        "at: 0, bits: 8, name: Page, type: uint",
+        "at: 8, bits: 8, name: Wear, type: uint, when: {Page: 255}",
+        "at: 8, bits: 8, name: Hours, type: uint, when: {Page: 1}",
+        "at: 16, bits: 8, name: Number, type: uint",
+        "at: 24, bits: 8, name: Items, type: uint, count: Number, up_to: 3",
+        length=3,
+    )
+    (node,) = loaded(tmp_path, text).icd.nodes
+    _, ones = example_frames(node.messages[0], node)
+    assert ones.hex == "FF FF 03 FF FF FF"
+    assert [tuple(cell) for cell in ones.cells] == [
+        ("255", ""),
+        ("255", ""),
+        ("", "not there"),
+        ("3", ""),
+        ("255", ""),
+        ("255", ""),
+        ("255", ""),
+    ]
+
+
 def test_sixteen_bytes_of_a_field_are_shown(tmp_path):
     def is_complete(length: int) -> bool:
         field = f"at: 0, bits: {8 * length}, name: Data, type: bytes"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from icdgen.diagnostics import Place
 from icdgen.import_results.findings import SourcePlace
 from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.rule import TableRule
 
 FIRST, SECOND = Place("rules.yaml", 4, 5), Place("rules.yaml", 12, 5)
 
@@ -81,3 +82,25 @@ def test_a_finding_lists_four_other_examples_and_the_number_of_tables():
     assert message(6, 2) == (
         f"bad; the same in 5 more rows of 2 tables: {', '.join(shown[1:5])}, ..."
     )
+
+
+def test_rows_that_a_rule_drops_are_counted_with_three_different_examples():
+    rules = [TableRule("state", FIRST), TableRule("errors", SECOND)]
+    notes = Notes()
+    for text in ("Sum", "Sum", "", "x" * 60):
+        notes.drop(rules[0], "skip", text)
+    for text in ("a", "b", "c", "d"):
+        notes.drop(rules[1], "skip", text)
+    notes.drop(rules[0], "stop", "End")
+    notes.finish(rules)
+    assert [
+        (finding.code, finding.severity, finding.place, finding.message)
+        for finding in notes.import_findings
+    ] == [
+        ("IMP108", "note", place, f"rule {message}")
+        for place, message in (
+            (FIRST, f"`state`: `skip` drops 4 rows: `Sum`, ``, `{'x' * 50}`"),
+            (SECOND, "`errors`: `skip` drops 4 rows: `a`, `b`, `c` ..."),
+            (FIRST, "`state`: `stop` drops 1 row: `End`"),
+        )
+    ]

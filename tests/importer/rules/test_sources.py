@@ -216,6 +216,36 @@ def test_each_value_that_a_spreadsheet_program_changed_is_an_error_at_its_cell(
     ]
 
 
+def test_merged_cells_span_their_columns_and_empty_edges_of_a_sheet_are_left_out(
+    tmp_path,
+):
+    book = openpyxl.Workbook()
+    sheet = book.active
+    for row in (["Title", None], [], ["Both", None, "Unit"], ["a", "b", "V"], [1], []):
+        sheet.append(row)
+    sheet.merge_cells("A3:B3")
+    sheet["E9"] = " "  # of a cell that was cleared
+    plain = book.create_sheet("Plain")
+    for row in (["Byte", "Name", None], [0, "Speed", " "]):
+        plain.append(row)
+    book.save(tmp_path / "motor.xlsx")
+    _, tables = sources.read(tmp_path / "motor.xlsx", profile.load())
+    assert [
+        [(row.line, [(c.text, c.columns, c.rows) for c in row.cells]) for row in rows]
+        for rows in (table.rows for table in tables)
+    ] == [
+        [
+            (3, [("Both", 2, 1), ("Unit", 1, 1), ("", 1, 1), ("", 1, 1)]),
+            (4, [(text, 1, 1) for text in ("a", "b", "V", "", "")]),
+            (5, [(text, 1, 1) for text in ("1", "", "", "", "")]),
+        ],
+        [
+            (1, [("Byte", 1, 1), ("Name", 1, 1)]),
+            (2, [("0", 1, 1), ("Speed", 1, 1)]),
+        ],
+    ]
+
+
 def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(
     tmp_path,
 ):
