@@ -29,6 +29,7 @@ protocol:
             data_bytes: |
               Measured, because
               the manual has two values.
+  log_mask: {bytes: 1, frame_bytes: 2}
 messages:
   - name: Reset
     id: 1
@@ -41,6 +42,9 @@ messages:
     fields:
       - {at: 0, bits: 4, name: Level, type: uint, unit: m}
       - {at: 4, bits: 4, name: Kind, type: uint}
+  - {name: Status, id: 2, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}
+loggable:
+  - {bit: 3, id: 2, name: Status}
 missing:
   - {name: Voltage, id: 7, kind: telemetry, why: Its table is empty.}
   - {name: Stop, id: 0x10, kind: telecommand, why: Only a title.}
@@ -65,6 +69,13 @@ entries:
     why: Byte 7 counts.
     evidence: Figure 2.
     confidence: likely
+  - id: DEM-003
+    title: Wrong bit
+    where: {loggable: 3}
+    printed: {summary: ~}
+    why: The bit is used twice.
+    evidence: Table 5.
+    confidence: open
 """
 ROWS = {
     "assumptions.csv": [
@@ -74,8 +85,8 @@ ROWS = {
             "demo", "protocol.link.buses.can.segments", "data_bytes", "7", "demo.yaml:13",
             "Measured, because\nthe manual has two values.\n",
         ),
-        ("demo", "Reset", "length", "1", "demo.yaml:23", "No table."),
-        ("demo", "Reset", "acknowledge", "false", "demo.yaml:24", "Not given."),
+        ("demo", "Reset", "length", "1", "demo.yaml:24", "No table."),
+        ("demo", "Reset", "acknowledge", "false", "demo.yaml:25", "Not given."),
     ],
     "missing.csv": [
         ("node", "kind", "id", "name", "why"),
@@ -89,11 +100,15 @@ ROWS = {
         ),
         (
             "DEM-001", "Erratum", "demo", "Wrong unit", "certain", "3; 12",
-            "errata/demo.yaml:4", "demo.yaml:26", "unit: m", "unit: km", "Too small.", "Table 4.",
+            "errata/demo.yaml:4", "demo.yaml:27", "unit: m", "unit: km", "Too small.", "Table 4.",
         ),
         (
             "DEM-002", "Erratum", "demo", "Wrong size", "likely", "",
             "errata/demo.yaml:13", "demo.yaml:8", "data_bytes: 8", "data_bytes: 7", "Byte 7 counts.", "Figure 2.",
+        ),
+        (
+            "DEM-003", "Erratum", "demo", "Wrong bit", "open", "",
+            "errata/demo.yaml:21", "demo.yaml:31", "summary: (absent)", "", "The bit is used twice.", "Table 5.",
         ),
     ],
 }  # fmt: skip

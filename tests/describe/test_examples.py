@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen import codec
 from icdgen.describe import describe
 from icdgen.describe.examples import Example, example_of_message
 from tests.conformance.icds import read_unchecked
@@ -49,6 +50,20 @@ def test_the_value_of_an_example_is_a_number_in_its_frame(path):
                 assert any(field_example.frame), (
                     f"{message.name}: the frame does not hold {field.name}"
                 )
+
+
+@pytest.mark.parametrize(
+    "path", ["icd", "examples/devices/ublox", "tests/conformance/odd_icds"]
+)
+def test_the_frame_of_an_example_is_that_of_a_new_message_with_its_value(path):
+    for node in describe(read_unchecked(ROOT / path)).nodes:
+        for message in node.messages:
+            field_example = example_of_message(message)
+            values = codec.initial_values(message.node, message.model)
+            if (shown := field_example.shown) is not None:
+                values[shown.field.model.name] = shown.raw
+            frame = codec.encode(message.node, message.model, values)
+            assert field_example.frame == frame, message.name
 
 
 @pytest.mark.parametrize(
