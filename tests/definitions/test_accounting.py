@@ -15,6 +15,8 @@ from icdgen.definitions.accounting import (
     settle,
 )
 from icdgen.definitions.model import Definitions
+from icdgen.icd import source
+from icdgen.icd.located import Seq
 
 DEVICE = b"""<device version="2">
   <field name="speed" unit="m/s" period="10">text</field>
@@ -118,6 +120,55 @@ def test_unread_keys_of_json_and_yaml_are_reported_with_their_path():
     assert unused(account) == [
         ("`license` of `meta` is not used (meta)", None),
         ("`doc` of `types` is not used (types.point)", None),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("access", "read"),
+    [
+        (lambda tree: tree["a"], {"a"}),
+        (lambda tree: tree.get("b"), {"b"}),
+        (lambda tree: "a" in tree, {"a"}),
+        (lambda tree: "z" not in tree, set()),
+        (lambda tree: list(tree.items()) == [("a", 1), ("b", 2)], {"a", "b"}),
+        (lambda tree: list(tree.values()) == [1, 2], {"a", "b"}),
+        (lambda tree: {**tree} == {"a": 1, "b": 2}, {"a", "b"}),
+        (lambda tree: list(tree) == ["a", "b"], set()),
+        (lambda tree: len(tree) == 2, set()),
+    ],
+)
+def test_a_key_counts_as_read_if_its_value_was(access, read):
+    tree = accounted({"a": 1, "b": 2})
+    assert access(tree)
+    account = Account()
+    account.mappings(tree)
+    keys = {message.split("`")[1] for message, _ in unused(account)}
+    assert keys == {"a", "b"} - read
+
+
+def test_unread_keys_of_yaml_are_reported_with_their_line():
+    text = b"types:\n  - id: a\n    doc: b\n  - id: c\n    doc: d\nmeta: {}\n"
+    tree = accounted(source.parse(text, "a.ksy"))
+    types = tree["types"]
+    assert isinstance(types, Seq) and [each["id"] for each in types] == ["a", "c"]
+    account = Account()
+    account.mappings(tree)
+    assert unused(account) == [
+        ("`doc` of `types` is not used (2 times, first: types[0])", 3),
+        ("`meta` is not used", 6),
+    ]
+
+
+def test_elements_and_attributes_of_a_namespace_are_reported_without_it():
+    data = b"""<a xmlns="urn:x" xmlns:n="urn:y"><b n:c="1" d="2"/><e/></a>"""
+    account = Account()
+    root = safe_xml.parse("a.xml", data, account=account)
+    (child, _) = root
+    assert child.get("d") == "2"
+    account.elements(root)
+    assert unused(account) == [
+        ("`e` of `a` is not used", 1),
+        ("`c` of `b` is not used", 1),
     ]
 
 

@@ -52,7 +52,10 @@ def xlsx(path: Path) -> None:
         sheet.append([int(cell) if cell and cell.isdigit() else cell for cell in row])
     for column in "ABC":
         sheet.merge_cells(f"{column}4:{column}5")
-    book.create_sheet("Old").sheet_state = "hidden"
+    hidden = book.create_sheet("Old")
+    hidden.append(TITLES)
+    hidden.sheet_state = "hidden"
+    book.properties.title = "Manual of the motor"
     book.save(path)
 
 
@@ -216,6 +219,26 @@ def test_each_value_that_a_spreadsheet_program_changed_is_an_error_at_its_cell(
     ]
 
 
+def test_rows_of_csv_have_the_numbers_of_their_lines(tmp_path):
+    """A quoted cell can contain line ends."""
+    (tmp_path / "motor.csv").write_bytes(
+        b'Motor\r\n\r\nByte,Name\r\n0,"Speed\r\nof the motor"\r\n1, Load \r\n,\r\n2,Mode\r\n'
+    )
+    document, tables = sources.read(tmp_path / "motor.csv", profile.load())
+    assert [
+        [(row.line, [cell.text for cell in row.cells]) for row in table.rows]
+        for table in tables
+    ] == [
+        [
+            (3, ["Byte", "Name"]),
+            (4, ["0", "Speed\nof the motor"]),
+            (6, ["1", "Load"]),
+        ],
+        [(8, ["2", "Mode"])],
+    ]
+    assert [(block.text, block.line) for block in document.blocks[:1]] == [("Motor", 1)]
+
+
 def test_merged_cells_span_their_columns_and_empty_edges_of_a_sheet_are_left_out(
     tmp_path,
 ):
@@ -267,6 +290,7 @@ def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(
     assert [t.message for t in document.import_findings] == [
         "the sheet `Old` is hidden; it was left out"
     ]
+    assert document.title == "Manual of the motor"
 
 
 def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):
