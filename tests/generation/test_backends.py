@@ -7,6 +7,7 @@ from importlib.metadata import EntryPoint
 import pytest
 
 from icdgen import backends
+from icdgen.errors import UserError
 
 
 @pytest.fixture
@@ -70,3 +71,12 @@ def test_every_built_in_backend_has_its_own_name():
 def test_declared_names_count_for_the_languages_of_the_output_once():
     chosen = [backends.get(name) for name in ("csv", "rust", "c-selftest", "rust")]
     assert backends.named_in(chosen) == ("rust", "c")
+
+
+def test_several_packages_with_one_backend_are_reported(installed):
+    with pytest.raises(UserError) as raised:
+        backends.get("ada")
+    assert str(raised.value) == (
+        "there are 2 backends `ada`: `another_ada:Backend` and `their_ada:Backend`"
+    )
+    assert raised.value.help == "uninstall all but one"

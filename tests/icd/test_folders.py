@@ -6,9 +6,10 @@ import os
 
 import pytest
 
-from icdgen.icd import folders
+from icdgen.icd import folders, source
 from icdgen.loading import load
 from tests.conftest import ROOT
+from tests.limits import assert_limits
 
 ICD = (
     "icdgen: 1\nnode: {{name: {0}, title: {0}, byte_order: little, bit_order: lsb0}}\n"
@@ -109,9 +110,17 @@ def test_links_to_folders_are_not_followed(tmp_path):
 
 def test_a_search_of_too_many_folders_ends_with_a_finding(tmp_path, monkeypatch):
     monkeypatch.setattr(folders, "MOST_FOLDERS", 3)
-    write(tmp_path, *(f"part{number}/battery.yaml" for number in range(4)))
+
+    def is_complete(count):
+        top = tmp_path / str(count)
+        write(top, *(f"part{number}/battery.yaml" for number in range(1, count)))
+        return folders.search(top).is_complete
+
+    assert_limits(is_complete, most=3)
     finding, *_ = (
-        finding for finding in load([tmp_path]).findings if finding.code == "ICD001"
+        finding
+        for finding in load([tmp_path / "4"]).findings
+        if finding.code == "ICD001"
     )
     assert "more than 3 folders" in finding.message
 
@@ -133,3 +142,27 @@ def test_the_examples_of_devices_are_found():
         "p31u",
         "ublox",
     ]
+
+
+def test_the_icds_of_a_project_are_those_in_its_folder_and_in_the_folder_icd(tmp_path):
+    write(tmp_path, "battery.yaml", ".hidden.yaml", "other/wheel.yaml")
+    write(tmp_path, "compose.yaml", "icd/notes.yaml", text="services: {}\n")
+    assert folders.icds_of_project(tmp_path) == [tmp_path / "battery.yaml"]
+    write(tmp_path, "icd/pumps/pump.yaml")
+    assert folders.icds_of_project(tmp_path) == [
+        tmp_path / "battery.yaml",
+        tmp_path / "icd",
+    ]
+    assert folders.icds_of_project(tmp_path / "missing") == []
+
+
+def test_a_file_that_is_too_large_is_reported_only_in_the_folder_itself(
+    tmp_path, monkeypatch
+):
+    write(tmp_path, "battery.yaml", "deep/pump.yaml")
+    monkeypatch.setattr(source, "MAX_BYTES", 10)
+    result = folders.search(tmp_path)
+    assert (result.icds, result.other_files) == (
+        [tmp_path / "battery.yaml"],
+        [tmp_path / "deep" / "pump.yaml"],
+    )

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import random
+from types import SimpleNamespace
 
 import pytest
 
 from icdgen import codec
-from icdgen.icd.responses import MOST_BYTES, NumberRun, number_run
+from icdgen.icd import responses
+from icdgen.icd.responses import NumberRun, number_run
 from tests.conformance.icds import read_unchecked
 
-LENGTH = 6
+LENGTH = 6  # bytes; clients compare numbers of up to 4
 PLACES = [
     (at, bits)
     for at in (0, 3, 4, 8, 9)
-    for bits in (1, 4, 5, 7, 8, 11, 12, 16, 20, 24, 29, 32)
+    for bits in (1, 4, 5, 7, 8, 11, 12, 16, 20, 24, 29, 32, 33, 40)
     if at + bits <= 8 * LENGTH
 ]
 HEAD = "icdgen: 1\nnode: {{name: demo, title: Demo, byte_order: {}, bit_order: {}}}\nmessages:\n"
@@ -24,7 +26,7 @@ MESSAGE = (
 )
 RUNS = [
     NumberRun(byte, size, shift, little)
-    for size in range(1, MOST_BYTES + 1)
+    for size in range(1, 5)
     for byte in range(LENGTH + 1 - size)
     for shift in range(8)
     for little in (False, True)
@@ -65,3 +67,60 @@ def test_the_number_of_a_field_is_its_raw_value_wherever_a_run_of_bytes_has_it(
         ]
         run = number_run(field, node)
         assert run in right if right else run is None, message.name
+
+
+ROW = {"message": "Ack", "echo": "Command"}
+
+
+@pytest.mark.parametrize(
+    ("own", "expected"),
+    [
+        (None, {"ack": ROW, "nak": {"message": "Nak"}}),
+        ("none", {}),
+        ({"reply": "State"}, {"ack": ROW, "reply": {"message": "State"}, "nak": {"message": "Nak"}}),
+        ({"ack": "none", "nak": ROW}, {"nak": ROW}),
+    ],
+)  # fmt: skip
+def test_a_telecommand_overrides_the_responses_to_all_telecommands(own, expected):
+    message = SimpleNamespace(response=own)
+    commands = {"nak": "Nak", "ack": ROW, "progress": "none", "timeout_ms": 100}
+    declared = responses.declared_responses(commands, message)
+    assert declared == expected
+    assert [*declared] == [kind for kind in responses.KINDS if kind in expected]
+
+
+@pytest.mark.parametrize(
+    ("kind", "row", "status", "reason"),
+    [
+        ("ack", {"status": "Code"}, "Code", "Code"),
+        ("ack", {}, None, None),
+        ("nak", {"reason": "Why"}, None, "Why"),
+        ("nak", {"reason": "Why", "busy": [3]}, "Why", "Why"),
+        ("nak", {"reason": "Why", "status": "Code", "busy": [3]}, "Why", "Why"),
+    ],
+)
+def test_the_status_of_a_refusal_is_its_reason_if_it_can_mean_busy(
+    kind, row, status, reason
+):
+    assert (responses.status_of(kind, row), responses.reason_of(row)) == (
+        status,
+        reason,
+    )
+
+
+@pytest.mark.parametrize(
+    ("id_bits", "places"),
+    [(8, [3, None]), (11, [2, 3, None]), (16, [2, 3, None]), (32, [0, 1, 2, 3, None])],
+)
+def test_a_byte_of_an_id_counts_from_its_most_significant_one(id_bits, places):
+    node = SimpleNamespace(id_bits=id_bits)
+    names = [f"id[{index}]" for index in range(len(places))]
+    assert [responses.id_byte_of(node, name) for name in names] == places
+    assert responses.id_byte_of(node, "id") is None
+
+
+def test_a_response_repeats_the_id_or_several_numbers():
+    assert responses.echoes_of({"echo": "Command"}) == {"Command": "id"}
+    echo = {"Command": "id[0]", "Count": "header.sequence"}
+    assert responses.echoes_of({"echo": echo}) == echo
+    assert responses.echoes_of({}) == {}

@@ -4,8 +4,10 @@ user.
 
 from __future__ import annotations
 
+import pytest
 import yaml
 
+from icdgen.icd.fmt import format_text
 from icdgen.import_results.update import update
 
 OLD = """\
@@ -120,3 +122,45 @@ def test_all_comments_and_keys_of_the_user_stay_at_their_places():
 def test_an_update_with_the_same_facts_changes_nothing():
     updated = update(UPDATED, "pump.yaml", yaml.safe_load(NEW))
     assert (updated.text, updated.changes) == (UPDATED, [])
+
+
+HEAD = """\
+icdgen: 1
+node: {name: pump, title: Pump, byte_order: little, bit_order: lsb0}
+"""
+A, B, C = (
+    f"  - {{name: {name}, id: {id}, kind: telecommand, length: 0}}\n"
+    for name, id in (("A", 1), ("B", 2), ("C", 3))
+)
+OURS = A.replace("length: 0", "length: 0, summary: Ours.")
+LINK = "protocol:\n  link:\n    ids: {telemetry: {mask: 128}}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "changes"),
+    [
+        ("", LINK, LINK, ["+ protocol"]),
+        (LINK, LINK, LINK, []),
+        (LINK.replace("128", "64"), LINK, LINK, ["~ protocol is another"]),
+        (LINK, "{}", LINK, []),
+        ("messages:\n", f"messages:\n{A}", f"messages:\n{A}", ["+ message `A` (1)"]),
+        (f"messages:\n{A}", "{}", "", ["- message `A` (1)"]),
+        # Old messages keep their order, new ones follow their predecessor.
+        (f"messages:\n{A}{B}", f"messages:\n{A}{C}{B}", f"messages:\n{A}{C}{B}", ["+ message `C` (3)"]),
+        (f"messages:\n{A}{B}", f"messages:\n{C}{B}{A}", f"messages:\n{C}{A}{B}", ["+ message `C` (3)"]),
+        (f"messages:\n{A}{B}", f"messages:\n{B}{C}{A}", f"messages:\n{A}{B}{C}", ["+ message `C` (3)"]),
+        # A renamed message has the same id, one with another id has the same name.
+        (f"messages:\n{OURS}", f"messages:\n{A.replace('A', 'D')}", f"messages:\n{OURS.replace('A', 'D')}",
+         ["~ message `D` (1): name `A` -> `D`"]),
+        (f"messages:\n{OURS}", f"messages:\n{A.replace('1', '9')}", f"messages:\n{OURS.replace('1', '9')}",
+         ["~ message `A` (9): id `1` -> `9`"]),
+        (f"messages:\n{OURS}", f"messages:\n{A.replace('A', 'D').replace('1', '9')}",
+         f"messages:\n{A.replace('A', 'D').replace('1', '9')}", ["+ message `D` (9)", "- message `A` (1)"]),
+        ("units:\n  - {symbol: ohm}\n", "units: [{symbol: lx, text: lux}, {symbol: ohm}]",
+         "units:\n  - {symbol: ohm}\n  - {symbol: lx, text: lux}\n", ["+ units lx"]),
+    ],
+)  # fmt: skip
+def test_facts_are_replaced_and_objects_are_found_again(old, new, expected, changes):
+    updated = update(HEAD + old, "pump.yaml", yaml.safe_load(new))
+    assert updated.changes == changes
+    assert updated.text == format_text(HEAD + expected, "pump.yaml")
