@@ -1,5 +1,5 @@
-"""The test of generated C which message a frame is: it agrees with the ICD for all
-lengths, and reads only the bytes that the frame has.
+"""Statements of generated C. The test which message a frame is agrees with the ICD for
+all lengths, and reads only the bytes that the frame has.
 """
 
 from __future__ import annotations
@@ -10,7 +10,14 @@ import re
 import pytest
 
 from icdgen.backends.c.names import constant
-from icdgen.backends.c.statement import frame_test
+from icdgen.backends.c.statement import (
+    assigned_byte,
+    either,
+    frame_test,
+    grouped,
+    joined,
+    loop,
+)
 from icdgen.describe import describe
 from icdgen.describe.nodes import MessageOfId
 from tests.conformance import odd
@@ -75,3 +82,37 @@ def test_a_frame_is_recognized_without_reading_behind_its_end(candidate):
             assert result == is_frame(candidate, bytes(frame)), frame.hex()
             accepted.add(result)
     assert True in accepted
+
+
+def test_operands_and_bytes_are_converted_and_in_parentheses_where_c_needs_them():
+    assert grouped("a << b") == "(a << b)"
+    assert grouped("f(a << b)") == "f(a << b)"
+    assert joined(["a << b"]) == "a << b"
+    assert joined(["a << b", "c"]) == "(a << b) | c"
+    assert assigned_byte("b", ["ICDGEN_U8(x)"]) == "b = ICDGEN_U8(x);"
+    assert assigned_byte("b", ["x >> 3"]) == "b = ICDGEN_U8(x >> 3);"
+    assert assigned_byte("b", ["ICDGEN_U8(x)", "y"]) == (
+        "b = ICDGEN_U8(ICDGEN_U8(x) | y);"
+    )
+
+
+def test_an_assignment_that_is_too_long_has_a_line_for_each_term():
+    terms = [letter * 50 for letter in "abc"]
+    assert assigned_byte("buffer[0]", terms) == "\n".join(
+        (
+            "buffer[0] = ICDGEN_U8(",
+            f"        {terms[0]} |",
+            f"        {terms[1]} |",
+            f"        {terms[2]});",
+        )
+    )
+
+
+def test_loops_count_by_one_or_by_several():
+    assert loop("i", "n") == "for (size_t i = 0u; i < n; i++) {"
+    assert loop("i", "8u", 2) == "for (size_t i = 0u; i < 8u; i += 2u) {"
+
+
+def test_each_test_of_several_is_in_parentheses():
+    assert (either(["a"]), either(["a", "b"])) == ("a", "(a) || (b)")
+    assert either(["a", "b"], " && ") == "(a) && (b)"
