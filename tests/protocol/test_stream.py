@@ -10,7 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.stream import StreamDecoder, stream_encode
+from icdgen_runtime.wire.stream import (
+    StreamDecoder,
+    stream_encode,
+    stream_encode_request,
+)
 
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
@@ -154,6 +158,29 @@ def test_messages_of_other_ids_count_unless_each_id_has_its_own_sequence(
     assert [
         (event.id, event.missing) for event in events if event.event == "gap"
     ] == gaps
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        name
+        for name, link in links().items()
+        if any(packet.content == "request" for packet in link.stream.packets)
+    ],
+)
+def test_a_device_decodes_a_request_of_each_telemetry(name):
+    link = links()[name]
+    requests = {
+        row.id: stream_encode_request(link, row.id)
+        for row in link.stream.rows("telemetry")
+        if row.is_requested
+    }
+    decoder = StreamDecoder(link, "telecommand")
+    events = decoder.feed(b"".join(requests.values()))
+    assert [
+        (event.event, event.id, event.data) for event in events if event.event != "gap"
+    ] == [("request", id, b"") for id in requests]
+    assert requests and decoder.discarded == 0
 
 
 SEEDED = """
