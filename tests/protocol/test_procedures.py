@@ -19,7 +19,12 @@ from icdgen_runtime.wire.procedures import Procedure
 from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
-from icdgen.runtime_objects.procedures import procedure, procedure_of
+from icdgen.runtime_objects.procedures import (
+    event_of,
+    procedure,
+    procedure_of,
+    row_of,
+)
 from icdgen.vectors.wire.recording import ClientReport, RecordedDevice, record
 from tests import links
 from tests.conftest import ROOT
@@ -230,6 +235,22 @@ def test_a_script_shows_the_request_the_deadline_and_the_result_after_each_row(b
         ({"telemetry": 233}, None, None),
         (None, None, "done"),
     ]
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        {"event": "done", "bytes": "01ff"},
+        {"event": "sent"},
+        {"event": "busy"},
+        {"event": "refused"},
+        {"event": "damaged"},
+        {"event": "timeout"},
+        {"event": "arrived", "id": 241, "bytes": "0001"},
+    ],
+)
+def test_an_event_of_a_script_can_be_written_and_read(row):
+    assert row_of(event_of(row)) == row
 
 
 KINDS = [

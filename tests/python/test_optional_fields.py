@@ -38,6 +38,14 @@ def test_a_message_equals_the_one_decoded_from_its_frame(
     )
 
 
+@pytest.mark.parametrize("mode", [0, 2, 7])
+def test_a_dictionary_without_an_optional_field_gives_its_initial_value(messages, mode):
+    message = messages.Multiplexed.from_dict({"mode": mode})
+    assert message == messages.Multiplexed(mode=mode)
+    absent = {0: "angle speed", 2: "rate speed", 7: "rate angle turned"}[mode]
+    assert {getattr(message, name) for name in absent.split()} == {None}
+
+
 def test_columns_are_masked_where_a_field_is_absent(messages):
     frames = b"".join(messages.Multiplexed(mode=mode).to_bytes() for mode in (0, 1, 7))
     columns = messages.Multiplexed.decode_many(frames, physical=True)
