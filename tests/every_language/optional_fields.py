@@ -9,6 +9,8 @@ OPTIONAL_FIELDS = Story(
     icd="""\
 icdgen: 1
 node: {name: optional, title: Optional fields, byte_order: big, bit_order: lsb0}
+enums:
+  - {name: Gear, members: [{value: 1, name: First}, {value: 2, name: Second}]}
 messages:
   - name: Order
     id: 1
@@ -18,6 +20,13 @@ messages:
       - {at: 0, bits: 8, name: Mode, type: uint}
       - {at: 8, bits: 8, name: Key, type: uint, const: 0x5A, when: {Mode: 7}}
       - {at: 16, bits: 16, name: Rate, type: int, unit: rpm, formula: raw*0.5, when: {Mode: [0, 7]}}
+  - name: Drive
+    id: 2
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 1, name: Has Gear, type: bool}
+      - {at: 8, bits: 8, name: Gear, type: enum, enum: Gear, when: {Has Gear: [false, true]}}
 """,
     c="""\
 const uint8_t with_rate[4] = {0, 0, 0xff, 0xfe};
@@ -102,6 +111,37 @@ CHECK(memcmp(again, without_rate, sizeof again) == 0);
             rust="""\
 order.mode = 1;
 assert_eq!(order.to_bytes(), Ok([1, 0, 0, 0]));
+""",
+        ),
+        Claim(
+            "a field that is present for both values of a flag is 0 at first, "
+            "also if its enumeration has no such member",
+            c="""\
+optional_drive_t drive;
+memset(again, 0xff, sizeof again);
+optional_drive_init(&drive);
+CHECK(optional_drive_has_gear(&drive) && drive.gear == 0u);
+CHECK(optional_drive_encode(&drive, again, sizeof again) == ICD_OK && again[1] == 0u);
+drive.has_gear = true;
+CHECK(optional_drive_has_gear(&drive));
+""",
+            python="""\
+for has_gear in (False, True):
+    assert Drive(has_gear=has_gear).gear == 0
+    assert Drive(has_gear=has_gear).to_bytes() == bytes([has_gear, 0])
+    assert Drive.from_bytes(bytes([has_gear, 2])).gear == Gear.SECOND
+""",
+            rust="""\
+use icd::optional::{enums::Gear, Drive};
+assert_eq!(Gear::default().raw(), 0);
+let mut drive = Drive::default();
+for has_gear in [false, true] {
+    drive.has_gear = has_gear;
+    assert_eq!(drive.gear.map(|gear| gear.raw()), Some(0));
+    assert_eq!(drive.to_bytes(), Ok([u8::from(has_gear), 0]));
+    let decoded = Drive::from_bytes(&[u8::from(has_gear), 2]).unwrap();
+    assert_eq!(decoded.gear, Some(Gear::Second.into()));
+}
 """,
         ),
     ),
