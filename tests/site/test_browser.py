@@ -30,15 +30,22 @@ def top(request, site) -> str:
 @contextmanager
 def opened(browser, top: str, path: str, **options):
     """Return a page. Fails if it logs an error or requests anything outside the site."""
-    context = browser.new_context(**options)
-    page = context.new_page()
     complaints, requested_urls = [], []
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("request", lambda request: requested_urls.append(request.url))
-    page.goto(top + path)
-    yield page
-    context.close()
+    listeners = {
+        "console": lambda message: complaints.append(message.text),
+        "pageerror": lambda error: complaints.append(str(error)),
+        "request": lambda request: requested_urls.append(request.url),
+    }
+    with browser.page(**options) as page:
+        for event, listener in listeners.items():
+            page.on(event, listener)
+        page.goto(top + path)
+        if page.evaluate("localStorage.length"):  # choices of an earlier test
+            page.evaluate("localStorage.clear()")
+            page.reload()
+        yield page
+        for event, listener in listeners.items():
+            page.remove_listener(event, listener)
     assert complaints == []
     assert [url for url in requested_urls if not url.startswith(top)] == []
 
@@ -233,13 +240,10 @@ def test_a_node_s_messages_are_filtered(browser, site):
 
 
 def test_the_chosen_language_is_remembered(browser, served):
-    context = browser.new_context()
-    page = context.new_page()
-    page.goto(served + KINDS["numbers"])
-    page.click("label:text-is('Rust')")
-    page.goto(served + KINDS["message"])
-    assert page.is_visible(".snippet.rust") and not page.is_visible(".snippet.c")
-    context.close()
+    with opened(browser, served, KINDS["numbers"]) as page:
+        page.click("label:text-is('Rust')")
+        page.goto(served + KINDS["message"])
+        assert page.is_visible(".snippet.rust") and not page.is_visible(".snippet.c")
 
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
@@ -262,19 +266,16 @@ def test_no_page_is_too_wide_or_too_long(browser, site, path):
 
 def test_dark_mode_follows_the_system_and_the_button(browser, served):
     background = "getComputedStyle(document.documentElement).backgroundColor"
-    context = browser.new_context(color_scheme="dark")
-    page = context.new_page()
-    page.goto(served)
-    dark = page.evaluate(background)
-    page.click("#theme")
-    light = page.evaluate(background)
-    page.reload()
-    assert (
-        light == "rgb(255, 255, 255)"
-        and dark != light
-        and page.evaluate(background) == light
-    )
-    context.close()
+    with opened(browser, served, "", color_scheme="dark") as page:
+        dark = page.evaluate(background)
+        page.click("#theme")
+        light = page.evaluate(background)
+        page.reload()
+        assert (
+            light == "rgb(255, 255, 255)"
+            and dark != light
+            and page.evaluate(background) == light
+        )
 
 
 def test_a_node_prints_with_a_page_for_each_message(browser, site, shipped):

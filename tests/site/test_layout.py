@@ -145,23 +145,21 @@ def test_flags_are_shown_in_a_grid_with_their_values(browser, site):
 
 
 def test_bytes_code_and_names_can_be_copied(browser, served):
-    context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
-    page = context.new_page()
-    page.goto(served + KINDS["numbers"])
-    for selector, expected in {
-        ".names dd >> nth=0": "cubeacp_estimated_attitude_angles_t",
-        ".buses dd >> nth=0": "1F 7F 92 1F FF",
-        ".snippet.c": '#include "cubeacp.h"',
-    }.items():
-        frame = page.locator(selector)
-        button = (frame.locator("..") if selector == ".snippet.c" else frame).locator(
-            "button.copy"
-        )
-        button.click()
-        page.wait_for_selector(".copy.done")
-        assert page.evaluate("navigator.clipboard.readText()").startswith(expected)
-        page.wait_for_selector(".copy.done", state="detached")
-    context.close()
+    allowed = ["clipboard-read", "clipboard-write"]
+    with opened(browser, served, KINDS["numbers"], permissions=allowed) as page:
+        for selector, expected in {
+            ".names dd >> nth=0": "cubeacp_estimated_attitude_angles_t",
+            ".buses dd >> nth=0": "1F 7F 92 1F FF",
+            ".snippet.c": '#include "cubeacp.h"',
+        }.items():
+            frame = page.locator(selector)
+            button = (
+                frame.locator("..") if selector == ".snippet.c" else frame
+            ).locator("button.copy")
+            button.click()
+            page.wait_for_selector(".copy.done")
+            assert page.evaluate("navigator.clipboard.readText()").startswith(expected)
+            page.wait_for_selector(".copy.done", state="detached")
 
 
 def test_results_of_the_search_stay_on_the_screen_of_a_phone(browser, site):
