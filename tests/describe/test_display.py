@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
 from dataclasses import replace
 from fractions import Fraction
 from random import Random
@@ -29,7 +28,7 @@ from icdgen.values.frame import FieldValue
 from tests.conformance.build import renderer
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
-from tests.site.conftest import program
+from tests.site.javascript import run_script
 
 SENSOR = """\
 icdgen: 1
@@ -162,16 +161,9 @@ def in_page(function: str, argument: object) -> Any:
         const codec = (globalThis.icdgenCodec = require(load("codec.js")));
         const fs = require("node:fs");
         const values = new Function(`${{fs.readFileSync(load("values.js"), "utf8")}}; return icdgenValues;`)();
-        process.stdout.write(JSON.stringify({function}(JSON.parse(fs.readFileSync(0, "utf8")))));
+        return {function}(argument);
     """
-    done = subprocess.run(
-        [program("node"), "-e", code],
-        input=json.dumps(argument),
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return run_script(code, argument)
 
 
 def test_the_page_shows_the_same_digits(tmp_path):

@@ -19,9 +19,8 @@ from icdgen.icd.model import Icd, Node
 from icdgen.icd.variants import ids_of
 from icdgen.logfile import text
 from icdgen.logfile.log import open_log
-from icdgen.protocol import facts
 from icdgen.recognize.framed import DIRECTIONS
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of_node
 from icdgen.sim.computer import Computer
 from icdgen.sim.control import fields_of, raw_value_of
 from icdgen.sim.faults import Faults
@@ -45,7 +44,7 @@ def recorded(icd: Icd, node: Node, frames: Frames) -> dict[Direction, bytes]:
 def _sent_of(
     icd: Icd, node: Node, frames: Frames, direction: Direction
 ) -> Iterator[bytes]:
-    link = link_of(icd, facts.of(icd, node))
+    link = link_of_node(icd, node)
     for id, variants in getattr(ids_of(icd, node), direction).items():
         for variant in variants:
             for data in frames.get(variant.message.name, ()):

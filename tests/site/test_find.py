@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 
 import pytest
 
@@ -13,7 +12,7 @@ from icdgen.backends.python import PythonBackend
 from icdgen.backends.rust import RustBackend
 from icdgen.site import make_site, write_site
 from tests.conftest import ROOT
-from tests.site.conftest import program
+from tests.site.javascript import run_script
 
 P31U = ROOT / "examples" / "devices" / "p31u" / "p31u.yaml"
 SCRIPT = ROOT / "templates" / "html" / "find.js"
@@ -126,17 +125,9 @@ def search_results(site, queries: list[str]) -> list[list[str]]:
         const {{ finder }} = require({json.dumps(str(SCRIPT))});
         (0, eval)(readFileSync({json.dumps(str(site / "search-index.js"))}, "utf8"));
         const find = finder(globalThis.icdgenSearchIndex);
-        const queries = JSON.parse(readFileSync(0, "utf8"));
-        process.stdout.write(JSON.stringify(queries.map((query) => find(query).map((one) => one.url))));
+        return argument.map((query) => find(query).map((one) => one.url));
     """
-    done = subprocess.run(
-        [program("node"), "-e", code],
-        input=json.dumps(queries),
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return run_script(code, queries)
 
 
 def test_the_wanted_page_is_first_or_second(site):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 from dataclasses import replace
 
 import pytest
@@ -20,7 +19,7 @@ from icdgen.values.errors import BadHex
 from icdgen.values.hexadecimal import parse_hex
 from tests import links
 from tests.conftest import ROOT
-from tests.site.conftest import program
+from tests.site.javascript import run_script
 
 FRAMES = ROOT / "templates" / "html" / "frames.js"
 
@@ -30,18 +29,10 @@ def node(script: str, argument: object) -> object:
     code = f"""
         const frames = require({json.dumps(str(FRAMES))});
         const {{ unwrap }} = require({json.dumps(str(FRAMES.with_name("given.js")))});
-        const argument = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
         const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
-        process.stdout.write(JSON.stringify(({script})(argument)));
+        return ({script})(argument);
     """
-    done = subprocess.run(
-        [program("node"), "-e", code],
-        input=json.dumps(argument),
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return run_script(code, argument)
 
 
 def spellings() -> list[str]:

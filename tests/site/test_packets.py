@@ -25,7 +25,7 @@ from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.recognize import recognize
 from icdgen.recognize.framed import DIRECTIONS
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of_node
 from icdgen.site import make_site, write_site
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
@@ -58,7 +58,7 @@ def packets_of(icd, direction: str, source: random.Random) -> list[bytes]:
     """Return packets of all kinds of a direction with random values: messages,
     requests, and packets without a message.
     """
-    link = link_of(icd, facts.of(icd, icd.nodes[0]))
+    link = link_of_node(icd, icd.nodes[0])
     form = link.stream
     packets = []
     for row in form.rows(direction):
@@ -106,7 +106,7 @@ def lines_of(icd, direction: str, count: int) -> list[bytes]:
 
 def decoded(icd, direction: str, line: bytes) -> list[object]:
     """Return the result of the decoder of the Python runtime for a line."""
-    decoder = StreamDecoder(link_of(icd, facts.of(icd, icd.nodes[0])), direction)
+    decoder = StreamDecoder(link_of_node(icd, icd.nodes[0]), direction)
     events = [
         [
             event.event,
@@ -235,7 +235,7 @@ def remarks_of(icd, texts: list[str]) -> list[object]:
 
 
 def test_a_nak_has_its_reason_and_a_response_without_id_needs_no_message(relay):
-    link = link_of(relay, facts.of(relay, relay.nodes[0]))
+    link = link_of_node(relay, relay.nodes[0])
     names = [packet.name for packet in link.stream.packets]
     refusal, busy = names.index("refusal"), names.index("busy")
     used = names.index("taken")
@@ -319,7 +319,7 @@ def test_the_page_gives_the_reason_for_any_undecodable_packet(relay, packet, tex
 
 def test_the_page_of_a_message_decodes_its_packet_and_names_other_packets(relay):
     relations = Relations(relay)
-    link = link_of(relay, facts.of(relay, relay.nodes[0]))
+    link = link_of_node(relay, relay.nodes[0])
     telecommand, beat, temperature, request, refusal = (
         stream_encode(link, 0x0102, b"\1\2").hex(),
         stream_encode(link, 0x0204, b"\3\4\5", "telemetry").hex(),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 
 import pytest
 
@@ -19,7 +18,7 @@ from icdgen.values.find import find_message
 from tests.conftest import ROOT
 from tests.recognize.test_identifiers import BRAKE, DRIVE, train
 from tests.recognize.ways import BARE, DATA, WHOLE
-from tests.site.conftest import program
+from tests.site.javascript import run_script
 
 # Remote requests of 11 and 29 bits, also with a time.
 REMOTE = ["100#R", "can0 100 [8] remote request", "r1008", "r10081234", "R059202016"]
@@ -31,18 +30,10 @@ def node(script: str, argument: object) -> object:
     code = f"""
         const given = require({json.dumps(str(GIVEN))});
         const pasted = require({json.dumps(str(GIVEN.with_name("pasted.js")))});
-        const argument = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
         const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
-        process.stdout.write(JSON.stringify(({script})(argument)));
+        return ({script})(argument);
     """
-    done = subprocess.run(
-        [program("node"), "-e", code],
-        input=json.dumps(argument),
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return run_script(code, argument)
 
 
 def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 
 import pytest
 
@@ -16,7 +15,7 @@ from icdgen.values.errors import Ambiguous
 from tests.conftest import ROOT
 from tests.recognize.test_identifiers import BRAKE, CANDUMP, DRIVE, train
 from tests.recognize.ways import BARE, WHOLE
-from tests.site.conftest import program
+from tests.site.javascript import run_script
 
 SCRIPT = ROOT / "templates" / "html" / "recognize.js"
 
@@ -27,21 +26,14 @@ def on_the_page(index: dict, texts: list[str]) -> list[object]:
     """
     code = f"""
         const {{ recognize, Ambiguous }} = require({json.dumps(str(SCRIPT))});
-        const [index, texts] = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+        const [index, texts] = argument;
         const plain = (one) => [one.node, one.message, one.what, Buffer.from(one.data).toString("hex"), one.id];
-        process.stdout.write(JSON.stringify(texts.map((text) => {{
+        return texts.map((text) => {{
             try {{ return recognize(index, text).map(plain); }}
             catch (error) {{ return error instanceof Ambiguous ? "ambiguous" : {{ error: error.message }}; }}
-        }})));
+        }});
     """
-    done = subprocess.run(
-        [program("node"), "-e", code],
-        input=json.dumps([index, texts]),
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return run_script(code, [index, texts])
 
 
 def on_the_command_line(icd, text: str) -> object:
@@ -181,16 +173,9 @@ def test_the_page_shows_times_of_candump_and_reports_unknown_packets(
     index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
     code = f"""
         const {{ recognize }} = require({json.dumps(str(SCRIPT))});
-        const [index, text] = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
-        process.stdout.write(JSON.stringify(recognize(index, text).map((one) => [one.time, one.leftOut])));
+        return recognize(...argument).map((one) => [one.time, one.leftOut]);
     """
-    done = subprocess.run(
-        [program("node"), "-e", code],
-        input=json.dumps([index, CANDUMP]),
-        capture_output=True,
-        text=True,
-    )
-    assert json.loads(done.stdout) == [
+    assert run_script(code, [index, CANDUMP]) == [
         [
             "1600000000.250000",
             ["no message has the CAN identifier 0x7FF (1 CAN packet)"],

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 
 from icdgen import codec
 from icdgen.icd.layout import Scalar
 from tests.conftest import ROOT
-from tests.site.conftest import program
+from tests.site.javascript import run_script
 
 HTML = ROOT / "templates" / "html"
 LABEL = Scalar(name="Label", at=0, bits=64, type="text")
@@ -20,9 +19,9 @@ const source = ["codec.js", "frames.js", "values.js"].map((name) => fs.readFileS
 const values = new Function(source.join("\\n").replaceAll('"use strict";', "") + "; return icdgenValues;")();
 const field = {{ name: "Label", type: "bytes", text: true, bits: 64, first: 0 }};
 const typed = (text) => {{ try {{ return [...values.parsePhysical(field, text)]; }} catch (error) {{ return null; }} }};
-const {{ raw, texts }} = JSON.parse(fs.readFileSync(0, "utf8"));
+const {{ raw, texts }} = argument;
 const shown = raw.map((bytes) => values.physicalText(field, Uint8Array.from(bytes)));
-process.stdout.write(JSON.stringify({{ shown, typed: texts.map(typed) }}));
+return {{ shown, typed: texts.map(typed) }};
 """
 
 
@@ -48,16 +47,7 @@ def test_texts_are_shown_and_entered_like_in_the_reference_codec():
         )
         for _ in range(300)
     ]
-    request = json.dumps({"raw": [list(data) for data in raw], "texts": texts})
-    done = subprocess.run(
-        [program("node"), "-e", SCRIPT],
-        input=request,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    results = json.loads(done.stdout)
+    results = run_script(SCRIPT, {"raw": [list(data) for data in raw], "texts": texts})
     assert results == {
         "shown": [codec.text(data) for data in raw],
         "typed": [_typed(text) for text in texts],

@@ -23,9 +23,8 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
 from icdgen.link.line_statistics import FAULTS
 from icdgen.logfile.rows import Done
-from icdgen.protocol import facts
 from icdgen.protocol.packet_formats import DATAGRAM
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of_node
 
 _PIECE = 1 << 18  # bytes of a read
 _MOST_IDS = 64  # unknown ids with a counter of their own
@@ -134,7 +133,7 @@ class Recording:
         chosen: Sequence[Message] = (),
     ) -> None:
         self.icd, self.node, self.path, self.direction = icd, node, path, direction
-        self.link = link_of(icd, facts.of(icd, node))
+        self.link = link_of_node(icd, node)
         self._messages_by_id: dict[int, list[Message]] = {}
         self.messages: dict[Key, Message] = {}
         for id, variants in getattr(ids_of(icd, node), direction).items():

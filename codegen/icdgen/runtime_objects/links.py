@@ -1,6 +1,7 @@
 """Link of a node as an object of the runtime, equal to ``LINK`` in generated code.
 
 `icdgen.link_calls` describes the object as constructor calls; `link_of` evaluates them.
+`link_of_node` keeps the objects of the nodes of the most recent ICD.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ from icdgen_runtime.wire.packet_formats import Response
 from icdgen.describe import describe
 from icdgen.describe.links import LinkDescription
 from icdgen.icd.buses import I2C, UART
-from icdgen.icd.model import Icd
+from icdgen.icd.model import Icd, Node
+from icdgen.icd.node_cache import cached_by_node
 from icdgen.link_calls import Call, Commented, Verbatim, link_call
+from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.facts import Facts
 from icdgen.runtime_objects.messages import ModelMessages
 
@@ -34,6 +37,12 @@ def link_of(icd: Icd, facts: Facts) -> Link:
     link = _evaluate(link_call(LinkDescription(description, facts)), names)
     assert isinstance(link, Link)
     return link
+
+
+@cached_by_node
+def link_of_node(icd: Icd, node: Node) -> Link:
+    """Return the link of a node."""
+    return link_of(icd, protocol_facts.of(icd, node))
 
 
 def responses_on(link: Link, bus: str) -> tuple[Response, ...]:

@@ -12,10 +12,8 @@ from typing import Any
 from icdgen_runtime._errors import IcdError
 
 from icdgen.icd.model import Icd, Node
-from icdgen.icd.node_cache import cached_by_node
-from icdgen.protocol import facts
-from icdgen.runtime_objects.links import link_of
-from icdgen.runtime_objects.operations import OPERATIONS, AnyLink, Operation
+from icdgen.runtime_objects.links import link_of_node
+from icdgen.runtime_objects.operations import OPERATIONS, Operation
 from icdgen.runtime_objects.procedures import procedure
 from icdgen.runtime_objects.refusals import Refusal, details_of
 from icdgen.runtime_objects.request_keys import Request, text
@@ -35,16 +33,11 @@ def answer(icd: Icd, request: Request) -> dict[str, Any]:
     operation = OPS[request["op"]]
     try:
         node = _node(icd, request)
-        return {"ok": True, **operation(_link(icd, node), request)}
+        return {"ok": True, **operation(link_of_node(icd, node), request)}
     except Refusal as refusal:
         return {"ok": False, **refusal.details}
     except IcdError as error:
         return {"ok": False, **details_of(error)}
-
-
-@cached_by_node
-def _link(icd: Icd, node: Node) -> AnyLink:
-    return link_of(icd, facts.of(icd, node))
 
 
 def _node(icd: Icd, request: Request) -> Node:

@@ -19,7 +19,7 @@ from icdgen.procedures.effects import Key, Object, effect_of
 from icdgen.procedures.run import steps_of
 from icdgen.protocol import facts
 from icdgen.protocol.procedures import Procedure, Send, Value
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of_node
 from icdgen.sim.values import number_places
 from icdgen.values.entry import parse_physical
 
@@ -60,7 +60,7 @@ def read_file(icd: Icd, node: Node, text: str) -> tuple[str, Key, Object]:
     except OSError as error:
         raise unreadable(path, error, "check the path after the =") from None
     try:
-        packed = dos_time_pack(link_of(icd, node_facts), changed)
+        packed = dos_time_pack(link_of_node(icd, node), changed)
     except IcdError:
         # The packed format cannot represent the time, for instance of a year before its
         # first one.

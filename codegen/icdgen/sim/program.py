@@ -22,7 +22,7 @@ from icdgen.procedures.counterpart import Counterpart, Device, Refused
 from icdgen.procedures.effects import effect_of
 from icdgen.protocol import facts
 from icdgen.protocol.exchange import NumberPlace
-from icdgen.runtime_objects.links import link_of, responses_on, with_outcome
+from icdgen.runtime_objects.links import link_of_node, responses_on, with_outcome
 from icdgen.sim.refusals import refusal_code
 from icdgen.sim.settings import SimulationSettings
 from icdgen.sim.storage import DeviceStorage
@@ -72,7 +72,7 @@ class Program:
     ) -> None:
         self.icd, self.node, self.settings = icd, node, settings
         self.facts = facts.of(icd, node)
-        self.link = link_of(icd, self.facts)
+        self.link = link_of_node(icd, node)
         self.values = Values(icd, node)
         procedures = [(each, effect_of(each)) for each in self.facts.procedures]
         checksum = self.facts.checksum_of_files

@@ -18,7 +18,7 @@ from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
 from icdgen.runtime_objects import reference
-from icdgen.runtime_objects.links import link_of
+from icdgen.runtime_objects.links import link_of_node
 from icdgen.vectors.wire import (
     asking,
     clients,
@@ -88,7 +88,7 @@ def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]
     # of clients and procedures have sources of their own.
     source = random.Random(node_facts.node.name)
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
-    link = link_of(icd, node_facts)
+    link = link_of_node(icd, node_facts.node)
     if node_facts.stream:
         yield from framed.requests(link, node_facts.stream, source)
         yield from asking.scripts(link, node_facts)
