@@ -21,8 +21,9 @@ LANGUAGES = [
     for language in all_languages().values()
     if language.kind in (TESTEE, SELFTEST)
 ]
-# Built for the shipped ICDs too; the others, variants of these, for the odd ones only.
-SHIPPED = ("c", "c-cortex-m", "javascript", "python", "rust-debug")
+# Built for the shipped ICDs too, the optimised C for a processor without an operating
+# system; the others, variants of these, for the odd ones only.
+SHIPPED = ("c-cortex-m", "c-sanitizers", "javascript", "python", "rust-debug")
 OPTIONAL = {"python3.9"}  # not every machine has an interpreter that old
 
 
@@ -65,7 +66,7 @@ def agree(language, run_input):
 
 # Left to `python -m tests.conformance.run`: what takes minutes to build, and variants
 # of which others here are as well.
-LEFT = {"rust", "c-clang", "c-portable", "c-selftest-no-double"}
+LEFT = {"rust", "c-clang", "c-cortex-m", "c-portable", "c-selftest-no-double"}
 ODD = [language.name for language in LANGUAGES if language.name not in OPTIONAL | LEFT]
 
 

@@ -35,7 +35,7 @@ def test_values_of_supported_messages_equal_those_of_the_library(
     nodes = (
         1 if name.startswith("mavlink") else 3
     )  # each dialect includes most of the others
-    row = measure(name, LANGUAGES, tmp_path, frames=6, sample=12, nodes=nodes)
+    row = measure(name, LANGUAGES, tmp_path, frames=6, sample=8, nodes=nodes)
     assert row.supported
     for agreement in row.by_language.values():
         assert agreement.messages == row.supported and agreement.values > row.supported

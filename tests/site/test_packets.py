@@ -132,7 +132,7 @@ def test_the_page_decodes_every_packet_as_the_python_runtime_does(name, tmp_path
     for direction in DIRECTIONS:
         if not stream.packets_of(direction):
             continue
-        lines = lines_of(icd, direction, 150)
+        lines = lines_of(icd, direction, 100)
         script = json.dumps(str(SCRIPTS / "framed.js"))
         shown = node(
             f"""([form, direction, lines]) => lines.map((line) => {{
