@@ -18,6 +18,7 @@ from icdgen.commands.common import (
 )
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
+from icdgen.wording import count
 
 
 @click.command(epilog="Example: icdgen fmt icd/")
@@ -77,9 +78,9 @@ def _summary(changed: int, unchanged: int, check: bool) -> str:
         "unchanged": unchanged,
     }
     parts = [
-        f"{n} {'file' if n == 1 else 'files'} {outcome}"
-        for outcome, n in outcomes.items()
-        if n
+        f"{count(number, 'file')} {outcome}"
+        for outcome, number in outcomes.items()
+        if number
     ]
     return ", ".join(parts)
 

@@ -25,6 +25,7 @@ from icdgen.commands.common import (
 )
 from icdgen.diagnostics import Finding, Findings, has_errors
 from icdgen.errors import UserError
+from icdgen.wording import count
 
 if TYPE_CHECKING:
     from icdgen.definitions.model import DefinitionReader
@@ -178,8 +179,6 @@ def import_(
         with progress.pages("reading") as show:
             result, trees = run.run(manual, vocabulary, show, jobs, descriptions, pages)
         if folder is not None:
-            from icdgen.wording import count
-
             paths = table_files.write_tables(result.tables, folder, result.document)
             say(
                 f"{folder}: {count(len(paths), 'table')} written; correct them, then `icdgen import {folder}`",
@@ -409,8 +408,7 @@ def _next_step(targets: list[Target], checked: list[Finding], dry_run: bool) -> 
     command = f"`icdgen check {' '.join(str(target.path) for target in targets)}`"
     counts = Counter(finding.severity for finding in checked)
     shown = " and ".join(
-        f"{n} {severity}{'s' if n != 1 else ''}"
-        for severity, n in sorted(counts.items())
+        count(number, severity) for severity, number in sorted(counts.items())
     )
     if dry_run:
         return f"{command} would have {shown or 'no findings'}"

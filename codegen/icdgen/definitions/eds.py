@@ -26,6 +26,7 @@ from icdgen.definitions.model import (
 )
 from icdgen.definitions.wording import line, node_name
 from icdgen.diagnostics import Findings
+from icdgen.wording import count
 
 PROCESS, UNSENT = "IMP083", "IMP084"
 _SPACE = "ccsds.org/schema/sois/seds"
@@ -256,10 +257,7 @@ def _report_unsent(containers: list[Element], sheets: Sheets, to: Definitions) -
         shown = ", ".join(
             f"`{line(container.get('name'), 60)}`" for container in containers[:3]
         ) + (" ..." if len(containers) > 3 else "")
-        what = (
-            "1 container" if len(containers) == 1 else f"{len(containers)} containers"
-        )
-        text = f"no interface carries {what}: {shown}"
+        text = f"no interface carries {count(len(containers), 'container')}: {shown}"
         to.warn(UNSENT, text, "they are left out", "note", sheets.line(containers[0]))
         for container in containers:
             settle(container)

@@ -18,6 +18,7 @@ from icdgen.icd import units, wire_ids
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.model import KEYS_OF_IDS
 from icdgen.import_results.findings import ImportFinding, SourcePlace
+from icdgen.wording import count
 
 UNREADABLE = "IMP005"
 NOT_HELD = "IMP070"
@@ -153,8 +154,11 @@ class Definitions:
     @property
     def files(self) -> str:
         """Name of the file and number of further files, for reports."""
-        further = "1 more file" if self.more == 1 else f"{self.more} more files"
-        return f"{self.file} and {further}" if self.more else self.file
+        return (
+            f"{self.file} and {count(self.more, 'more file')}"
+            if self.more
+            else self.file
+        )
 
     def left_out(
         self, name: str, why: object, line: int | None = None, file: str = ""

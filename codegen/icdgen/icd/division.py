@@ -11,6 +11,7 @@ from icdgen.icd.located import Map
 from icdgen.icd.pieces import bits_of
 from icdgen.icd.roles import SPLIT, reasons_against
 from icdgen.icd.trees import mappings
+from icdgen.wording import count
 
 # Keys for the meaning of a value. The parts of a split field have them instead of the
 # field.
@@ -70,7 +71,7 @@ def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
         if not (isinstance(at, int) and isinstance(size, int) and at >= 0 and size > 0):
             continue  # the schema check reports it
         if at + size > bits:
-            message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
+            message = f"{title} ends at bit {at + size} of {name}, which has {count(bits, 'bit')}"
             yield Fault.at(part, "bits", message, _WITHIN)
         elif not is_contiguous(field, part, byte_order, bit_order):
             message = f"the bits of {title} are not contiguous in the frame"

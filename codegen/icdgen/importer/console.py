@@ -34,7 +34,7 @@ def summary(result: Result) -> list[str]:
     parts = []
     for kind in ("message", "enumeration", "list"):
         if kinds[kind]:
-            parts.append(f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}")
+            parts.append(count(kinds[kind], kind))
     for kind in ("loggable frames", BACKGROUND, UNKNOWN):  # without a plural
         if kinds[kind]:
             parts.append(f"{kinds[kind]} {kind}")

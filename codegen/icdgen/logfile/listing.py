@@ -6,6 +6,7 @@ from icdgen.describe.numbers import byte_count
 from icdgen.logfile.recording import Recording, Tally
 from icdgen.logfile.source import LogSource, time_text
 from icdgen.tables import Column, printable_text, render_table
+from icdgen.wording import count
 
 _NAMES = ("frame", "message")
 _COLUMNS = [
@@ -37,7 +38,7 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
         )
     owner, size = recording.node.name, byte_count(recording.size)
     times = sum(tally.messages.values())
-    messages = f"{times:,} message{'' if times == 1 else 's'}"
+    messages = count(times, "message")
     head = f"{recording.path}: {recording.direction} of {owner}, {size}, {messages}"
     text = printable_text(head) + "\n"
     if rows:

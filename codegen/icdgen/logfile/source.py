@@ -18,6 +18,7 @@ from icdgen.logfile.columns import EntryLayout, plan
 from icdgen.logfile.integrity import Damage, Integrity, LogSurvey, TimeJump
 from icdgen.protocol import facts
 from icdgen.values.find import find_node
+from icdgen.wording import count
 
 _MOST_NOTES = 8  # damaged ranges or time jumps that are listed
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -78,11 +79,11 @@ class LogSource:
                     remaining = span.entries
                     while remaining:
                         data = file.read(min(chunk_entries, remaining) * entry_bytes)
-                        count = len(data) // entry_bytes
-                        if not count:
+                        complete = len(data) // entry_bytes
+                        if not complete:
                             return  # the file was truncated meanwhile
-                        yield data[: count * entry_bytes]
-                        remaining -= count
+                        yield data[: complete * entry_bytes]
+                        remaining -= complete
         except OSError as error:
             raise unreadable(self.path, error) from None
 
@@ -138,7 +139,7 @@ class LogSource:
         """
         unknown = sum(slot.id is None for slot in self.plan.slots)
         if unknown:
-            yield f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has"
+            yield f"the mask selects {count(unknown, 'bit')} that no frame has"
         if integrity.entries and not self.plan.slots:
             yield "the mask selects no frame"
 
@@ -159,8 +160,7 @@ def _summary(texts: list[str], what: str) -> list[str]:
     remaining = len(texts) - _MOST_NOTES
     if remaining <= 0:
         return texts
-    plural = "s" if remaining > 1 else ""
-    return [*texts[:_MOST_NOTES], f"and {remaining:,} more {what}{plural}"]
+    return [*texts[:_MOST_NOTES], f"and {count(remaining, f'more {what}')}"]
 
 
 def time_text(milliseconds: int) -> str:

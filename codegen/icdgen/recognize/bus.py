@@ -28,6 +28,7 @@ from icdgen.recognize.reading import (
 )
 from icdgen.recognize.selection import Selection
 from icdgen.values.errors import BadLength, NotFound
+from icdgen.wording import count
 
 _WHAT = {
     "telecommand": TELECOMMAND, "acknowledge": ACKNOWLEDGE, "refusal": REFUSAL, "request": REQUEST, "reply": TELEMETRY,
@@ -79,8 +80,8 @@ def by_identifier(
         packets, lambda packet: _by_identifier(endpoints, packet, selection)
     )
     reports = [
-        f"{error} ({count} CAN packet{'s' * (count > 1)})"
-        for error, count in Counter(map(str, errors)).items()
+        f"{error} ({count(number, 'CAN packet')})"
+        for error, number in Counter(map(str, errors)).items()
     ]
     return [matches[0].with_left_out(*reports), *matches[1:]]
 

@@ -31,6 +31,7 @@ from icdgen.backends.html.relations import Relations
 from icdgen.backends.packages import Packages
 from icdgen.icd.model import Icd
 from icdgen.show.machine import to_json
+from icdgen.wording import count
 
 if TYPE_CHECKING:
     from icdgen.diff.inputs.side import ComparisonSide
@@ -90,6 +91,7 @@ def files(
         "sidebar": "",
         "changed": errata.changed,
         "hatch": drawing.hatch,
+        "count": count,  # a number with its noun
         # Content security policy: the site loads nothing from the network.
         "policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'",
     }

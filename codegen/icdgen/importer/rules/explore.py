@@ -49,9 +49,7 @@ def _block(group: list[SourceTable]) -> list[str]:
     where = f", page {pages[0]}" if pages else ""
     if len(pages) > 1:
         where = f", pages {pages[0]} to {pages[-1]}"
-    lines = [
-        f"  # {len(group)} table{'s' if len(group) != 1 else ''}: {numbers}{where}"
-    ]
+    lines = [f"  # {count(len(group), 'table')}: {numbers}{where}"]
     for key, texts in (
         ("caption", [first.caption]),
         ("heading", first.headings[-1:]),

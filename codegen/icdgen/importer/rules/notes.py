@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from icdgen.diagnostics import Place
 from icdgen.import_results.findings import DOUBTFUL, LIKELY, ImportFinding, SourcePlace
 from icdgen.importer.rules.rule import TableRule
+from icdgen.wording import count
 
 MOST_EXAMPLES = 4
 
@@ -46,7 +47,9 @@ class FindingGroup:
         )
         shown = ", ".join(f"`{text[:40]}`" for text in further_examples[:MOST_EXAMPLES])
         shown += ", ..." if len(further_examples) > MOST_EXAMPLES else ""
-        rows = f"{more} more row{'s' if more > 1 else ''}{f' of {tables} tables' if tables > 1 else ''}"
+        rows = (
+            f"{count(more, 'more row')}{f' of {tables} tables' if tables > 1 else ''}"
+        )
         message = (
             f"{self.first.message}; the same in {rows}{f': {shown}' if shown else ''}"
         )
@@ -140,7 +143,7 @@ class Notes:
             shown = ", ".join(f"`{text[:50]}`" for text in kinds[:3]) + (
                 " ..." if len(kinds) > 3 else ""
             )
-            rows = f"{len(texts)} row{'s' if len(texts) != 1 else ''}"
+            rows = count(len(texts), "row")
             self.single.append(
                 ImportFinding(
                     "IMP108",
