@@ -1,4 +1,10 @@
-"""Decoders by other libraries, built from the field descriptions of a generated class."""
+"""Decoders by other libraries, built from the field descriptions of a generated class.
+
+`by_construct` and `by_kaitaistruct` take a generated message class and return a
+function that decodes one frame, for ``python_decode`` and ``nav_sat`` to measure. Both
+support only little-endian frames, and `by_construct` no structs. The libraries must be
+installed; they are imported when a function is called.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,9 @@
 """Command line of icdgen.
 
 The commands are modules of ``icdgen.commands``, each imported only when it is used.
+`main` runs a list of arguments, prints errors with their help to standard error, and
+ends the process with the exit status. Arguments without the name of a command belong to
+``generate``. ``__main__`` calls `main`, unless it can repeat the note of an equal run.
 """
 
 from __future__ import annotations

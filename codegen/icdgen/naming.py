@@ -1,6 +1,9 @@
 """Conversion of names to identifiers.
 
-All languages use the same rules, which ``docs/reference/icd-format.md`` describes.
+All languages use the same rules, which ``docs/reference/icd-format.md`` describes under
+"Identifiers". `words` splits a name into words in lower case; `snake`, `upper` and
+`camel` join them. Words of the vocabulary of an ICD are never split. Reserved words and
+clashes are not handled here, because they differ between languages.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """Text tables for terminals and pipes.
 
-Tables for a pipe are not wrapped, cut or coloured.
+Tables for a pipe are not wrapped, cut or coloured. `render_table` takes columns, rows
+of text and the width of the terminal (`width_of`), and returns the table as text.
+It wraps cells only if the table does not fit otherwise, and omits empty columns.
+`printable_text` replaces control characters in texts of ICDs and devices.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Protocol facts as members of the named tuples of the Python runtime."""
+"""Protocol facts as members of the named tuples of the Python runtime.
+
+`written` takes the text of ``link.py`` or ``packet_formats.py`` in the runtime and
+returns it with the members of all facts in `icdgen.protocol.sections`. Their types and
+docstrings are written again. Members that are no facts, and methods, are preserved; a
+section without a class in this text is skipped. `scripts.protocol_facts` calls it.
+"""
 
 from __future__ import annotations
 

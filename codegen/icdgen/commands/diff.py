@@ -1,4 +1,10 @@
-"""Command ``icdgen diff``: report the changes between two ICDs (`icdgen.diff`)."""
+"""Command ``icdgen diff``: report the changes between two ICDs (`icdgen.diff`).
+
+`diff` reads the two sides with `icdgen.diff.inputs`, compares them with
+`icdgen.diff.report.make_report`, and writes the report to standard output or a file.
+The exit status is 1 only for changes in a layer of ``--fail-on``. ICDs with errors are
+compared only with ``--unchecked``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Command ``icdgen fmt``: write ICDs in the canonical layout (`icdgen.icd.fmt`)."""
+"""Command ``icdgen fmt``: write ICDs in the canonical layout (`icdgen.icd.fmt`).
+
+`fmt` takes files or folders; the errata files next to the ICDs of a folder belong to
+them. It overwrites each file whose layout differs. With ``--check`` it writes nothing,
+and the exit status is 1 if a file differs. Files that cannot be parsed remain
+unchanged.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,9 @@
 """Command ``icdgen generate``, also available as ``icdgen --lang ...``.
 
 `icdgen.generation.generate` does the work; this module prints what was written.
+`generate` combines the options with ``icdgen.toml`` to a `Job` and runs it. With
+``--check`` it writes no file, and exits with 1 and a short diff if files are outdated.
+After a successful run, `remember` stores the note that an equal command line prints.
 """
 
 from __future__ import annotations

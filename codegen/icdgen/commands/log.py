@@ -1,4 +1,10 @@
-"""Command ``icdgen log``: list or convert logs and recordings (`icdgen.logfile`)."""
+"""Command ``icdgen log``: list or convert logs and recordings (`icdgen.logfile`).
+
+`log` splits the arguments into node, file and messages and opens the file with
+`icdgen.logfile.log.open_log`. Without a format it prints a listing, otherwise it writes
+CSV, JSON lines or Parquet. An output file appears only when it is complete. The exit
+status is 1 if parts of the log are damaged, although the other parts are converted.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Command ``icdgen monitor``: live telemetry (`icdgen.link.live`) in rounds."""
+"""Command ``icdgen monitor``: live telemetry (`icdgen.link.live`) in rounds.
+
+`monitor` opens a session on a port and requests each message once per round. On a
+framed link it collects received messages until the round ends, and requests only
+messages for which the ICD has a request. The output is a table that stays in place on a
+terminal, a table per round in a pipe, or JSON lines. A lost connection is opened again.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
 """Progress of long commands on standard error, if it is a terminal.
 
-A pipe and CI get no output.
+A pipe and CI get no output. `items`, `pages` and `bytes_of` are contexts that yield a
+function, through which the command reports its progress; `working` only shows the time.
+The bar appears after `DELAY`, as the import of rich takes longer than most commands.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Command ``icdgen send``: send a telecommand over a port and show its outcome."""
+"""Command ``icdgen send``: send a telecommand over a port and show its outcome.
+
+`send` encodes the fields in the arguments with the reference codec, opens a session
+(`icdgen.link.options`) and waits for the outcome: acknowledge, refusal, busy or
+time-out. It prints text or one JSON object, and the exit status shows the outcome. A
+telecommand with a `hazard` needs a confirmation before the port is opened.
+"""
 
 from __future__ import annotations
 

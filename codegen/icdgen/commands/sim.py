@@ -1,4 +1,10 @@
-"""Command ``icdgen sim``: a simulated device (`icdgen.sim`) on ports."""
+"""Command ``icdgen sim``: a simulated device (`icdgen.sim`) on ports.
+
+`sim` converts its options to `icdgen.sim.run.Options` and a list of transports, then
+`icdgen.sim.run.run` serves the device until it is interrupted. The default transport is
+a pseudo-terminal, or a free TCP port on Windows. The address of each port is printed
+and flushed, as a parent process may wait for it.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Report about imported definitions, as text and as JSON.
 
+`report` (text) and `as_json` take the `ReadDefinitions` of `icdgen.definitions.run`.
+They contain the findings, the number of imported messages and the identifiers that were
+replaced, in the text at most 20 of them. ``icdgen import`` prints the report.
 `import_results/report.py` has the parts that imports of documents share.
 """
 

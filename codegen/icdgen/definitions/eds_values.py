@@ -1,5 +1,10 @@
 """Numbers of electronic data sheets: arithmetic expressions in attributes, and
 encodings of integers.
+
+`evaluate` returns an expression as an exact fraction, and `integer_value` an attribute
+that must be an integer. `encoded_value` returns the raw value of a number in an integer
+encoding of CCSDS 876.0-B-1, such as BCD. Expressions contain no names: `eds_sheets`
+replaces design parameters by their values before.
 """
 
 from __future__ import annotations

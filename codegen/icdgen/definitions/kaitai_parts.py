@@ -1,4 +1,10 @@
-"""Parts of a message of a .ksy, and the scopes in which expressions refer to them."""
+"""Parts of a message of a .ksy, and the scopes in which expressions refer to them.
+
+`placed` makes a `KaitaiPart` from the field type of an attribute and its position.
+`TypeScope.find_part` finds a preceding part by a path such as ``_parent.length``, and
+`apply_valid` adds constants and limits. `File` is the state that all messages of a file
+share. `kaitai_layout` calls these in the order of the attributes.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,10 @@
 """Reader of SunSpec models (JSON): blocks of 16-bit Modbus registers, most significant
 byte and word first.
+
+`SunSpec.read` returns `Definitions` with one telemetry message per model, with the id
+of the model; repeated groups become arrays of structs. The point types are from the
+SunSpec Device Information Model Specification. A point whose scale factor is in another
+register is imported as a raw value.
 """
 
 from __future__ import annotations

@@ -1,6 +1,10 @@
 """Derived values as statements.
 
 Each statement computes a local variable by one operation on two operands.
+`computation_of` converts the steps of a field (`icdgen.icd.derived`) to such
+statements, with names that are free in the generated function. The C and Rust
+generators print them with `DerivedComputation.expressions`. The Python generator uses
+only the operands: the runtime executes the steps.
 """
 
 from __future__ import annotations

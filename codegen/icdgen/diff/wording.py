@@ -1,4 +1,10 @@
-"""Phrases that messages of changes share: names, sizes, numbers, formulas and types."""
+"""Phrases that messages of changes share: names, sizes, numbers, formulas and types.
+
+Each function takes a value or a field of the model and returns words, such as ``bits 16
+to 31`` for a position (`span`). `formula` writes all formulas in one notation, whatever
+the spelling in the ICD. `some` lists at most `MOST` names and counts the remaining
+ones. Rules, compatibility and reports use these phrases.
+"""
 
 from __future__ import annotations
 

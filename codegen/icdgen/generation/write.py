@@ -1,5 +1,10 @@
 """Writes generated files to a folder: atomically, only if their content changes, and
 never over files of others.
+
+`plan` compares the files of a language with the folder and returns a `WritePlan`;
+`apply` executes it. The manifest (``manifest``) names the files of earlier runs. Such a
+file is overwritten even if a user edited it. If it is no longer generated, it is
+removed only if it was not edited. Other modules write single files with `replace`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """Exclusive use of serial ports and terminals.
 
-Two programs on one line would receive each other's responses.
+Two programs on one line would receive each other's responses. `lock_port` locks an open
+port or raises `PortError`; `busy_error` returns this error with the program that uses
+the port, as far as ``/proc`` of Linux shows it. The lock is advisory: a program that
+does not use `flock` can still open the port.
 """
 
 from __future__ import annotations

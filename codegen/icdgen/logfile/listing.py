@@ -1,4 +1,10 @@
-"""Listing of the contents of a log or a recording, as `icdgen log` prints it."""
+"""Listing of the contents of a log or a recording, as `icdgen log` prints it.
+
+`to_text` lists the frames that the mask of a device's log selects, with its size and
+its first and last time. `recording_text` lists the messages of a recording with their
+numbers. Both return text with notes about damage or errors at the end. The methods
+`listing` in ``log`` call them.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,10 @@
 """Common interface of log files of devices and of recordings of links, for `icdgen
 log`.
+
+`open_log` takes an ICD, a node and a path and returns a `Log`, which gives a listing,
+rows, or a Parquet file. The file is a recording if the link of the node has a packet
+format, otherwise a log of the device. A recording is read twice, and errors in it are
+notes but no damage.
 """
 
 from __future__ import annotations

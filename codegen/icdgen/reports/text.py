@@ -1,5 +1,9 @@
 """Findings as text: the place and message, the line with marks below it, the help, and
 the corrected line.
+
+`report` takes findings and the texts of their files. It returns the findings in the
+given order and then counts them, with ANSI colours on request. ``excerpt`` cuts lines
+and makes the marks; without the text of the file there are none.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Message classes for the client and the procedures of the runtime, made from the
 model.
+
+`ModelMessages` maps ids to classes with the attributes of generated classes, and makes
+each on its first access. `ModelMessage` decodes and encodes frames with the reference
+codec, so no generated code is needed. It has no physical values. ``links`` uses the
+classes for the `Link` of a node.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """Scripts of procedures: timed events, and the next request after each.
 
-``tests/conformance/README.md`` describes them.
+`procedure` runs a procedure of the Python runtime with the events of a JSON request. It
+returns request, deadline and result after each event, and the results of the procedure.
+`event_of` and `row_of` convert events from and to JSON, also for vectors and tests.
+``tests/conformance/README.md`` describes the scripts.
 """
 
 from __future__ import annotations

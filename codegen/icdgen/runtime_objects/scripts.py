@@ -1,6 +1,9 @@
 """Scripts of clients: timed inputs, and the reaction to each.
 
-``tests/conformance/README.md`` describes them.
+`client` (UART, I2C or CAN) and `stream_client` (framed link) run a client of the Python
+runtime with the rows of a JSON request. A row starts or cancels a request, delivers
+received data, or only lets time pass. Each returned step has the output, the events and
+the next deadline. ``tests/conformance/README.md`` describes the scripts.
 """
 
 from __future__ import annotations

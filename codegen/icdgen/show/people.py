@@ -1,5 +1,9 @@
 """Text form of ICDs: the nodes, the messages of a node, or a message, enumeration,
 struct or erratum.
+
+`to_text` takes an ICD and the words of a selection and returns text with tables for
+``icdgen show``. A message has precedence over other items of the same name. ``fields``
+has the table of fields, and ``machine`` the JSON form, which contains everything.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """HTTP server of the site, for this machine only.
 
-It renders the site again if an ICD changes.
+It renders the site again if an ICD changes. `serve` takes the paths of ICDs and serves
+the pages of `icdgen.site.make` from memory until Ctrl+C; it writes no files. Requests
+for any host except localhost are refused. If the ICDs have errors, every page shows the
+findings.
 """
 
 from __future__ import annotations

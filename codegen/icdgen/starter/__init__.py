@@ -1,5 +1,9 @@
 """First ICD of a project, for ``icdgen init``: a commented device that is ready to
 check, generate and simulate.
+
+`write` fills templates of ``templates/init`` with the name of the device. It writes the
+ICD, its errata file, the schema and ``icdgen.toml``, never over an existing file, and
+returns their paths. ``style`` takes links and byte order from another node.
 """
 
 from __future__ import annotations

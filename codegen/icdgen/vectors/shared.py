@@ -1,5 +1,10 @@
 """Frames of ids that several messages share, with the message that each frame belongs
 to.
+
+`shared_rows` yields them for a node, for telecommands and telemetry: frames of each
+message, frames with one inverted bit of a constant, and wrong lengths. The reference
+codec determines the expected message. Ids of a single message are not included; the
+vectors of the message (``make``) test them.
 """
 
 from __future__ import annotations

@@ -1,5 +1,9 @@
 """Rules about names with another meaning, acknowledges, responses, and identification
 of a node.
+
+Each rule receives a pair of nodes, messages or fields and yields a `CheckResult` for
+each change: DIF212, DIF213 and DIF215 to DIF218. ``sense.md`` explains them to users. A
+new name is only a warning: `icdgen.diff.similar` compares words, not meanings.
 """
 
 from __future__ import annotations

@@ -1,5 +1,9 @@
 """Report as one JSON object, a stable format for programs; ``diff.schema.json`` defines
 it.
+
+`report` returns a `DiffReport` as text and `document` returns it as a tree. All changes
+are included, also accepted ones, with their reason. The parameters ``colour``,
+``width`` and ``everything`` exist in all formats and have no effect here.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """Report as Markdown for a pull request.
 
-Names come from the ICDs, so every text passes `escaped`.
+Names come from the ICDs, so every text passes `escaped`. `report` takes a `DiffReport`
+and returns the summary, the compatibility and the changes by layer. No change is
+omitted: compatibility, changes of text and accepted changes are folded (``<details>``).
+The parameters ``colour``, ``width`` and ``everything`` have no effect.
 """
 
 from __future__ import annotations

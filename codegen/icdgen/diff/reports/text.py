@@ -1,4 +1,10 @@
-"""Report for a terminal: the most severe changes first, on one page if possible."""
+"""Report for a terminal: the most severe changes first, on one page if possible.
+
+`report` takes a `DiffReport` and returns text, wrapped to ``width`` and with ANSI
+colours on request. It lists at most `MOST_FRAMES` incompatible frames for each
+question and `MOST_WORDS` changes of text, and omits the explanations of additions.
+The parameter ``everything`` (``icdgen diff --all``) includes all content.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Requests on packed times and the index file."""
+"""Requests on packed times and the index file.
+
+`requests` takes the link and the protocol facts of a node, and a random source. It
+yields requests (``dos_time``, ``index_encode``, ``index_decode``) with their purpose,
+also with dates, sizes and numbers that are invalid. It yields nothing for parts that
+the ICD does not declare. `icdgen.vectors.protocol` adds the expected responses.
+"""
 
 from __future__ import annotations
 

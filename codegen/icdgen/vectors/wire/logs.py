@@ -1,4 +1,10 @@
-"""Requests on log files and unsolicited logs, complete and truncated."""
+"""Requests on log files and unsolicited logs, complete and truncated.
+
+`requests` takes the link and the protocol facts of a node, and a random source. It
+yields requests that encode and decode logs for each mask of `masks`, and requests with
+invalid masks or frames. Nodes without a log mask have none. `icdgen.vectors.protocol`
+adds the expected responses.
+"""
 
 from __future__ import annotations
 

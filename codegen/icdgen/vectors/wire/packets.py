@@ -1,4 +1,10 @@
-"""Requests that split messages into CAN packets and join received packets."""
+"""Requests that split messages into CAN packets and join received packets.
+
+`requests` takes the link and the protocol facts of a node with CAN, and a random
+source. It yields ``can_split`` and ``can_join`` requests for each kind of message and
+length of data. If messages can have several packets, some are lost, repeated, out of
+order or from several senders. `icdgen.vectors.protocol` adds the expected responses.
+"""
 
 from __future__ import annotations
 

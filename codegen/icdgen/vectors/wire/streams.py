@@ -1,4 +1,10 @@
-"""Requests on checksums and on messages in byte streams of the UART."""
+"""Requests on checksums and on messages in byte streams of the UART.
+
+`checksums` is for every link; `encoded` and `streams` are for the escaped framing of
+the UART, and ``framed`` has the requests for links with a packet format. Each yields
+requests with their purpose from the protocol facts and a random source, also for noise,
+missing ends and too long messages. `icdgen.vectors.protocol` adds the responses.
+"""
 
 from __future__ import annotations
 
