@@ -1,5 +1,10 @@
 """Split fields: a field whose parts are listed under ``bitfields``; each part becomes a
 field of the message.
+
+The functions take mappings of a file, because `icdgen.icd.build` needs the parts before
+there is a model. `faults` yields what rule ICD025 reports; a field with faults is not
+split. `first_bit_of_part` converts the position of a part to a bit of the frame, for
+the byte order and bit order in effect.
 """
 
 from __future__ import annotations

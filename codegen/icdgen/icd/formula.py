@@ -1,7 +1,10 @@
 """Exact formulas: convert text to rational coefficients, or to factor and offset if it
 is linear.
 
-Uses no floats.
+Uses no floats. `parse` returns the `Scale` of a linear formula such as ``raw*0.01``,
+`coefficients` the coefficients of a polynomial up to degree 15. Both raise
+`FormulaError`. A formula for the raw value (``raw = value*1000``) is inverted, so it
+must be linear. `expression` has the grammar; `curve` computes in doubles.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Load ICDs: read files with their includes and errata overlays, build the model, and
 check the rules.
+
+`load` takes files or folders and returns a `Loaded`: model, findings, texts and
+fingerprints of the files. Bad input gives findings, never an exception. The rules are
+skipped if a file cannot be read. This module does not depend on the backends;
+`icdgen.loading` passes it the languages whose names the rules check.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Mappings and sequences of a YAML file that store the places of their keys, values and
 items.
+
+`Map` is a dict and `Seq` a list, so code that ignores places reads a tree as usual.
+`icdgen.icd.source` makes them, and objects of the model refer to them as ``source``.
+`Map.at` and `Map.key_at` return the `Place` that a finding shows. `plain` copies a tree
+without places.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Help and fixes for common mistakes in the YAML text and the keys of an ICD."""
+"""Help and fixes for common mistakes in the YAML text and the keys of an ICD.
+
+`of_syntax` and `of_ambiguous` return the help for errors that `icdgen.icd.source`
+reports. `of_key` and `of_value` return a `Remedy` for violations that
+`icdgen.icd.schema` reports, `of_type` the spelling of a value in another type. Most
+results are empty or None if no correction is likely.
+"""
 
 from __future__ import annotations
 

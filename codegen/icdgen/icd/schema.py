@@ -1,5 +1,10 @@
 """Check of ICD files and errata overlays against the JSON Schema, with its violations
 as findings.
+
+`check` validates a tree against one definition of ``schema.json``. It returns findings
+(ICD010) and the id() of each invalid mapping, which `icdgen.icd.build` leaves out of
+the model. Profiles of imports, table files and accepted changes are definitions of the
+same schema. Other functions look up definitions and descriptions of keys.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """Units that every ICD can use without declaring them.
 
-An ICD declares further units with the key `units`.
+An ICD declares further units with the key `units`. `STANDARD` maps each symbol to its
+`Unit`; nothing here converts values. Importers replace the symbols in `SIGNS`.
+`similar_unit` returns the unit that an unknown symbol probably means (rule ICD042).
+`declared` makes the list `units` for imported ICDs.
 """
 
 from __future__ import annotations

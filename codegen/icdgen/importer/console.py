@@ -1,5 +1,8 @@
 """Report of an import as text and as JSON.
 
+`report` and `as_json` take the `Result` of `icdgen.importer.run` and return text;
+`commands/import_.py` prints it. `refused_as_json` reports in the same form why nothing
+can be imported. `summary` is also part of the web page (`html`).
 `import_results/report.py` has the parts that imports of definitions share.
 """
 

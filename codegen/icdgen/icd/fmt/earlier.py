@@ -1,5 +1,10 @@
 """Conversion of ICDs that were written before `protocol.link` took the place of other
 parts of the protocol section.
+
+`convert` changes the tree of the formatter in place and returns whether a key was
+converted. It moves entries with their comments, and moves the reasons in `assumptions`
+to the new places. In errata it changes only paths of sections and printed keys of the
+framing. `earlier_buses` converts the keys of buses.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Spelling of scalars: unquoted if all readers of YAML interpret it as the same text,
 else in double quotes.
+
+`flow` and `key` return a `ScalarText` as text, `block` as lines: texts longer than
+`WIDTH` are folded, texts with line breaks become block scalars if possible. Numbers
+keep their spelling, except for capital letters in hexadecimal digits. Code without a
+tree of the formatter calls `quoted_if_needed`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Access to the trees of the formatter by key, for conversions."""
+"""Access to the trees of the formatter by key, for conversions.
+
+Look-ups take a `Branch` of `commented` or any other value. Without the key, or for
+another kind of value, they return None or an empty list, because files are not checked
+against the schema before a conversion. `part_of` and `move` change the tree; comments
+stay with the entries that they move.
+"""
 
 from __future__ import annotations
 

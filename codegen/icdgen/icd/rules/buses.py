@@ -1,5 +1,10 @@
 """Links on buses: ``packets``, ``commands`` and ``requests`` of a `link` without
 ``framing``.
+
+The rules are ICD095, ICD104, ICD105, ICD117 and ICD175. `responses_on_buses` lists the
+responses that nodes declare, once for each bus (UART, I2C, CAN) on which they apply.
+`KINDS_ON` has the kinds of responses that a bus supports, `NEEDED_ON` the keys that
+they need. `responses` checks the fields that a client compares, as for framed links.
 """
 
 from __future__ import annotations

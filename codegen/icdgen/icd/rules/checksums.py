@@ -1,5 +1,9 @@
-"""Checksums of messages: telecommands that a checksum turns into others, and checksums
-without effect.
+"""Checksums of messages on buses: telecommands that a checksum turns into others.
+
+Rule ICD108 compares the telecommands of two nodes to which the same protocol section
+applies. A telecommand with its checksum can have the id and length of a longer
+telecommand of the other node. `buses` and `frame_checksums` check the declarations of
+checksums, `protocol` the check values.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Composite messages, which repeat other frames, and list tables of the manual, which
 repeat its detail tables.
+
+The rules look at the keys `contains` and `listed` of messages: ICD046 checks that
+repeated frames exist and fit, ICD047 compares each field with its counterpart at the
+same bit, and ICD048 compares the two tables. Names and summaries of fields may differ,
+because manuals abbreviate them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Optional fields: their conditions, and the messages and links that support them."""
+"""Optional fields: their conditions, and the messages and links that support them.
+
+The rules look at fields with the key `when`. `icdgen.icd.conditions` has the checks of
+the names (ICD160) and values (ICD161) in conditions. ICD162 reports fields that cannot
+be optional, such as arrays, and ICD163 links and composite messages, which need every
+field.
+"""
 
 from __future__ import annotations
 

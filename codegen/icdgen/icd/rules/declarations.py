@@ -1,5 +1,10 @@
 """Identifiers that languages declare for a model, without identifiers that originate
 from ICD lines with errors.
+
+`declared_identifiers` returns a `LanguageIdentifiers` for each language of the context.
+It leaves out fields for which an earlier rule reported an error, and nodes, messages
+and structs with a duplicate name: the user will change these lines anyway. The module
+has no rules; `identifiers` has them.
 """
 
 from __future__ import annotations

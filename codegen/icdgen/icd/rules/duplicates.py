@@ -1,4 +1,11 @@
-"""Names and values that must be unique."""
+"""Names and values that must be unique.
+
+The rules compare messages, fields, enumerations and their members, aliases, nodes and
+units (ICD050 to ICD054, ICD057, ICD058, ICD074). Names of messages, enumerations and
+units must be unique in a node with all nodes that it includes; `brings_together`
+decides which node reports a clash. `structs` and `ids` have the rules of structs and
+ids.
+"""
 
 from __future__ import annotations
 

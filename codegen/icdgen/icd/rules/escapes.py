@@ -1,4 +1,10 @@
-"""Framing of `link` by escape characters."""
+"""Framing of `link` by escape characters.
+
+Rule ICD196 reports keys of ``framing`` that have no effect. Without `start`, the first
+byte of a packet follows the escape byte. The rule therefore computes this byte for each
+packet and id, and reports bytes that have another meaning there. ICD096 in
+`protocol_sizes` reports equal characters.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,10 @@
 """Identifiers of generated code: reserved words, clashes and invalid names, in all
 languages at once.
+
+`declarations` lists the identifiers of the languages that the context has. ICD070
+reports reserved words, ICD071 clashes in one scope, ICD072 names that are no
+identifiers. A line of the ICD has many identifiers in each language, so `_Clashes`
+joins their faults to one finding. Files that a backend writes are identifiers, too.
 """
 
 from __future__ import annotations

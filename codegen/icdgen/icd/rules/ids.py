@@ -1,4 +1,10 @@
-"""Message ids: ranges, widths, and messages that share an id."""
+"""Message ids: ranges, widths, and messages that share an id.
+
+The rules take the ids of messages and of entries of `missing`, per direction, in a node
+with the nodes that it includes. `icdgen.icd.variants` decides whether two messages of
+one id can be distinguished. On links that are not framed, only the id identifies a
+message. ICD059 and ICD065 report keys that do not suit the kind of a message.
+"""
 
 from __future__ import annotations
 

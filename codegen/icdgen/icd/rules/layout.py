@@ -1,5 +1,10 @@
 """Layout of messages and structs: positions and widths of fields, overlaps, and bytes
 without a field.
+
+The rules (ICD020 to ICD027 and ICD029) take the lines of the context and positions from
+`icdgen.icd.places`. Overlay fields and fields that are never present together may share
+bits. `_overlaps` compares positions in one pass, or masks of bits if bit orders differ
+or fields are optional. `variable_length` has the rules of variable parts.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Limits of physical values: their order, and the range of the field."""
+"""Limits of physical values: their order, and the range of the field.
+
+The rules take fields with `min`, `above`, `max` or `below` and compute with exact
+fractions. ICD033 reports limits that exclude every value, ICD034 limits that no raw
+value of the field satisfies, and constants outside them. ICD034 does not check floats
+and nonlinear calibrations.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Table of loggable frames: ids, mask bits and the frames that they select."""
+"""Table of loggable frames: ids, mask bits and the frames that they select.
+
+The rules compare the entries of `loggable` with the telemetry of the node and its
+included nodes (ICD043, ICD045), and with each other and the mask (ICD044). `log_mask`
+of the protocol section gives the sizes of mask and frame. A frame listed in `missing`
+counts as existing.
+"""
 
 from __future__ import annotations
 

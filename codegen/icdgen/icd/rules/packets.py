@@ -1,4 +1,10 @@
-"""Packet formats of framed links: ``packets`` and ``requests`` of `link`."""
+"""Packet formats of framed links: ``packets`` and ``requests`` of `link`.
+
+The rules check that each message has one packet (ICD184) and that constants in headers
+distinguish packets (ICD185). They also check requests of telemetry (ICD186, ICD187) and
+units of lengths (ICD188). `framed_links` lists the links and checks single fields,
+`responses` has the responses to telecommands, `buses` the links without framing.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Effects of procedures on objects of the device, such as files."""
+"""Effects of procedures on objects of the device, such as files.
+
+Rule ICD194 looks at the key `effect` of each procedure in the protocol section. It
+checks that an effect has one verb of `EFFECTS` and the keys for it, and that the steps
+can have it. It also checks that inputs and fields that the effect names exist and are
+numbers. `procedures` has the rules of the steps.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,9 @@
 """Protocol section: I2C addresses, check values of checksums, and rows of layouts.
 
-Every key is optional.
+Every key is optional. ICD090 compares the forms of an address, ICD091 compares check
+values of checksums with computed ones, and ICD092 finds overlaps in lists of rows.
+`sections` yields all mappings of the section, also for the rules in other modules, most
+of which are named ``protocol_*``.
 """
 
 from __future__ import annotations

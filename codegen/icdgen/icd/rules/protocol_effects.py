@@ -1,4 +1,10 @@
-"""Protocol section: keys without effect, and roles that a message or field cannot have."""
+"""Protocol section: keys without effect, and roles that a message or field cannot have.
+
+ICD115 looks at `unsolicited_log`. ICD116 checks that fields named by `field` or
+`fields` have a type for their role (`icdgen.icd.roles`) and only one role. ICD118
+checks the types and roles of rows in log formats. `buses`, `packets` and `escapes`
+report keys of `link` without effect.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,9 @@
 """Protocol section: numbers that must fit their bits and bytes, and lists that need
 certain parts.
+
+ICD099 to ICD101 check segments and identifiers of CAN, ICD102 packed time.
+`section_in_effect` returns the section of a node or of a file that it includes,
+`roles_occur_once` checks lists of parts; other modules use both.
 """
 
 from __future__ import annotations

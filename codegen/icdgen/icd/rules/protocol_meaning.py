@@ -1,5 +1,10 @@
-"""Protocol section: directions, message types, acknowledges, buses and packets that a
-receiver could not interpret.
+"""Protocol section: id ranges, names of buses and CAN packets that a receiver could not
+interpret.
+
+ICD103 checks ranges and direction bits of ids, ICD106 that a bus named in ``buses`` is
+declared. ICD107 checks that a message fits a CAN packet, unless it can be segmented.
+ICD107 does not apply to nodes that also have another bus. `buses` has the rules of
+message types and acknowledges.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
-"""Protocol section: names of messages, fields, enumeration members, message types and
-nodes.
+"""Protocol section: names of messages, fields, enumeration members and nodes.
+
+The rules look for the keys in `MESSAGES`, `FIELDS` and `MEMBERS`, `fields` and `nodes`
+at any depth of the section, and report names without a counterpart in the model
+(ICD093, ICD094, ICD109). ICD113 reports fields with orders other than those of the
+node. ICD109 accepts a node that has a file in the same folder. `packets`, `responses`
+and `buses` check names of packets.
 """
 
 from __future__ import annotations

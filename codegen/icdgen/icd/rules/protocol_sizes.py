@@ -1,4 +1,10 @@
-"""Protocol section: numbers that depend on each other, and the keys of assumptions."""
+"""Protocol section: numbers that depend on each other, and the keys of assumptions.
+
+ICD096 reports bytes of a framing with two meanings. ICD097 compares sizes that must
+agree: in CAN identifiers, CAN segments and log masks. ICD098 checks that `assumptions`,
+also those of messages, name keys of the same mapping. `protocol_limits` has the numbers
+that must fit a field.
+"""
 
 from __future__ import annotations
 

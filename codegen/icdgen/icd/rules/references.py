@@ -1,4 +1,10 @@
-"""References of fields and of the protocol section to enumerations and units."""
+"""References of fields and of the protocol section to enumerations and units.
+
+The rules report unknown enumerations (ICD040) and units (ICD042), and unused
+enumerations as a warning (ICD041). A name is searched in the node and the nodes that it
+includes. `undeclared` makes the message and suggests a similar name; `structs` uses it,
+too.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 """Responses to telecommands on framed links: ``commands`` of `link`, and the key
-`response` of messages.
+`response` of messages. The rules are ICD176 to ICD179 and ICD183. `buses` applies
+`declared_responses_in` and `comparison_faults` to links on buses.
 """
 
 from __future__ import annotations

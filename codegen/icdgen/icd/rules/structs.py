@@ -1,4 +1,10 @@
-"""Structs: their uses in messages and other structs, and the keys of their fields."""
+"""Structs: their uses in messages and other structs, and the keys of their fields.
+
+The rules take mappings of the files, because the model leaves out lines with errors,
+and lines of the layout. They report names (ICD049, ICD140), cycles, positions and keys
+of uses (ICD141 to ICD143), unused structs (ICD144), split fields (ICD145) and variable
+lengths (ICD146). `layout` has the rules of fields within structs.
+"""
 
 from __future__ import annotations
 

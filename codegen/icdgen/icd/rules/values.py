@@ -1,5 +1,10 @@
 """Values of a field: enumeration members, constants and special values must be in its
 range.
+
+The rules take the keys `enum`, `const` and `special` of fields (ICD030 to ICD032). They
+compare raw values with the range that type and width give. ICD035 reports ranges with
+fewer than two values, ICD036 a `display` that does not suit the type. `limits` has the
+rules of physical values.
 """
 
 from __future__ import annotations

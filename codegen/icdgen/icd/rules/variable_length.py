@@ -1,5 +1,10 @@
 """Messages of variable length: counters, positions and links; frames that may end
 early.
+
+`icdgen.icd.variable_length` has the checks of the counter (ICD120) and position
+(ICD121) of one field. ICD122 reports variable lengths on links and in composite
+messages, which need one length per message. ICD150 checks `may_end_early`. `structs`
+has the rule of variable lengths in structs.
 """
 
 from __future__ import annotations

@@ -1,6 +1,9 @@
 """Reading of text with tab-separated tables.
 
-Page breaks are blank lines within tables, and can divide a row.
+Page breaks are blank lines within tables, and can divide a row. `read` takes a file in
+UTF-8 and a profile, and returns a `Document`. A line with tabs is a row. Any other line
+with text ends the table and is a caption, heading or text. Form feeds count pages; code
+blocks (```) are ignored. `reading` calls it for files of no other kind.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Tables that list messages or the frames of logs, and enumerations that descriptions
 refer to by name.
+
+`list_of`, `log_of` and `enumeration_of` return a `TableResult`. `interpret` calls the
+first two with the roles of the rows of one table, `build` the third with a part that
+was read. Rows without a name, id or bit are reported (IMP103) and left out. `assemble`
+assigns the results to nodes.
 """
 
 from __future__ import annotations

@@ -1,5 +1,10 @@
 """Profile of the workbench while some of its rules have errors: their last valid forms
 are applied instead.
+
+`read_profile` takes the text of a profile and returns a `ValidProfile`: the profile
+without errors, the errors by rule, and the last valid form of each rule. The tables of
+a rule that never was valid are ignored. The text of the user is not changed. `session`
+calls it after each change.
 """
 
 from __future__ import annotations
