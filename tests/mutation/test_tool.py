@@ -57,17 +57,26 @@ def test_a_changed_module_is_python_with_the_same_lines():
         ast.parse(planted)
 
 
-def test_other_processes_load_the_module_with_the_fault(tmp_path):
+@pytest.mark.parametrize(
+    "program",
+    [
+        "from icdgen import suggest; print(suggest.close_to('a', []))",
+        # as a generator does that copies a runtime into a package
+        "print(eval(__import__('pathlib').Path(FILE).read_text().split('return ')[1]))",
+    ],
+    ids=["import", "read"],
+)
+def test_other_processes_get_the_module_with_the_fault(program, tmp_path):
     """This includes processes that a test starts, such as `icdgen`."""
+    file = ROOT / "codegen/icdgen/suggest.py"
     changed = tmp_path / "changed.py"
     changed.write_text("def close_to(*_):\n    return 'planted'\n", encoding="utf-8")
     environment = os.environ | {
         "PYTHONPATH": str(PLANTING),
-        "ICDGEN_PLANTED": f"{ROOT / 'codegen/icdgen/suggest.py'}{os.pathsep}{changed}",
+        "ICDGEN_PLANTED": f"{file}{os.pathsep}{changed}",
     }
-    program = "from icdgen import suggest; print(suggest.close_to('a', []))"
     ran = subprocess.run(
-        [sys.executable, "-c", program],
+        [sys.executable, "-c", f"FILE = {str(file)!r}; {program}"],
         env=environment,
         capture_output=True,
         text=True,
