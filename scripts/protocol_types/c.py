@@ -71,10 +71,6 @@ def _type(fact: ProtocolFact) -> str:
         return _TYPES[fact.kind]
     if fact.is_optional and fact.least == 0 and not has_presence_flag(fact):
         return "int16_t " if fact.holds <= U16 // 2 else "int32_t "
-    return (
-        "uint8_t "
-        if fact.holds <= BYTE
-        else "uint16_t "
-        if fact.holds <= U16
-        else "uint32_t "
-    )
+    if fact.holds <= BYTE:
+        return "uint8_t "
+    return "uint16_t " if fact.holds <= U16 else "uint32_t "
