@@ -2,6 +2,8 @@
 """Frames of different lengths.
 
 Each is converted to or from the longest frame, which the compiled functions process.
+`decoder`, `filling_decoder` and `encoder` return the methods ``from_bytes`` and
+``to_bytes`` of a class. They raise `LengthError` if the length is not possible.
 """
 
 from __future__ import annotations

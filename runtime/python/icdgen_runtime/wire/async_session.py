@@ -1,4 +1,8 @@
-"""Client over asyncio streams."""
+"""Client over asyncio streams.
+
+`AsyncSession` adds two streams and a clock to `client`, and waits until a request has
+ended, while other tasks use the same session. `session` has the same for threads.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""CRC checksums, also of data in several pieces."""
+"""CRC checksums, also of data in several pieces.
+
+``Crc(form).feed(data).result()`` returns the CRC. The form has the width, polynomial,
+initial value, bit orders and final XOR of the ICD. `checks` uses it for packets.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
 """Events of a client.
 
-Every request ends with one of `Done`, `Sent`, `Refused`, `Busy` and `Timeout`.
+Every request ends with one of `Done`, `Sent`, `Refused`, `Busy` and `Timeout`; before
+it, there may be `Progress` and `Reply`. `Arrived`, `Log`, `Late`, `Stray`, `Lost` and
+`Gap` come without a waiting request. `LineError` is an error that a decoder detected.
 """
 
 from __future__ import annotations

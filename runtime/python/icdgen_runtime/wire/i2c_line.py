@@ -1,4 +1,8 @@
-"""Line of I2C: each request is a transaction whose result is reported."""
+"""Line of I2C: each request is a transaction whose result is reported.
+
+`I2cLine.take` returns the transactions for the application, which carries them out on
+its bus. With the read bytes, `arrival` returns the response or the error for `client`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Engine of procedures: it runs the steps of the ICD, above any client."""
+"""Engine of procedures: it runs the steps of the ICD, above any client.
+
+A `Procedure` takes the events of a client and returns the next request, as `next` and
+`event` say. It has no clock and no port. The steps, such as `Send` and `Poll`, are data
+of the link; `procedure_forms` defines them.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Delimited frames: SLIP (RFC 1055), asynchronous HDLC (RFC 1662), COBS, and escape
 characters.
+
+`stuffed` adds the delimiters to a frame. `unstuffer` returns the object that finds the
+frames in received bytes; links without delimiters have none. It checks no checksum.
 """
 
 from __future__ import annotations
