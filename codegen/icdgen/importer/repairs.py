@@ -12,6 +12,7 @@ from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import SourceCell, SourceRow, SourceTable
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import printed_integer
+from icdgen.wording import count
 
 
 def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFinding]:
@@ -21,16 +22,16 @@ def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFindi
     notes = []
     for table in tables:
         for entry in profile.data["damage"]:
-            count = 0
+            repairs = 0
             if "printed" in entry:
                 pattern = re.compile(rf"(?<!\w){re.escape(entry['printed'])}(?!\w)")
                 for cell in (cell for row in table.rows for cell in row.cells):
                     cell.text, times = pattern.subn(
                         entry["meant"].replace("\\", r"\\"), cell.text
                     )
-                    count += times
-                if count:
-                    what = f"`{entry['printed']}` is taken for `{entry['meant']}` {count} times"
+                    repairs += times
+                if repairs:
+                    what = f"`{entry['printed']}` is taken for `{entry['meant']}` {count(repairs, 'time')}"
                     notes.append(_mended(f"{table.title}: {what}", table.spot))
             elif entry.get("table") == table.label and "group" in entry:
                 for index, row in enumerate(table.rows):
