@@ -454,3 +454,21 @@ def test_each_change_of_elements_behind_a_variable_part_fails_the_vectors_that_t
     for number, change in enumerate(behind):
         assert change["vectors"], change
         assert_listed_vectors_fail(pack, change, tmp_path / str(number))
+
+
+WITHIN = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: msb0}
+structs:
+  - {name: Cell, length: 1, fields: [{at: 0, bits: 8, name: Charge, type: uint}]}
+  - {name: Pack, length: 3, fields: [{at: 0, name: Cells, struct: Cell, count: 2}]}
+messages:
+  - {name: Status, id: 130, kind: telemetry, length: 3, fields: [{at: 0, name: Main, struct: Pack}]}
+"""
+
+
+def test_changes_of_a_struct_within_another_struct_are_detected(tmp_path):
+    (tmp_path / "demo.yaml").write_text(WITHIN, "utf-8")
+    changes = Pack(tmp_path).changes
+    assert {change["name"] for change in changes} >= {"Cells", "Charge"}
+    assert [change["name"] for change in changes if not change["vectors"]] == []

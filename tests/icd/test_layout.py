@@ -11,10 +11,12 @@ import pytest
 from icdgen.icd import pieces as bits
 from icdgen.icd.frames import flatten
 from icdgen.icd.layout import Array, Layout, Orders, Overlay, Scalar, StructRef
+from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
 from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Icd, Message, Node
 from tests.conformance.icds import read_unchecked
 from tests.conftest import ROOT
+from tests.icd.files import loaded
 
 SETS = [
     "icd",
@@ -268,3 +270,49 @@ def test_layouts_of_an_icd_are_the_same_from_the_cache(tmp_path: Path):
         declared = {id(struct.layout) for struct in node.structs}
         for message in node.messages:
             assert {id(layout) for layout in structs_of(message.layout)} <= declared
+
+
+NESTED = """\
+structs:
+  - {name: Cell, length: 1, fields: [{at: 0, bits: 8, name: Charge, identifier: Level, type: uint}]}
+  - {name: Pack, length: 2, fields: [{at: 0, name: Cells, struct: Cell, count: 2}]}
+messages:
+  - name: Status
+    id: 1
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, name: Main Pack, identifier: Main, struct: Pack}
+      - {at: 16, name: Spare, struct: Pack}
+      - {at: 32, bits: 8, name: Mode, type: uint}
+"""
+
+
+def test_identifiers_replace_the_names_of_the_nodes_on_the_path_that_have_them(
+    tmp_path,
+):
+    (message,) = loaded(tmp_path, NESTED).icd.nodes[0].messages
+    fields = flatten(message.layout, Orders("little", "lsb0"))
+    assert [(field.name, field.alias) for field in fields] == [
+        ("Main Pack.Cells[0].Charge", "Main.Cells[0].Level"),
+        ("Main Pack.Cells[1].Charge", "Main.Cells[1].Level"),
+        ("Spare.Cells[0].Charge", "Spare.Cells[0].Level"),
+        ("Spare.Cells[1].Charge", "Spare.Cells[1].Level"),
+        ("Mode", None),
+    ]
+
+
+def test_a_changed_struct_changes_the_messages_that_use_it_within_other_structs(
+    tmp_path,
+):
+    (node,) = loaded(tmp_path, NESTED).icd.nodes
+    (message,), (cell, _) = node.messages, node.structs
+    (charge,) = cell.layout.fixed
+    signed = with_node(cell.layout, charge, with_attributes(charge, type="int"))
+    layout = with_struct_layout(message.layout, cell.layout, signed)
+    before, after = (
+        [field.type for field in flatten(each, node.orders)]
+        for each in (message.layout, layout)
+    )
+    assert (before, after) == (["uint"] * 5, ["int"] * 4 + ["uint"])
+    assert with_struct_layout(layout, cell.layout, signed) is layout

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import binascii
+import re
 import tempfile
 import zlib
 from fractions import Fraction
@@ -191,3 +192,36 @@ def test_a_check_value_of_zero_is_compared_as_any_other(
         f"protocol: {{link: {{checksums: {{crc: {{{checksum}, check: {check}}}}}}}}}\n"
     )
     assert ("ICD091" not in codes(tmp_path, text)) == is_right
+
+
+RANGES = st.lists(
+    st.tuples(st.integers(0, 20), st.integers(0, 6)), min_size=2, max_size=6
+)
+
+
+@FEW
+@given(RANGES)
+def test_every_member_that_shares_a_value_with_another_is_named(ranges):
+    """The member that is named second is the later in the file."""
+    values = [set(range(first, first + more + 1)) for first, more in ranges]
+    members = "".join(
+        f"      - {{value: {first}{f', to: {first + more}' if more else ''}, name: M{n}}}\n"
+        for n, (first, more) in enumerate(ranges)
+    )
+    enum = f"enums:\n  - name: Mode\n    members:\n{members}"
+    mode = "at: 0, bits: 16, name: Mode, type: enum, enum: Mode"
+    with tempfile.TemporaryDirectory() as folder:
+        reported = findings(Path(folder), enum + status(mode))
+    pattern = r"`M(\d+)` \(line (\d+)\) already has the value (\d+)"
+    named = set()
+    for finding in reported:
+        first, line, value = map(int, re.fullmatch(pattern, finding.message).groups())
+        second = first + finding.place.line - line
+        assert first < second and value in values[first] & values[second]
+        named |= {first, second}
+    assert named == {
+        n
+        for n, own in enumerate(values)
+        if any(own & other for m, other in enumerate(values) if m != n)
+    }
+    assert {finding.code for finding in reported} <= {"ICD053"}
