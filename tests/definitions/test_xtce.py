@@ -597,3 +597,19 @@ def test_messages_with_equal_names_get_unique_names(lander):
     assert [message["name"] for message in lander.trees["lander"]["messages"]].count(
         "Power"
     ) == 1
+
+
+@pytest.mark.parametrize(
+    ("stated", "most"), [(0, 1), (1, 1), (5, 5), (255, 255), (300, 255)]
+)
+def test_an_array_has_at_most_the_number_of_elements_that_its_parameter_states(
+    stated, most, tmp_path
+):
+    plain = '<Parameter name="D" parameterTypeRef="data"/>'
+    data = f'<AncillaryData name="ICD up_to">{stated}</AncillaryData>'
+    limited = f"{plain[:-2]}><AncillaryDataSet>{data}</AncillaryDataSet></Parameter>"
+    text = counted(value(1, -1))
+    assert plain in text
+    (tmp_path / "one.xml").write_text(text.replace(plain, limited))
+    read = run.read(tmp_path / "one.xml", xtce.Xtce())
+    assert field(read, "A", "D")["up_to"] == most

@@ -91,3 +91,20 @@ def test_a_program_that_takes_no_uploads_refuses_their_telecommands():
     outcome = running.take(0, bytes([PACKET, 0, 0]) + bytes(20), "uart")
     assert (outcome.code, outcome.is_answered) == (REASONS["unknown_id"], False)
     assert running.storage.objects_of("program") == {}
+
+
+@pytest.mark.parametrize(
+    ("setting", "boots_at"), [(None, BOOT.boot_ms), (0, 0), (1, 1), (70, 70)]
+)
+def test_a_boot_program_starts_its_application_after_the_time_of_the_setting(
+    setting, boots_at
+):
+    """Without a setting, after the time of the ICD."""
+    settings = SimulationSettings(boot_ms=setting)
+    booting = Computer(ICD, ICD.node("bootloader"), settings, DeviceStorage())
+    assert booting.boot_at == booting.deadline == boots_at
+    if boots_at:
+        booting.tick(boots_at - 1)
+        assert booting.program.node.name == "bootloader"
+    booting.tick(boots_at)
+    assert (booting.program.node.name, booting.boot_at) == ("cubeacp", None)
