@@ -6,8 +6,10 @@ Texts of the ICD are harmless in comments and string literals.
 from __future__ import annotations
 
 import dataclasses
+import posixpath
 import re
 import subprocess
+from pathlib import PurePosixPath
 
 import pytest
 
@@ -20,6 +22,7 @@ from icdgen.icd.model import Icd
 from icdgen.loading import load
 from tests.c import harness, odd
 from tests.conftest import ROOT
+from tests.icd.files import loaded, status
 
 
 def files(icd: Icd) -> dict[str, str]:
@@ -240,3 +243,49 @@ def test_a_bitmap_has_a_bit_for_each_packet_of_the_largest_block(
         "READ_BITMAP_BYTES": f"{bitmap}",
         "WRITE_BITMAP_BYTES": f"{bitmap}",
     }
+
+
+WIDE = """\
+structs:
+  - {name: Position, length: 8, fields: [{at: 0, bits: 64, name: Angle, type: uint, formula: raw*FACTOR, unit: deg}]}
+"""
+USES = "at: 0, name: Position, struct: Position"
+
+
+@pytest.mark.parametrize(
+    ("factor", "support"),
+    [("0.5", "icdgen.h"), ("123456789012345678/1000000000000000007", "icdgen_wide.h")],
+)
+def test_every_header_that_a_struct_includes_is_generated(tmp_path, factor, support):
+    text = WIDE.replace("FACTOR", factor) + status(USES, length=8)
+    generated = files(loaded(tmp_path, text).icd)
+    assert f'#include "../{support}"' in generated["demo/position.h"]
+    for name, header in generated.items():
+        folder = PurePosixPath(name).parent
+        for included in re.findall(r'^#include "(.*)"', header, re.M):
+            assert posixpath.normpath(folder / included) in generated, name
+
+
+LIMITS = """\
+protocol:
+  link:
+    buses:
+      uart:
+        framing: {by: escape, escape: 16, start: 2, end: 3, data: 16, other: ignore, escaped_in: [data]}
+messages:
+  - {name: First, kind: telecommand, id: 0, length: 0}
+  - {name: Last, kind: telecommand, id: 255, length: 0}
+  - {name: Early, kind: telemetry, id: 0, length: 1, fields: [{at: 0, bits: 8, name: Level, type: uint}]}
+  - {name: Late, kind: telemetry, id: 255, length: 1, fields: [{at: 0, bits: 8, name: Level, type: uint}]}
+"""
+
+
+def test_a_client_can_send_and_receive_the_first_and_the_last_id(tmp_path):
+    link = files(loaded(tmp_path, LIMITS).icd)["demo/link.c"]
+    rows = re.findall(r"^    \{(\d+)u, \w+, (\d+)u\}, /\* (\w+) \*/$", link, re.M)
+    assert rows == [
+        ("0", "0", "First"),
+        ("255", "0", "Last"),
+        ("0", "1", "Early"),
+        ("255", "1", "Late"),
+    ]

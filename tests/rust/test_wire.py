@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import random
 
+import pytest
+
 from tests import links
 from tests.conformance import wire_random
 from tests.rust import harness
@@ -67,3 +69,28 @@ def test_a_crate_without_a_protocol_has_no_wire_layer(strange):
         for name, text in harness.texts(strange.icd).items()
         if "wire" in name or "crate::wire" in text
     ]
+
+
+ESCAPED = """\
+icdgen: 1
+node: {name: small, title: Small node, byte_order: big, bit_order: msb0}
+protocol:
+  link:
+    framing: {by: escape, escape: 0x10, START end: 0x03, data: 0x10}
+    header: [{bits: 8, role: id}]
+messages:
+  - {name: Ping, kind: telecommand, id: 16, length: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("start", "value"),
+    [("", "None"), ("start: 0x00,", "Some(0x00)"), ("start: 0xFF,", "Some(0xff)")],
+)
+def test_packets_begin_with_the_start_byte_of_the_icd_if_it_has_one(
+    start, value, tmp_path
+):
+    (tmp_path / "small.yaml").write_text(ESCAPED.replace("START", start))
+    texts = harness.texts(harness.read_unchecked(tmp_path / "small.yaml"))
+    link = " ".join(texts["src/wire/links/small.rs"].split())
+    assert f"escape: 0x10, start: {value}, end: 0x03, data: 0x10" in link
