@@ -48,6 +48,19 @@ COVERING: dict[str, tuple[str, ...]] = {
         *_MESSAGES,
         *_LINKS,
     ),
+    "codegen/icdgen/backends/c/__init__.py": (
+        "tests/c/test_output.py",
+        "tests/c",
+        "tests/test_symbols.py",
+        *_MESSAGES,
+        *_LINKS,
+    ),
+    "codegen/icdgen/backends/c/links.py": (
+        "tests/c/test_output.py",
+        *_LINKS,
+        "tests/c",
+        "tests/test_symbols.py",
+    ),
     "codegen/icdgen/backends/c_selftest/": ("tests/c/test_cmake.py", "tests/features"),
     "codegen/icdgen/backends/html/": ("tests/site",),
     "codegen/icdgen/backends/html/errata.py": (
@@ -74,6 +87,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         *_MESSAGES,
         *_LINKS,
     ),
+    "codegen/icdgen/backends/rust/streams.py": (
+        "tests/rust/test_wire.py",
+        *_LINKS,
+        "tests/rust",
+    ),
     "codegen/icdgen/backends/tables/": ("tests/show", "tests/features"),
     "codegen/icdgen/backends/vectors.py": ("tests/vectors",),
     "codegen/icdgen/backends/xtce/": ("tests/xtce",),
@@ -94,6 +112,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/definitions/test_can_shapes.py",
         "tests/definitions",
     ),
+    "codegen/icdgen/definitions/xtce_parts.py": (
+        "tests/definitions/test_xtce.py",
+        "tests/definitions",
+        "tests/devices",
+    ),
     "codegen/icdgen/describe/": ("tests/describe", "tests/generation", *_MESSAGES),
     "codegen/icdgen/diagnostics.py": ("tests/reports", "tests/wrong"),
     "codegen/icdgen/diff/": ("tests/diff",),
@@ -105,7 +128,23 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/generation/": ("tests/generation", "tests/cli/test_generate.py"),
     "codegen/icdgen/icd/": ("tests/icd", "tests/wrong", "tests/values"),
     "codegen/icdgen/icd/fmt/": ("tests/fmt", "tests/cli/test_format_page.py"),
+    "codegen/icdgen/icd/frames.py": (
+        "tests/icd/test_layout.py",
+        "tests/icd",
+        "tests/wrong",
+        "tests/values",
+    ),
+    "codegen/icdgen/icd/layout_copies.py": (
+        "tests/icd/test_layout.py",
+        "tests/diff/test_attributes.py",
+        "tests/assurance",
+    ),
     "codegen/icdgen/icd/rules/": ("tests/wrong", "tests/icd"),
+    "codegen/icdgen/icd/rules/duplicates.py": (
+        "tests/icd/test_rules.py",
+        "tests/wrong",
+        "tests/icd",
+    ),
     "codegen/icdgen/import_results/": ("tests/importer", "tests/definitions"),
     "codegen/icdgen/importer/": ("tests/importer",),
     "codegen/icdgen/importer/reading/pdf.py": (
