@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from icdgen.diff import rule
+from icdgen.diff.change import Change
 from icdgen.diff.compare import RULES, compare
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.report import make_report
@@ -126,3 +127,45 @@ def test_another_byte_order_is_a_note_only_if_it_concerns_no_field(
         assert loaded.findings == []
         sides.append(loaded.icd)
     assert [change.code for change in compare(*sides).changes] == codes
+
+
+def changes_between(folder: Path, before: str, after: str) -> dict[str, Change]:
+    """Return the changes between two ICDs by code."""
+    sides = []
+    for text in (before, after):
+        loaded = load([write(folder, text)])
+        assert loaded.findings == []
+        sides.append(loaded.icd)
+    return {change.code: change for change in compare(*sides).changes}
+
+
+FIRST, SECOND, THIRD, FOURTH = (
+    f"at: {8 * number}, bits: 8, name: Field {number}, type: uint"
+    for number in range(4)
+)
+
+
+@pytest.mark.parametrize(
+    ("after", "is_unchanged"),
+    [((FIRST, THIRD, FOURTH), True), ((FIRST, SECOND, THIRD, FOURTH), False)],
+    ids=["new only at the end", "new also between"],
+)
+def test_the_first_bytes_of_a_longer_message_are_unchanged_if_no_field_of_them_is(
+    tmp_path, after, is_unchanged
+):
+    shorter = status(FIRST, THIRD, length=3)
+    changes = changes_between(tmp_path, shorter, status(*after, length=4))
+    details = changes["DIF106"].details
+    assert ("The first 3 bytes are as they were." in details) == is_unchanged
+
+
+def test_limits_that_a_field_gets_or_loses_are_constants_that_appear_or_vanish(
+    tmp_path,
+):
+    level = "at: 0, bits: 16, name: Level, type: uint, unit: m"
+    free, limited = status(level), status(f"{level}, min: 0, max: 100")
+    new = changes_between(tmp_path, free, limited)["DIF308"]
+    gone = changes_between(tmp_path, limited, free)["DIF308"]
+    assert "Python: `LEVEL_MIN` and `LEVEL_MAX`" in new.details
+    assert gone.details == new.details
+    assert "are new" in new.message and "are new" not in gone.message

@@ -13,7 +13,7 @@ C = """\
 static void f(const uint8_t *buffer) {
     demo_estimated_roll_t state;
     demo_estimated_roll_decode(&state, buffer, 3);
-    printf("demo_estimated_roll_roll_angle_deg %f", demo_estimated_roll_roll_angle_deg(&state)); // roll_angle
+    printf("demo_estimated_roll_roll_angle_deg \\" roll_angle %f", demo_estimated_roll_roll_angle_deg(&state)); // roll_angle
     int16_t raw = state.roll_angle;
     send(DEMO_SET_ROLL_ID);
 }

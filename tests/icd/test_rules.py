@@ -225,3 +225,30 @@ def test_every_member_that_shares_a_value_with_another_is_named(ranges):
         if any(own & other for m, other in enumerate(values) if m != n)
     }
     assert {finding.code for finding in reported} <= {"ICD053"}
+
+
+@pytest.mark.parametrize("value", range(3))
+def test_a_field_that_depends_on_another_constant_is_never_present(value, tmp_path):
+    for needed in range(3):
+        text = status(
+            f"at: 0, bits: 8, name: Fixed, type: uint, const: {value}",
+            f"at: 8, bits: 8, name: Extra, type: uint, when: {{Fixed: {needed}}}",
+        )
+        assert codes(tmp_path, text) == ["ICD161"] * (needed != value)
+
+
+# Parts of the protocol section that consist of rows with roles.
+PARTS_OF_ROWS = {
+    "index_file: {{entry_bytes: 4, entry: [{}]}}": "size",
+    "telemetry_log: {{header: [{}]}}": "mask",
+    "telemetry_log: {{entry: [{}]}}": "time",
+    "unsolicited_log: {{id: 255, message: [{}], frames_byte: 4}}": "id",
+}
+
+
+@pytest.mark.parametrize("part", PARTS_OF_ROWS)
+def test_a_row_with_a_type_that_cannot_be_read_is_reported(part, tmp_path):
+    row = f"{{byte: 0, bytes: 4, name: Row, role: {PARTS_OF_ROWS[part]}, type: float}}"
+    text = "protocol:\n  " + part.format(row) + "\n"
+    messages = [f.message for f in findings(tmp_path, text) if f.code == "ICD118"]
+    assert any("not as float" in message for message in messages)
