@@ -61,7 +61,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/c",
         "tests/test_symbols.py",
     ),
-    "codegen/icdgen/backends/c_selftest/": ("tests/c/test_cmake.py", "tests/features"),
+    "codegen/icdgen/backends/c_selftest/": (
+        "tests/c/test_selftest.py",
+        "tests/c/test_cmake.py",
+        "tests/features",
+    ),
     "codegen/icdgen/backends/html/": ("tests/site",),
     "codegen/icdgen/backends/html/errata.py": (
         "tests/site/test_long_lists.py",
