@@ -130,6 +130,10 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/fingerprints.py": ("tests/cli/test_cached_models.py",),
     "codegen/icdgen/frozen.py": ("tests/test_frozen.py",),
     "codegen/icdgen/generation/": ("tests/generation", "tests/cli/test_generate.py"),
+    "codegen/icdgen/generation/generate.py": (
+        "tests/cli/test_generate.py",
+        "tests/generation",
+    ),
     "codegen/icdgen/icd/": ("tests/icd", "tests/wrong", "tests/values"),
     "codegen/icdgen/icd/fmt/": ("tests/fmt", "tests/cli/test_format_page.py"),
     "codegen/icdgen/icd/frames.py": (

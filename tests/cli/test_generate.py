@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -94,6 +95,27 @@ def test_a_dependency_file_names_outputs_and_all_inputs(icdgen, demo, tmp_path):
     assert (str(demo) in needs and str(overlay) in needs) or (
         "icd/demo.yaml" in needs and "icd/errata/demo.yaml" in needs
     )
+
+
+@pytest.mark.parametrize(
+    ("folder", "written"),
+    [
+        ("my icds", r"my\ icds"),
+        ("my\\icds", r"my\\icds"),
+        ("icds \\#1", r"icds\ \\\#1"),
+        ("cost$", "cost$$"),
+        ("c:icds", r"c\:icds"),
+    ],
+)
+def test_paths_in_a_dependency_file_have_the_syntax_of_make(
+    icdgen, demo, tmp_path, folder, written
+):
+    demo.parent.rename(tmp_path / folder)
+    icd = os.path.join(folder, demo.name)
+    icdgen("--lang", "c", "--out", f"{folder}/out", "--depfile", "out.d", icd)
+    names = re.split(r":? \\\n  ", (tmp_path / "out.d").read_text().rstrip("\n"))
+    assert f"{written}/out/demo.h" in names
+    assert any(name.endswith(f"{written}/demo.yaml") for name in names)
 
 
 def test_icdgen_toml_sets_icds_languages_and_folder(icdgen, demo, tmp_path):
