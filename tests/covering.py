@@ -163,6 +163,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/importer/rules/test_sources.py",
         "tests/importer",
     ),
+    "codegen/icdgen/importer/rules/attach.py": (
+        "tests/importer/rules/test_enumerations.py",
+        "tests/importer/rules/test_rules.py",
+        "tests/importer",
+    ),
     "codegen/icdgen/link/": ("tests/sim", "tests/devices"),
     "codegen/icdgen/link_calls.py": ("tests/protocol", *_LINKS),
     "codegen/icdgen/logfile/": ("tests/log",),

@@ -117,3 +117,37 @@ def test_the_fields_of_bits_have_enumerations_and_these_the_source_of_their_tabl
     assert not [
         finding for finding in result.import_findings if finding.severity == "error"
     ]
+
+
+def test_each_of_several_tables_of_values_belongs_to_the_message_above_it(tmp_path):
+    text = "".join(
+        f"{name} ({id})\n\nByte\tName\tType\n0\tMode\tuint8\n\n"
+        f"Values:\n\nValue\tMeaning\n{values}\n"
+        for id, (name, values) in enumerate(
+            {
+                "Pump": "0\tOff\n1\tOn\n",
+                "Valve": "2\tClosed\n3\tOpen\n",
+                "Heater": "4\tCold\n5\tWarm\n",
+            }.items(),
+            start=1,
+        )
+    )
+    rules = r"""rules:
+  - tables: {head: Byte | Name | Type}
+    message: {before: '^{message} \({id}\)', kind: telemetry}
+    columns: {Byte: byte, Name: name, Type: type}
+  - tables: {head: Value | Meaning}
+    what: enumeration
+    message: {of: Mode}
+    columns: {Value: value, Meaning: member}
+"""
+    _, tree = read(tmp_path, text, rules)
+    members = enumerations(tree)
+    assert {
+        message["name"]: members[message["fields"][0]["enum"]]
+        for message in tree["messages"]
+    } == {
+        "Pump": ["Off", "On"],
+        "Valve": ["Closed", "Open"],
+        "Heater": ["Cold", "Warm"],
+    }
