@@ -175,6 +175,12 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/naming.py": ("tests/test_naming.py", "tests/test_symbols.py"),
     "codegen/icdgen/procedures/": ("tests/procedures", "tests/sim", "tests/vectors"),
     "codegen/icdgen/protocol/": ("tests/protocol", "tests/vectors", *_LINKS),
+    "codegen/icdgen/protocol/reading.py": (
+        "tests/protocol/test_logs_and_files.py",
+        "tests/protocol",
+        "tests/vectors",
+        *_LINKS,
+    ),
     "codegen/icdgen/recognize/": ("tests/recognize", "tests/log"),
     "codegen/icdgen/render.py": ("tests/generation",),
     "codegen/icdgen/reports/": ("tests/reports", "tests/wrong"),

@@ -17,7 +17,30 @@ from icdgen_runtime.wire.logs import LogFrame, LogMessage, LogReader
 from icdgen_runtime.wire.times import DosTime, dos_time_pack, dos_time_unpack
 
 from tests import links
+from tests.icd.files import loaded
 from tests.protocol import cut, quick
+
+# The frame of the included node is longer than the slots of the node.
+CUT_FRAMES = """\
+include: [common.yaml]
+protocol:
+  log_mask: {bytes: 1, frame_bytes: 2}
+  telemetry_log:
+    header: [{byte: 0, bytes: 1, name: Mask, role: mask, type: bytes}]
+    entry:
+      - {byte: 0, bytes: 4, name: Seconds, role: seconds, type: uint}
+      - {byte: 4, bytes: 2, name: Milliseconds, role: milliseconds, type: uint}
+    frames_byte: 6
+loggable: [{bit: 1, id: 131}]
+messages:
+  - {name: Brief, id: 131, kind: telemetry, length: 2}
+# common.yaml
+icdgen: 1
+node: {name: common, title: Common, byte_order: little, bit_order: lsb0}
+loggable: [{bit: 0, id: 130}]
+messages:
+  - {name: Wide, id: 130, kind: telemetry, length: 4}
+"""
 
 
 def mask(*bits: int) -> bytes:
@@ -37,6 +60,14 @@ def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(link):
     assert len(file) == 10 + 6 * 3
     (entry,) = LogReader(link).feed(file)
     assert entry.frames == (LogFrame(2, None, b"free!!"), LogFrame(21, 171, b"four"))
+
+
+def test_a_frame_longer_than_its_slot_ends_with_the_slot(tmp_path):
+    icd = loaded(tmp_path, CUT_FRAMES).icd
+    reader = LogReader(links.link(icd, "demo"))
+    assert reader.feed(b"\x03" + b"\x05\0\0\0\x07\0" + b"wibr") == [
+        (5, 7, (LogFrame(0, 130, b"wi"), LogFrame(1, 131, b"br")))
+    ]
 
 
 @quick
