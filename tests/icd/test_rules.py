@@ -252,3 +252,20 @@ def test_a_row_with_a_type_that_cannot_be_read_is_reported(part, tmp_path):
     text = "protocol:\n  " + part.format(row) + "\n"
     messages = [f.message for f in findings(tmp_path, text) if f.code == "ICD118"]
     assert any("not as float" in message for message in messages)
+
+
+@pytest.mark.parametrize("width", [8, 16, 24, 32])
+def test_values_of_a_checksum_have_at_most_its_bits(width, tmp_path):
+    """At all widths, up to the largest."""
+    for value, codes_of_value in ((1 << width) - 1, []), (1 << width, ["ICD173"]):
+        text = f"""\
+protocol:
+  link:
+    framing: {{by: slip}}
+    header: [{{at: 0, bits: 8, role: id}}]
+    trailer:
+      - {{at: 0, bits: {width}, role: checksum, checksum: crc, covers: {{from: id, to: data}}}}
+    checksums:
+      crc: {{kind: crc, width: {width}, polynomial: 7, init: {value}, reflect_in: false, reflect_out: false, xor_out: 0}}
+{status("at: 0, bits: 16, name: Speed, type: uint")}"""
+        assert codes(tmp_path, text) == codes_of_value

@@ -54,7 +54,7 @@ def findings(
     if notes:
         note = _paint("note", "note", colour)
         lines += [
-            f"{note}[{t.code}] {t.spot.place or 'the document'}: {printable(t.message)}"
+            f"{note}[{t.code}] {printable(t.spot.place or 'the document')}: {printable(t.message)}"
             for t in notes
         ]
         lines.append("")
