@@ -81,3 +81,40 @@ def test_icds_of_several_files_have_different_names(tmp_path):
         {},
     ]
     assert [read.failed for read in reads] == [False, False, True]
+
+
+class Named(Lengths):
+    """Reader of networks ``name``, one per line, each with a message of that name."""
+
+    def read(self, file, data):
+        head = {"byte_order": "little", "bit_order": "lsb0"}
+        networks = []
+        for name in data.decode().split():
+            message = {"name": name, "id": 1, "kind": "telemetry"}
+            messages = [message | {"length": 1, "reserved": 1}]
+            networks.append(Network(name, name, dict(head), messages))
+        return Definitions(file, networks, len(networks))
+
+
+@pytest.mark.parametrize(
+    ("networks", "icds"),
+    [
+        ("can can can", "can can_2 can_3"),
+        ("can can can_2 can", "can can_3 can_2 can_4"),
+        ("can_2 can can", "can_2 can can_3"),
+        ("can can_2 can", "can can_2 can_3"),
+        (
+            " ".join([f"{'a' * 36}{end}" for end in ("xxxx", "xxxx", "yyyy", "yyyy")]),
+            f"{'a' * 36}xxxx {'a' * 36}_2 {'a' * 36}yyyy {'a' * 36}_3",
+        ),
+    ],
+)
+@pytest.mark.parametrize("is_one_file", [True, False])
+def test_a_numbered_name_is_not_that_of_another_network(
+    networks, icds, is_one_file, tmp_path
+):
+    texts = [networks] if is_one_file else networks.split()
+    reads = run.read_set([(file, Named()) for file in write(tmp_path, *texts)])
+    imported = [pair for read in reads for pair in names(read).items()]
+    expected = zip(icds.split(), networks.split(), strict=True)
+    assert imported == [(icd, [network]) for icd, network in expected]

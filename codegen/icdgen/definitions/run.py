@@ -7,7 +7,6 @@ out, with content that `icdgen check` accepts. No file is written; that is the t
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -114,9 +113,17 @@ def _settled_result(
 
 
 def _make_names_unique(networks: Iterable[Network]) -> None:
-    """Add a number to duplicate network names."""
-    taken: Counter[str] = Counter()
-    for network in networks:
-        taken[network.name] += 1
-        if taken[network.name] > 1:
-            network.name = f"{network.name[:36]}_{taken[network.name]}"
+    """Add a number to duplicate network names.
+
+    A name with a number is never that of another network.
+    """
+    listed = list(networks)
+    reserved, taken = {network.name for network in listed}, set[str]()
+    for network in listed:
+        name, number = network.name, 1
+        while network.name in taken:
+            number += 1
+            numbered = f"{name[:36]}_{number}"
+            if numbered not in reserved:
+                network.name = numbered
+        taken.add(network.name)
