@@ -55,7 +55,7 @@ def number(value: Fraction | int | None) -> str:
 @lru_cache(maxsize=4096)
 def formula(scale: Scale | Curve | None) -> str:
     """Return a formula in a uniform notation: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``,
-    ``3e-06*raw^2 + raw*0.02 - 40``.
+    ``3e-06*raw^2 + 0.02*raw - 40``.
     """
     # A field without a formula equals one with the formula `raw`.
     if scale is None:
