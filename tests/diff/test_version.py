@@ -34,7 +34,8 @@ def test_additions_decide_if_nothing_breaks():
     (change,) = changes_of("DIF107")
     addition = replace(change, addition=True)
     note = replace(change, severity="note", message="a note")
-    result = step([note, addition, addition])
+    later = replace(addition, message="later")
+    result = step([note, addition, later])
     assert result == (
         "minor",
         f"nothing breaks, 2 additions, the first: {change.message}",

@@ -59,6 +59,7 @@ def test_numbers_are_exact_and_a_missing_number_is_empty():
         (Scale(Fraction(1)), "raw"),
         (Scale(Fraction(1), Fraction(5)), "raw + 5"),
         (Scale(Fraction(1, 2), Fraction(-40)), "raw*0.5 - 40"),
+        (Scale(Fraction(1), Fraction(1, 4)), "raw + 0.25"),
         (Scale(Fraction(-1)), "raw*-1"),
         (Scale(Fraction(5, 9), Fraction(-160, 9)), "raw*5/9 - 160/9"),
     ],
