@@ -24,6 +24,8 @@ const icdgenPasted = ((frames) => {
   const DECIMALS = /^[0-9]{1,3}(?:[\s,;]+[0-9]{1,3})+$/;
   const LABEL =
     /^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:(?:\d{4}-\d\d-\d\d[T ])?\d+:\d\d[\d:.,]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+/gm;
+  // Date and time at the beginning of a line, before the data.
+  const DATE_LABEL = /^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+/m;
 
   const digits = (text) => Uint8Array.from(text.match(/[0-9A-Fa-f]{2}/g) ?? [], (pair) => parseInt(pair, 16));
   const linesOf = (text) => text.split(/\r\n|\r|\n/).map((line) => line.trim()).filter(Boolean);
@@ -37,6 +39,9 @@ const icdgenPasted = ((frames) => {
     const literal = LITERAL.exec(text.trim());
     const unescaped = literal && unescape(literal[2]);
     if (unescaped) return { data: unescaped, form: "" };
+    // Without a fraction of a second, date and time are pairs of hexadecimal digits too.
+    const dated = DATE_LABEL.test(text) ? labelled(text) : null;
+    if (dated) return dated;
     try {
       return { data: frames.parseHex(text), form: "" };
     } catch (error) {

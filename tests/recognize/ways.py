@@ -45,6 +45,7 @@ BARE = {
     "after a label": "RX: 2E FB 0A 00 00 00",
     "after a time": "[12:00:01.5] RX: 2E FB 0A 00 00 00",
     "after a date": "2025-01-01 12:00:01.123 2E FB 0A 00 00 00",
+    "after a date without fraction": "2025-01-01 12:00:01 2E FB 0A 00 00 00",
     "after a date and a label": "2025-01-01T12:00:01.5 recv: 2E FB 0A 00 00 00",
     "after an arrow": "<< 2E FB 0A 00 00 00",
 }

@@ -54,6 +54,10 @@ _LABEL = re.compile(
     r"(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+",
     re.MULTILINE | re.ASCII,
 )
+# Date and time at the beginning of a line, before the data.
+_DATE_LABEL = re.compile(
+    r"^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+", re.MULTILINE | re.ASCII
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +91,9 @@ def read_pasted(text: str) -> Pasted:
     literal = _LITERAL.fullmatch(text.strip())
     if literal and (data := _unescaped(literal[2])) is not None:
         return Pasted(data)
+    # Without a fraction of a second, date and time are pairs of hexadecimal digits too.
+    if _DATE_LABEL.search(text) and (pasted := _labelled(text)):
+        return pasted
     try:
         return Pasted(parse_hex(text))
     except BadHex:
