@@ -33,6 +33,7 @@ def test_signed_numbers_and_a_given_count():
     assert numbers_at(data, 2, 0, 3, False, "u", 2).tolist() == [0xFF0180, 0x80027F]
     assert numbers_at(data, 2, 0, 2, True, "u", 0).tolist() == []
     assert numbers_at(data, 6, 0, 1, True).tolist() == []
+    assert numbers_at(b"\xfe" + b"\xff" * 7, 8, 0, 8, True, "i").tolist() == [-2]
 
 
 ENUM = "enums:\n  - {name: Mode, members: [{value: 0, name: Idle}, {value: 2, name: Run}]}\n"
@@ -46,15 +47,18 @@ FIELDS = (
     "at: 64, bits: 24, name: Label, type: text",
     "at: 88, bits: 16, name: Blob, type: bytes",
     "at: 104, bits: 16, name: Step, type: int",
+    "at: 120, bits: 4, name: Trim, type: int",
+    "at: 124, bits: 8, name: Odd, type: uint",
+    "at: 132, bits: 4, name: End, type: uint",
 )
 ENTRY = bytes.fromhex(
-    "aabb" + "2d" + "ff2f01" + "cdcccc3d" + "414200" + "c0de" + "feff"
+    "aabb" + "2d" + "ff2f01" + "cdcccc3d" + "414200" + "c0de" + "feff" + "3e92"
 )
 
 
 @pytest.fixture
 def parts(tmp_path):
-    result = loaded(tmp_path, ENUM + status(*FIELDS, length=15))
+    result = loaded(tmp_path, ENUM + status(*FIELDS, length=17))
     assert [f.message for f in result.findings] == []
     return result.icd, result.icd.nodes[0].messages[0]
 
@@ -71,12 +75,16 @@ def test_each_type_of_column_has_the_value_of_its_bits(parts):
         "status__label": "AB",
         "status__blob": "c0de",
         "status__step": -2,
+        "status__trim": -2,
+        "status__odd": 0x23,
+        "status__end": 9,
     }
 
 
 def test_an_unknown_value_of_an_enumeration_is_named(parts):
     (mode,) = (c for c in columns_of(*parts) if c.name == "status__mode")
     assert reader(mode)(b"\x7f") == "unknown 7"
+    assert reader(mode)(b"\xf0") == "unknown 15"
     assert reader(mode)(b"\x0f") == "Idle"
 
 
