@@ -184,7 +184,12 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/recognize/": ("tests/recognize", "tests/log"),
     "codegen/icdgen/render.py": ("tests/generation",),
     "codegen/icdgen/reports/": ("tests/reports", "tests/wrong"),
-    "codegen/icdgen/runtime_objects/": ("tests/protocol", "tests/vectors", *_LINKS),
+    "codegen/icdgen/runtime_objects/": (
+        "tests/runtime_objects",
+        "tests/protocol",
+        "tests/vectors",
+        *_LINKS,
+    ),
     "codegen/icdgen/show/": ("tests/show",),
     "codegen/icdgen/sim/": ("tests/sim", "tests/procedures", "tests/devices"),
     "codegen/icdgen/site/": ("tests/site",),
