@@ -7,7 +7,7 @@ import pytest
 from icdgen.diff import inputs, reports
 from icdgen.diff.report import DiffReport, make_report
 from icdgen.diff.reports.markdown import escaped
-from icdgen.diff.reports.text import COLOURS, MOST_FRAMES, MOST_WORDS, RESET
+from icdgen.diff.reports.text import COLOURS, MOST_FRAMES, MOST_WORDS, RESET, _wrapped
 from tests.icd.files import HEAD
 
 
@@ -85,6 +85,16 @@ def test_lines_are_wrapped_to_the_width(tmp_path, monkeypatch):
         n for n, line in enumerate(narrow.splitlines()) if line.startswith("version of")
     )
     assert all(len(line) <= 60 for line in narrow.splitlines()[reason : reason + 2])
+
+
+def test_a_line_is_wrapped_beyond_the_width_with_its_indent():
+    text = "aaaa " * 7 + "bbbb"  # 39 characters
+    assert _wrapped(text, 41, "  ") == [f"  {text}"]
+    assert _wrapped(text, 40, "  ") == [f"  {'aaaa ' * 6}aaaa", "  bbbb"]
+    assert _wrapped(text, 40, "! ") == [f"! {'aaaa ' * 6}aaaa", "  bbbb"]
+    assert _wrapped(text, None, "  ") == [f"  {text}"]
+    # At least 30 characters remain beside the indent.
+    assert _wrapped(text, 10, "  ") == [f"  {'aaaa ' * 5}aaaa", "  aaaa bbbb"]
 
 
 def test_no_change_is_stated(tmp_path, monkeypatch):
