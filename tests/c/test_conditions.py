@@ -39,7 +39,11 @@ def last_field(folder, when, more="type: uint", key="bits: 32, type: uint"):
             "(message->kind == 7u) || (message->kind == 9u)",
         ),
         ("bits: 8, type: int", "-7", "message->kind == (-7)"),
-        ("bits: 8, type: int", "7", "message->kind == 7"),
+        (
+            "bits: 8, type: int",
+            "[0, 7]",
+            "(message->kind == 0) || (message->kind == 7)",
+        ),
         ("bits: 1, type: bool", "1", "message->kind"),
         ("bits: 1, type: bool", "0", "!message->kind"),
         ("bits: 8, type: enum, enum: Mode", "1", "message->kind == DEMO_MODE_IDLE"),
