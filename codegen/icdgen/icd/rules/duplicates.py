@@ -58,7 +58,12 @@ def brings_together(ctx: Context, node: Node, first: Node, second: Node) -> bool
     """Return whether ``node`` is the first that has both nodes in its scope, so that a
     clash is reported once.
     """
-    return second is node or (first is not second and first not in ctx.scope(second))
+    if second is node:
+        return True
+    # An included node that has both in its scope reports the clash itself. It can be
+    # `second`, or a node that includes both.
+    scopes = (ctx.scope(other) for other in ctx.scope(node) if other is not node)
+    return not any(first in scope and second in scope for scope in scopes)
 
 
 def together(node: Node, second: Node) -> str:
