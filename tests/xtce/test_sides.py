@@ -139,3 +139,74 @@ messages:
         (2, 20, "0ABCDE"),
         (22, 2, "00"),
     ]
+
+
+SHARED = """\
+messages:
+  - name: First
+    id: 5
+    kind: telemetry
+    shares_id: true
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: Type, type: uint, const: 7}
+      - {at: 8, bits: 8, name: Kind, type: uint, const: 3}
+      - {at: 16, bits: 8, name: Mark, type: uint, const: 9}
+  - name: Second
+    id: 5
+    kind: telemetry
+    shares_id: true
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Type, type: uint, const: 8}
+      - {at: 8, bits: 8, name: Value, type: uint}
+"""
+
+
+def test_messages_are_selected_by_constants_within_the_shortest_frame(tmp_path):
+    result = loaded(tmp_path, SHARED)
+    assert result.ok, [finding.message for finding in result.findings]
+    node = describe(result.icd).nodes[0]
+    content = direction_content(result.icd, node, TELEMETRY)
+    (base,) = content.bases
+    assert (base.name, base.id) == ("Id5", 5)
+    # Behind the id of 8 bits; `Mark` is beyond the end of `Second`.
+    assert [(e.name, e.at, e.run.bits) for e in base.entries.values()] == [
+        ("Id5_0_8", 8, 8),
+        ("Id5_8_8", 16, 8),
+    ]
+    assert [frame.discriminators for frame in content.frames] == [
+        [("Id5_0_8", 7), ("Id5_8_8", 3)],
+        [("Id5_0_8", 8)],
+    ]
+    first, second = ([(e.name, e.at) for e in f.entries] for f in content.frames)
+    assert first == [("First_Type", 8), ("First_Kind", 16), ("First_Mark", 24)]
+    assert second == [("Second_Type", 8), ("Second_Value", 16)]
+
+
+VARIABLE = """\
+messages:
+  - name: Log
+    id: 5
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Size, type: uint}
+      - {at: 8, name: Data, type: bytes, size: {field: Size, plus: -2}, up_to: 9}
+"""
+
+
+def test_a_variable_field_has_its_counter_and_its_largest_size(tmp_path):
+    result = loaded(tmp_path, VARIABLE)
+    assert result.ok, [finding.message for finding in result.findings]
+    node = describe(result.icd).nodes[0]
+    content = direction_content(result.icd, node, TELEMETRY)
+    (frame,) = content.frames
+    assert [(e.name, e.at, e.is_array) for e in frame.entries] == [
+        ("Log_Size", None, False),
+        ("Log_Data", None, False),
+    ]
+    row = next(row for row in frame.rows if row.name == "Log_Data")
+    type_ = content.types[row.type]
+    assert (type_.kind, type_.count, type_.counter) == ("Binary", 9, "Log_Size")
+    assert (type_.plus, type_.bits, row.most) == (-2, 0, 9)
