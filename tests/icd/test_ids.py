@@ -137,6 +137,20 @@ def test_a_clash_in_an_included_file_is_reported_once(
     ] == expected
 
 
+def test_a_clash_by_a_link_belongs_to_the_first_file_with_the_link(tmp_path):
+    shared = (
+        command(name, 5, f"shares_id: true, {fixed(value)}")
+        for name, value in (("A", 1), ("B", 2))
+    )
+    middle = node("middle", head=INCLUDE + UART)
+    text = with_base(
+        node("demo", head="include: [middle.yaml]\n") + f"# middle.yaml\n{middle}",
+        node("base", *shared),
+    )
+    (finding,) = findings(tmp_path, text)
+    assert finding.code == "ICD055" and "`middle` includes both" in finding.message
+
+
 def test_a_missing_message_of_a_base_does_not_hide_an_id_shared_by_mistake(tmp_path):
     messages = telemetry("A", 5, fixed(1)), telemetry("B", 5, fixed(2))
     text = with_base(

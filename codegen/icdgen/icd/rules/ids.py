@@ -86,13 +86,24 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
                     continue
                 # The clash belongs to the node that has both. A node with a link can
                 # include a node without one, where the two messages are permitted: then
-                # it belongs to the node with the link.
+                # it belongs to the first node with the link.
                 if brings_together(ctx, node, first.node, use.node) or (
-                    is_linked and not ctx.is_linked(use.node)
+                    is_linked and not _is_linked_inside(ctx, node, first, use)
                 ):
                     yield _same_id(ctx, node, first, use, is_linked)
                     break
             before.append(use)
+
+
+def _is_linked_inside(ctx: Context, node: Node, first: IdUse, use: IdUse) -> bool:
+    """Return whether a node that ``node`` includes has a link and both uses of an id."""
+    return any(
+        ctx.is_linked(other)
+        and first.node in ctx.scope(other)
+        and use.node in ctx.scope(other)
+        for other in ctx.scope(node)
+        if other is not node
+    )
 
 
 @rule("ICD181")
