@@ -65,4 +65,4 @@ def node(value: object) -> Branch | ScalarText:
         return ScalarText(int(value), value.spelling)
     if isinstance(value, bool):
         return ScalarText(value, "true" if value else "false")
-    return ScalarText(value, str(value))
+    return ScalarText(value, "null" if value is None else str(value))
