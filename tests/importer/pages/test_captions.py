@@ -83,7 +83,8 @@ def test_a_caption_reaches_over_four_lines_of_text():
 
 
 def test_the_nearest_caption_names_a_table():
-    assert shown("Table 1: A", "Table 2: B", "|a")[-1] == (2, "B", "|a")
+    assert shown("Table 1: A", "Table 2: B", "|a") == ["Table 1: A", (2, "B", "|a")]
+    assert shown("|a", "Table 1: A", "Table 2: B") == [(1, "A", "|a"), "Table 2: B"]
 
 
 def test_distances_decide_where_the_order_does_not():

@@ -58,6 +58,27 @@ def test_a_gap_is_within_the_middle_of_the_page():
     )
 
 
+def test_the_left_column_comes_first():
+    assert columns(count=8) == [(0, 64), (0, 56)]
+    regions = [Region(520, 0, 900, 9), Region(50, 0, 480, 9), Region(50, 9, 480, 20)]
+    assert columns(regions=regions) == [(2, 56), (1, 56)]
+    assert_limits(
+        lambda start: len(columns(left=(50, 500), right=(start, 950))) == 2, most=599
+    )
+
+
+def test_cells_with_wide_gaps_are_no_column_of_text():
+    def is_text(gap):
+        page_words = []
+        for row in range(8):
+            page_words += words(50, 250, row, 4) + words(250 + gap, 490, row, 4)
+            page_words += words(510, 950, row, 7)
+        page = PageContents(1, WIDTH, 1400.0)
+        return len(columns_of_text(page, [], lines(page_words))) == 2
+
+    assert_limits(is_text, most=9)
+
+
 def test_a_column_has_8_full_lines_of_7_words():
     assert_limits(lambda rows: len(columns(rows=rows)) == 2, least=8)
     assert_limits(lambda count: len(columns(count=count)) == 2, least=7)
