@@ -49,15 +49,14 @@ _MARKED = re.compile(
     re.ASCII,
 )
 _DECIMALS = re.compile(r"[0-9]{1,3}(?:[\s,;]+[0-9]{1,3})+")
+# Date and time at the beginning of a line, before the data.
+_DATE = r"^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+"
 _LABEL = re.compile(
     r"^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:(?:\d{4}-\d\d-\d\d[T ])?\d+:\d\d[\d:.,]*[ \t]+)?"
-    r"(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+",
+    r"(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|" + _DATE,
     re.MULTILINE | re.ASCII,
 )
-# Date and time at the beginning of a line, before the data.
-_DATE_LABEL = re.compile(
-    r"^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+", re.MULTILINE | re.ASCII
-)
+_DATE_LABEL = re.compile(_DATE, re.MULTILINE | re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)

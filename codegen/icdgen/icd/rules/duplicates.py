@@ -54,16 +54,26 @@ def in_scope(
     return [(owner, item) for owner in ctx.scope(node) for item in items(owner)]
 
 
+def included_with_both(
+    ctx: Context, node: Node, first: Node, second: Node
+) -> list[Node]:
+    """Return the nodes that ``node`` includes and that have both in their scope. They
+    report a clash of the two themselves.
+    """
+    return [
+        other
+        for other in ctx.scope(node)
+        if other is not node
+        and first in ctx.scope(other)
+        and second in ctx.scope(other)
+    ]
+
+
 def brings_together(ctx: Context, node: Node, first: Node, second: Node) -> bool:
     """Return whether ``node`` is the first that has both nodes in its scope, so that a
     clash is reported once.
     """
-    if second is node:
-        return True
-    # An included node that has both in its scope reports the clash itself. It can be
-    # `second`, or a node that includes both.
-    scopes = (ctx.scope(other) for other in ctx.scope(node) if other is not node)
-    return not any(first in scope and second in scope for scope in scopes)
+    return second is node or not included_with_both(ctx, node, first, second)
 
 
 def together(node: Node, second: Node) -> str:

@@ -17,7 +17,11 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import PATH_OF_BUSES, Context
-from icdgen.icd.rules.duplicates import brings_together, together
+from icdgen.icd.rules.duplicates import (
+    brings_together,
+    included_with_both,
+    together,
+)
 from icdgen.icd.rules.protocol_limits import section_in_effect
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
@@ -87,23 +91,13 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
                 # The clash belongs to the node that has both. A node with a link can
                 # include a node without one, where the two messages are permitted: then
                 # it belongs to the first node with the link.
+                inside = included_with_both(ctx, node, first.node, use.node)
                 if brings_together(ctx, node, first.node, use.node) or (
-                    is_linked and not _is_linked_inside(ctx, node, first, use)
+                    is_linked and not any(map(ctx.is_linked, inside))
                 ):
                     yield _same_id(ctx, node, first, use, is_linked)
                     break
             before.append(use)
-
-
-def _is_linked_inside(ctx: Context, node: Node, first: IdUse, use: IdUse) -> bool:
-    """Return whether a node that ``node`` includes has a link and both uses of an id."""
-    return any(
-        ctx.is_linked(other)
-        and first.node in ctx.scope(other)
-        and use.node in ctx.scope(other)
-        for other in ctx.scope(node)
-        if other is not node
-    )
 
 
 @rule("ICD181")
