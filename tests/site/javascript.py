@@ -10,14 +10,19 @@ from functools import cache
 
 from tests.site.conftest import program
 
-# Each line of input is a script and its argument, each line of output a result.
+# Each line of input is a script and its argument, each line of output a result. After
+# it, global variables and modules are removed: the scripts of the site prefer such
+# variables to `require`.
 SERVER = """
     const { createInterface } = require("node:readline");
+    const own = new Set(Reflect.ownKeys(globalThis));
     createInterface({ input: process.stdin }).on("line", (line) => {
         const [script, argument] = JSON.parse(line);
         let answer;
         try { answer = { result: new Function("require", "argument", script)(require, argument) }; }
         catch (error) { answer = { error: error.stack ?? String(error) }; }
+        for (const key of Reflect.ownKeys(globalThis)) if (!own.has(key)) delete globalThis[key];
+        for (const file of Object.keys(require.cache)) delete require.cache[file];
         process.stdout.write(JSON.stringify(answer) + "\\n");
     });
 """

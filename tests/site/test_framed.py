@@ -64,7 +64,7 @@ def traffic(icd, count: int) -> list[str]:
 def test_pasted_packets_are_decoded_like_on_the_command_line(name):
     icd = icd_of(name)
     index = json.loads(json.dumps(recognition.frame_index(Relations(icd))))
-    texts = traffic(icd, 100)
+    texts = traffic(icd, 200)
     shown = [
         answer if not isinstance(answer, dict) else None
         for answer in on_the_page(index, texts)
