@@ -101,7 +101,6 @@ def whole_double(value: int) -> str:
     return f"{value:_}.0"
 
 
-@lru_cache(maxsize=4096)
 def double(value: float) -> str:
     """Return the shortest literal of a double with grouped digits: ``0.488_281_25``,
     ``1.0e-9``.
