@@ -88,13 +88,15 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
             for first in before:
                 if not is_linked and _are_distinguishable(first, use):
                     continue
-                # The clash belongs to the node that has both. A node with a link can
-                # include a node without one, where the two messages are permitted: then
-                # it belongs to the first node with the link.
-                inside = included_with_both(ctx, node, first.node, use.node)
-                if brings_together(ctx, node, first.node, use.node) or (
-                    is_linked and not any(map(ctx.is_linked, inside))
-                ):
+                # The clash belongs to the first node that has both. A node with a link
+                # can include a node without one, where the two messages are permitted:
+                # then it belongs to the first node with the link.
+                reporting = (
+                    other
+                    for other in included_with_both(ctx, node, first.node, use.node)
+                    if ctx.is_linked(other) or not is_linked
+                )
+                if use.node is node or not any(reporting):
                     yield _same_id(ctx, node, first, use, is_linked)
                     break
             before.append(use)
