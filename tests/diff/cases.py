@@ -1,5 +1,5 @@
 """The example pairs of the rules: ``rules/<code>/previous`` and ``current``, and the
-exact report in ``expected.txt``.
+exact report in ``expected.txt``. `compared_texts` compares other pairs.
 """
 
 from __future__ import annotations
@@ -8,6 +8,8 @@ from contextlib import chdir
 from pathlib import Path
 
 from icdgen.diff import inputs, report, reports
+from icdgen.diff.compare import Comparison, compare
+from tests.icd.files import loaded
 
 FOLDER = Path(__file__).parent / "rules"
 CASES = sorted(path for path in FOLDER.iterdir() if path.is_dir())
@@ -24,3 +26,14 @@ def compared(case: Path) -> report.DiffReport:
 def printed(case: Path) -> str:
     """Return the complete output of `icdgen diff`."""
     return reports.get("text")(compared(case), everything=True)
+
+
+def compared_texts(folder: Path, old: str, new: str) -> Comparison:
+    """Compare two ICDs that have no findings. `HEAD` is added to a text without it."""
+    sides = []
+    for name, text in (("old", old), ("new", new)):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+        result = loaded(folder / name, text)
+        assert result.findings == []
+        sides.append(result.icd)
+    return compare(*sides)

@@ -7,7 +7,8 @@ import pytest
 from icdgen.diff.compare import compare
 from icdgen.diff.similar import extends, likeness, same_sense
 from icdgen.loading import load
-from tests.icd.files import HEAD, write
+from tests.diff.cases import compared_texts
+from tests.icd.files import HEAD
 
 AXES = [
     f"{{at: {16 * n}, bits: 16, name: {axis} Rate, type: int, unit: deg/s, formula: raw*0.01}}"
@@ -21,14 +22,8 @@ def message(name: str, id: int, *fields: str, length: int = 6) -> str:
 
 
 def changes(tmp_path, old: str, new: str) -> list:
-    sides = []
-    for name, text in (("old", old), ("new", new)):
-        (tmp_path / name).mkdir()
-        write(tmp_path / name, f"{HEAD}messages:\n{text}")
-        loaded = load([tmp_path / name])
-        assert loaded.findings == []
-        sides.append(loaded.icd)
-    return compare(*sides).changes
+    texts = (f"messages:\n{text}" for text in (old, new))
+    return compared_texts(tmp_path, *texts).changes
 
 
 def codes(changed: list) -> list[str]:

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from icdgen.diff.compare import compare
 from icdgen.diff.moves import Moves, moves
 from icdgen.diff.pairs import MessagePair
-from tests.icd.files import loaded, status
+from tests.diff.cases import compared_texts
+from tests.icd.files import status
 
 
 def pair_of(tmp_path, old: dict, new: dict, lengths=(8, 8)) -> MessagePair:
     """Return the pair of two messages: name to first bit and number of bits."""
-    sides = []
-    for name, fields, length in zip(("old", "new"), (old, new), lengths, strict=True):
-        (tmp_path / name).mkdir(parents=True)
+    texts = []
+    for fields, length in zip((old, new), lengths, strict=True):
         rows = [
             f"at: {at}, bits: {bits}, name: {field}, type: uint"
             for field, (at, bits) in fields.items()
         ]
-        result = loaded(tmp_path / name, status(*rows, length=length))
-        assert result.findings == []
-        sides.append(result.icd)
-    context = compare(*sides).context
-    return context.pair(sides[0].nodes[0].messages[0])
+        texts.append(status(*rows, length=length))
+    context = compared_texts(tmp_path, *texts).context
+    return context.pair(context.match.old.nodes[0].messages[0])
 
 
 def rows(message: MessagePair) -> list[tuple]:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from icdgen.diff.compare import compare
 from icdgen.diff.reports.json import document
-from icdgen.loading import load
-from tests.diff.cases import FOLDER, compared
+from tests.diff.cases import FOLDER, compared, compared_texts
 
 RENAMED_NODE = """\
 icdgen: 1
@@ -29,16 +27,10 @@ messages:
 def test_a_retyped_field_of_a_renamed_node_is_reported_without_the_types_that_only_have_a_new_prefix(
     tmp_path,
 ):
-    sides = []
-    for node, type in (("demo", "uint"), ("probe", "int")):
-        path = tmp_path / f"{node}.yaml"
-        path.write_text(RENAMED_NODE.format(node=node, type=type), "utf-8")
-        loaded = load([path])
-        assert loaded.findings == []
-        sides.append(loaded.icd)
-    retyped = [
-        change.message for change in compare(*sides).changes if change.code == "DIF307"
-    ]
+    old = RENAMED_NODE.format(node="demo", type="uint")
+    new = RENAMED_NODE.format(node="probe", type="int")
+    changes = compared_texts(tmp_path, old, new).changes
+    retyped = [change.message for change in changes if change.code == "DIF307"]
     assert retyped == ["`Count` has another type in C and Rust"]
 
 

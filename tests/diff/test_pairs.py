@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.diff.compare import compare
 from icdgen.diff.pairs import MessagePair, differing, kind, place_of, position
 from icdgen.icd.lines import lines
-from icdgen.loading import load
-from tests.icd.files import HEAD, loaded, status, write
+from tests.diff.cases import compared_texts
+from tests.icd.files import HEAD, loaded, status
 
 
 def pair_of(tmp_path, old: str, new: str, orders=("little", "little")) -> MessagePair:
     """Return the pair of two messages, each with the byte order of its node."""
-    sides = []
-    for name, text, order in zip(("old", "new"), (old, new), orders, strict=True):
-        (tmp_path / name).mkdir()
-        head = HEAD.replace("byte_order: little", f"byte_order: {order}")
-        result = load([write(tmp_path / name, head + text)])
-        assert [f.message for f in result.findings] == []
-        sides.append(result.icd)
-    return compare(*sides).context.pair(sides[0].nodes[0].messages[0])
+    texts = [
+        HEAD.replace("byte_order: little", f"byte_order: {order}") + text
+        for text, order in zip((old, new), orders, strict=True)
+    ]
+    context = compared_texts(tmp_path, *texts).context
+    return context.pair(context.match.old.nodes[0].messages[0])
 
 
 def test_differing_rows_are_in_the_order_of_their_keys():

@@ -16,7 +16,7 @@ from icdgen.diff.compare import RULES, compare
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.report import make_report
 from icdgen.loading import load
-from tests.diff.cases import CASES, compared, printed
+from tests.diff.cases import CASES, compared, compared_texts, printed
 from tests.icd.files import HEAD, status, write
 
 
@@ -120,23 +120,16 @@ def test_another_byte_order_is_a_note_only_if_it_concerns_no_field(
         f"at: {at}, bits: {size}, name: Field {at}, type: uint"
         for at, size in zip((0, bits[0]), bits, strict=True)
     ]
-    sides = []
-    for order in ("little", "big"):
-        head = HEAD.replace("byte_order: little", f"byte_order: {order}")
-        loaded = load([write(tmp_path, head + status(*rows, length=sum(bits) // 8))])
-        assert loaded.findings == []
-        sides.append(loaded.icd)
-    assert [change.code for change in compare(*sides).changes] == codes
+    text = HEAD + status(*rows, length=sum(bits) // 8)
+    other = text.replace("byte_order: little", "byte_order: big")
+    changes = compared_texts(tmp_path, text, other).changes
+    assert [change.code for change in changes] == codes
 
 
 def changes_between(folder: Path, before: str, after: str) -> dict[str, Change]:
     """Return the changes between two ICDs by code."""
-    sides = []
-    for text in (before, after):
-        loaded = load([write(folder, text)])
-        assert loaded.findings == []
-        sides.append(loaded.icd)
-    return {change.code: change for change in compare(*sides).changes}
+    changes = compared_texts(folder, before, after).changes
+    return {change.code: change for change in changes}
 
 
 FIRST, SECOND, THIRD, FOURTH = (
