@@ -3,9 +3,10 @@
 In: files of the repository. Out: test files and folders, the most specific first.
 ``scripts/test --for FILE`` runs them; `tests.mutation.tool` runs them on changed code.
 
-Two sources are combined. `COVERING` names the tests of each folder, which mirror it or
-test it in all languages. Test modules that import a module of icdgen are tests of it,
-unless so many import it that it is only a tool for them.
+Three sources are combined. `FIRST` names tests that are to run first. `COVERING` names
+the tests of each folder, which mirror it or test it in all languages. Test modules that
+import a module of icdgen are tests of it, unless so many import it that it is only a
+tool for them.
 """
 
 from __future__ import annotations
@@ -48,13 +49,6 @@ COVERING: dict[str, tuple[str, ...]] = {
         *_MESSAGES,
         *_LINKS,
     ),
-    "codegen/icdgen/backends/c/__init__.py": (
-        "tests/c/test_output.py",
-        "tests/c",
-        "tests/test_symbols.py",
-        *_MESSAGES,
-        *_LINKS,
-    ),
     "codegen/icdgen/backends/c/links.py": (
         "tests/c/test_output.py",
         *_LINKS,
@@ -67,18 +61,6 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/features",
     ),
     "codegen/icdgen/backends/html/": ("tests/site",),
-    "codegen/icdgen/backends/html/errata.py": (
-        "tests/site/test_long_lists.py",
-        "tests/site",
-    ),
-    "codegen/icdgen/backends/html/packet_formats.py": (
-        "tests/site/test_packets.py",
-        "tests/site",
-    ),
-    "codegen/icdgen/backends/html/units.py": (
-        "tests/site/test_long_lists.py",
-        "tests/site",
-    ),
     "codegen/icdgen/backends/python/": (
         "tests/python",
         "tests/test_symbols.py",
@@ -112,62 +94,22 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/commands/sim.py": ("tests/sim",),
     "codegen/icdgen/config.py": ("tests/generation", "tests/cli/test_generate.py"),
     "codegen/icdgen/definitions/": ("tests/definitions", "tests/devices"),
-    "codegen/icdgen/definitions/can_accounting.py": (
-        "tests/definitions/test_can_shapes.py",
-        "tests/definitions",
-    ),
-    "codegen/icdgen/definitions/xtce_parts.py": (
-        "tests/definitions/test_xtce.py",
-        "tests/definitions",
-        "tests/devices",
-    ),
     "codegen/icdgen/describe/": ("tests/describe", "tests/generation", *_MESSAGES),
     "codegen/icdgen/diagnostics.py": ("tests/reports", "tests/wrong"),
     "codegen/icdgen/diff/": ("tests/diff",),
-    "codegen/icdgen/diff/change.py": ("tests/diff/test_reports.py", "tests/diff"),
-    "codegen/icdgen/diff/changes/": ("tests/diff/test_rules.py", "tests/diff"),
-    "codegen/icdgen/diff/reports/": ("tests/diff/test_reports.py", "tests/diff"),
     "codegen/icdgen/fingerprints.py": ("tests/cli/test_cached_models.py",),
     "codegen/icdgen/frozen.py": ("tests/test_frozen.py",),
     "codegen/icdgen/generation/": ("tests/generation", "tests/cli/test_generate.py"),
-    "codegen/icdgen/generation/generate.py": (
-        "tests/cli/test_generate.py",
-        "tests/generation",
-    ),
     "codegen/icdgen/icd/": ("tests/icd", "tests/wrong", "tests/values"),
     "codegen/icdgen/icd/fmt/": ("tests/fmt", "tests/cli/test_format_page.py"),
-    "codegen/icdgen/icd/frames.py": (
-        "tests/icd/test_layout.py",
-        "tests/icd",
-        "tests/wrong",
-        "tests/values",
-    ),
     "codegen/icdgen/icd/layout_copies.py": (
         "tests/icd/test_layout.py",
         "tests/diff/test_attributes.py",
         "tests/assurance",
     ),
     "codegen/icdgen/icd/rules/": ("tests/wrong", "tests/icd"),
-    "codegen/icdgen/icd/rules/duplicates.py": (
-        "tests/icd/test_rules.py",
-        "tests/wrong",
-        "tests/icd",
-    ),
     "codegen/icdgen/import_results/": ("tests/importer", "tests/definitions"),
     "codegen/icdgen/importer/": ("tests/importer",),
-    "codegen/icdgen/importer/reading/pdf.py": (
-        "tests/importer/test_bad_pdf.py",
-        "tests/importer",
-    ),
-    "codegen/icdgen/importer/reading/spreadsheet.py": (
-        "tests/importer/rules/test_sources.py",
-        "tests/importer",
-    ),
-    "codegen/icdgen/importer/rules/attach.py": (
-        "tests/importer/rules/test_enumerations.py",
-        "tests/importer/rules/test_rules.py",
-        "tests/importer",
-    ),
     "codegen/icdgen/link/": ("tests/sim", "tests/devices"),
     "codegen/icdgen/link_calls.py": ("tests/protocol", *_LINKS),
     "codegen/icdgen/logfile/": ("tests/log",),
@@ -175,12 +117,6 @@ COVERING: dict[str, tuple[str, ...]] = {
     "codegen/icdgen/naming.py": ("tests/test_naming.py", "tests/test_symbols.py"),
     "codegen/icdgen/procedures/": ("tests/procedures", "tests/sim", "tests/vectors"),
     "codegen/icdgen/protocol/": ("tests/protocol", "tests/vectors", *_LINKS),
-    "codegen/icdgen/protocol/reading.py": (
-        "tests/protocol/test_logs_and_files.py",
-        "tests/protocol",
-        "tests/vectors",
-        *_LINKS,
-    ),
     "codegen/icdgen/recognize/": ("tests/recognize", "tests/log"),
     "codegen/icdgen/render.py": ("tests/generation",),
     "codegen/icdgen/reports/": ("tests/reports", "tests/wrong"),
@@ -264,6 +200,27 @@ COVERING: dict[str, tuple[str, ...]] = {
 }
 
 
+# Tests of a file or folder in a file with another name, which are to run first.
+FIRST: dict[str, str] = {
+    "codegen/icdgen/backends/c/__init__.py": "tests/c/test_output.py",
+    "codegen/icdgen/backends/html/errata.py": "tests/site/test_long_lists.py",
+    "codegen/icdgen/backends/html/packet_formats.py": "tests/site/test_packets.py",
+    "codegen/icdgen/backends/html/units.py": "tests/site/test_long_lists.py",
+    "codegen/icdgen/definitions/can_accounting.py": "tests/definitions/test_can_shapes.py",
+    "codegen/icdgen/definitions/xtce_parts.py": "tests/definitions/test_xtce.py",
+    "codegen/icdgen/diff/change.py": "tests/diff/test_reports.py",
+    "codegen/icdgen/diff/changes/": "tests/diff/test_rules.py",
+    "codegen/icdgen/diff/reports/": "tests/diff/test_reports.py",
+    "codegen/icdgen/generation/generate.py": "tests/cli/test_generate.py",
+    "codegen/icdgen/icd/frames.py": "tests/icd/test_layout.py",
+    "codegen/icdgen/icd/rules/duplicates.py": "tests/icd/test_rules.py",
+    "codegen/icdgen/importer/reading/pdf.py": "tests/importer/test_bad_pdf.py",
+    "codegen/icdgen/importer/reading/spreadsheet.py": "tests/importer/rules/test_sources.py",
+    "codegen/icdgen/importer/rules/attach.py": "tests/importer/rules/test_enumerations.py",
+    "codegen/icdgen/protocol/reading.py": "tests/protocol/test_logs_and_files.py",
+}
+
+
 @cache
 def _test_modules() -> dict[str, set[str]]:
     """Return the test modules that import each module of icdgen, by dotted name."""
@@ -295,7 +252,8 @@ def _importing(file: PurePosixPath) -> list[str]:
 def covering_tests(file: str) -> list[str]:
     """Return the tests of a file, as paths below the top of the repository.
 
-    They are the tests with its name, tests that import it, and the tests in `COVERING`.
+    They are the tests in `FIRST`, those with its name, tests that import it, and the
+    tests in `COVERING`.
     A test covers itself. Raises `KeyError` if a file has no tests.
     """
     path = PurePosixPath(file)
@@ -307,6 +265,7 @@ def covering_tests(file: str) -> list[str]:
     if prefix is None:
         raise KeyError(file)
     places = COVERING[prefix]
+    first = [test for start, test in FIRST.items() if file.startswith(start)]
     namesakes = []
     for place in places:
         if place.endswith(".py"):
@@ -315,7 +274,7 @@ def covering_tests(file: str) -> list[str]:
         namesakes += sorted(
             test.relative_to(ROOT).as_posix() for test in (ROOT / place).rglob(name)
         )
-    return list(dict.fromkeys([*namesakes, *_importing(path), *places]))
+    return list(dict.fromkeys([*first, *namesakes, *_importing(path), *places]))
 
 
 def main(files: list[str]) -> int:

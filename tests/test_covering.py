@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT
-from tests.covering import COVERING, covering_tests
+from tests.covering import COVERING, FIRST, covering_tests
 
 
 def tracked(*folders: str) -> list[str]:
@@ -31,6 +31,12 @@ def test_each_folder_of_the_table_exists():
     for start, tests in COVERING.items():
         assert any(file.startswith(start) for file in tracked(start.rstrip("/")))
         assert [test for test in tests if not (ROOT / test).exists()] == []
+
+
+def test_each_test_named_as_the_first_of_a_file_exists_and_is_first():
+    for start, test in FIRST.items():
+        files = [file for file in tracked("codegen") if file.startswith(start)]
+        assert files and all(covering_tests(file)[0] == test for file in files), start
 
 
 def test_tests_with_the_name_of_a_file_come_first():
