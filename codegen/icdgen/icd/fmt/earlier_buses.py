@@ -5,6 +5,7 @@ error codes took the form of framed links: packets, commands and requests.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TypeGuard
 
 from icdgen.icd.fmt.commented import Branch, Child, ScalarText
 from icdgen.icd.fmt.scalars import name
@@ -80,6 +81,13 @@ def convert_buses(link: Branch, root: Branch) -> bool:
     return True
 
 
+def _is_mapping(value: object) -> TypeGuard[Branch]:
+    """Return whether a value is a mapping; values of other types stay as they are,
+    because the schema check reports them.
+    """
+    return isinstance(value, Branch) and value.mapping
+
+
 def _convert_reasons(
     link: Branch, root: Branch, is_named: bool
 ) -> tuple[ScalarText, ScalarText]:
@@ -90,7 +98,7 @@ def _convert_reasons(
     """
     reasons = entry_of(link, "reasons")
     success = named_success = number(0)
-    if reasons is None or not isinstance(reasons.value, Branch):
+    if reasons is None or not _is_mapping(reasons.value):
         return success, named_success
     section = reasons.value
     names = _members(root, value_of(section, "enum")) if is_named else {}
@@ -129,7 +137,7 @@ def _members(root: Branch, enum: object) -> dict[int, str]:
 def _convert_acknowledge(uart: Branch, packets: Branch, success: ScalarText) -> None:
     """Make the acknowledge of the UART a packet, and let it confirm telecommands."""
     acknowledge = entry_of(uart, "acknowledge")
-    if acknowledge is None or not isinstance(acknowledge.value, Branch):
+    if acknowledge is None or not _is_mapping(acknowledge.value):
         return
     section = acknowledge.value
     packet = Branch(True, False, 0)
@@ -226,7 +234,7 @@ def _id_of(root: Branch, message: object) -> ScalarText | None:
 
 def _convert_polled(i2c: Branch, polled: object, success: ScalarText) -> None:
     """Let the telemetry that is polled on I2C confirm telecommands."""
-    if not isinstance(polled, Branch):
+    if not _is_mapping(polled):
         return
     response = Branch(True, False, 0)
     move(polled, _POLLED, response)
@@ -267,14 +275,13 @@ def _convert_can(can: Branch, packets: Branch) -> None:
             packet["summary"] = summary
         child = Child(packet_name, mapping(packet), row.before, row.trailing)
         packets.children.append(child)
-    if types:
+    if types and _is_mapping(types.value):
         can.children.remove(types)
     for direction, present in (("telecommand", "commands"), ("telemetry", "requests")):
-        if owner := entry_of(can, direction):
+        owner = entry_of(can, direction)
+        if owner and _is_mapping(owner.value):
             responses = _responses(owner.value, direction)
-            owner.before += (
-                owner.value.comments() if isinstance(owner.value, Branch) else []
-            )
+            owner.before += owner.value.comments()
             owner.key, owner.value = word(present), responses
             if not responses.children:
                 can.children.remove(owner)
@@ -282,11 +289,10 @@ def _convert_can(can: Branch, packets: Branch) -> None:
         extended.key = word("segments")
 
 
-def _responses(section: object, direction: str) -> Branch:
+def _responses(section: Branch, direction: str) -> Branch:
     """Return the responses to telecommands, or to requests of telemetry, on CAN."""
     responses = Branch(True, False, 0)
-    if isinstance(section, Branch):
-        move(section, {"source": "source"}, responses)
+    move(section, {"source": "source"}, responses)
     keys: Mapping[str, str] = {"acknowledge": "ack", "failure": "nak"}
     if direction == "telemetry":
         keys = {"request": "packet", "failure": "nak"}
