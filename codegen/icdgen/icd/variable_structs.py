@@ -138,6 +138,8 @@ def faults_of_inner_counts(
     counters = {counting(other).name for other in variable_fields(message)}
     for inner in arrays_of_struct(struct):
         counter_name, plus = counting(inner)
+        if counter_name == REST:
+            continue  # `faults_in_struct` reports it
         array = f"`{inner['name']}` of the {part}"
         counter = next(
             (
