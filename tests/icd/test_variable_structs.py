@@ -29,6 +29,7 @@ structs:
     fields:
       - {{at: 0, bits: 8, name: Curves Count, type: uint}}
       - {{at: 8, bits: {bits}, name: Number, type: uint{counter}}}
+      - {{at: 24, bits: 8, name: Other, type: uint}}
       - {{at: 32, name: Curves, struct: Curve, count: Curves Count, up_to: 3}}
 """
 
@@ -112,6 +113,8 @@ def test_arrays_with_one_counter_have_a_number_that_suits_all(
     ]
     text = "`Number` counts `B` of the struct `Curve` and `A`, and no value suits both"
     assert faults(tmp_path, *fields) == [("Curve", text)] * (not is_possible)
+    other = [fields[0], fields[1].replace("field: Number", "field: Other")]
+    assert faults(tmp_path, *other) == []
     other = [fields[0], fields[1].replace("field: Number", "field: Curves Count")]
     text = "`Curves Count` counts both `B` of the struct `Curve` and a variable-length field of the message"
     assert faults(tmp_path, *other) == [("Curve", text)]

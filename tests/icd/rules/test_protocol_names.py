@@ -102,9 +102,10 @@ def test_fields_that_a_section_names_own_bits_of_the_message(tmp_path):
             "name the field that has the bits",
         ),
     ]
-    text = icd("  boot_status: {message: Boot, field: Versoin}\n")
-    (finding,) = findings_of(tmp_path, text, "ICD094")
-    assert finding.fix.text == "Version"
+    for name, fix in (("Versoin", "Version"), ("Minro", None)):
+        text = icd(f"  boot_status: {{message: Boot, field: {name}}}\n")
+        (finding,) = findings_of(tmp_path, text, "ICD094")
+        assert (finding.fix and finding.fix.text) == fix
 
 
 @pytest.mark.parametrize(
