@@ -106,7 +106,7 @@ def test_points_of_a_lookup_table_ascend():
     assert field.facts == {"points": [[-1, 0.5], [0, -3.0], [9, 100.0]]}
     text = "table 7: a point of the lookup table of `Mode` is no number"
     field = draft()
-    for point in ("x", "1 V"):
+    for point in ("x", "1e400"):
         wrong = of("lookup", "Mode", pairs=[(9, "1"), (0, point)])
         assert attached([wrong], [part(field)]) == [("IMP023", "error", text)]
     assert field.facts == {}

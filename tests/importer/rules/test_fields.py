@@ -304,6 +304,24 @@ def test_limits_are_numbers_of_an_icd():
     assert [type(value) for value in facts.values()] == [int, float]
 
 
+def test_a_number_has_the_digits_of_the_source_with_a_short_exponent():
+    described = field(bits="8", scale=" +1.50e-007", offset="–.5E+01").described
+    assert described.formula == "raw*1.50e-7 - 0.5E+1"
+    assert field(bits="8", min="-1e99", type="int").facts == {"min": -int(1e99)}
+    assert field(bits="8", scale="1e000").described.formula == ""
+
+
+@pytest.mark.parametrize("role", ["scale", "offset", "bias", "min", "max"])
+@pytest.mark.parametrize("text", ["1e100", "-1e400", "1e-100", "1e" + "9" * 20])
+def test_a_number_that_no_formula_can_have_is_reported(role, text):
+    fields, findings = read({"bits": "8", role: text})
+    assert len(fields) == 1 and fields[0].facts == {}
+    assert fields[0].described.formula == ""
+    assert findings == [
+        ("IMP023", "error", f"`{role}` is `{text}`, which is not a number")
+    ]
+
+
 def test_limits_that_raw_values_do_not_reach_are_a_warning():
     given = {"bits": "8", "scale": "0.5", "offset": "-10"}
 

@@ -294,10 +294,13 @@ def whole_number(text: str, base: int = 10) -> int | None:
 
 def decimal(text: str) -> str | None:
     """Return a number as an ICD writes it, with the digits of the source; None for
-    another text.
+    another text, and for an exponent of more than two digits.
     """
     text = text.replace("−", "-").replace("–", "-").replace(" ", "").lstrip("+")
-    if not re.fullmatch(NUMBER, text):
+    # Some programs print `1e-007`.
+    text = re.sub(r"(?<=[eE])([-+]?)0+(?=[0-9])", r"\1", text)
+    # Formulas have two digits. A larger exponent can exceed a double and `Decimal`.
+    if not re.fullmatch(NUMBER, text) or re.search("[eE][-+]?[0-9]{3}", text):
         return None
     return re.sub(r"^(-?)\.", r"\g<1>0.", text)
 
