@@ -7,6 +7,9 @@ import re
 
 import pytest
 
+from icdgen.diff.uses import _LEXERS, MARK, _in_file, _mentions, _sources, _tokens
+from icdgen.errors import UserError
+
 C = """\
 #include "demo.h"
 /* demo_set_roll_t in a comment, "roll_angle" in none */
@@ -171,3 +174,101 @@ def test_the_shipped_examples_show_what_uses_a_frame(icdgen, tmp_path):
     path.write_text(roll.sub(r"\g<1>raw*0.02", path.read_text()))
     out = icdgen("diff", "older", ROOT / "icd", "--uses", ROOT / "examples").out
     assert "examples/" in out.split("uses in your sources")[1]
+
+
+@pytest.mark.parametrize(
+    ("language", "text", "names"),
+    [
+        ("c", 'a "b \\" c" d', ["a", "d"]),
+        ("c", "a // b\nc /* d\n e */ f /* g", ["a", "c", "f"]),
+        ("c", 'a "b\nc', ["a", "b", "c"]),
+        ("c", "if (c == '\"') state.level = '\"';", ["if", "c", "state", "level"]),
+        ("c", r"'\'' a '\\' b '\"' c", ["a", "b", "c"]),
+        (
+            "rust",
+            "fn f<'a>(x: &'a str) -> char { '\"' }",
+            ["fn", "f", "a", "x", "a", "str", "char"],
+        ),
+        ("rust", "b'\"' level", ["b", "level"]),
+        ("c", "a1_B 2c _d", ["a1_B", "c", "_d"]),
+        ("python", "a # b 'c\nd", ["a", "d"]),
+        ("python", "'a' b \"c\" d r'e\\' f' rb\"g\" Rb'h' u'i' j", ["b", "d", "j"]),
+        ("python", '"""a "b" c""" d \'\'\'e\nf\'\'\' g', ["d", "g"]),
+        ("python", '"""a', []),
+        ("python", "f'{a} b {{c}} {d!r:>{e}}' g", ["a", "d", "r", "e", "g"]),
+        ("python", "rF'{a}' Fr\"{b}\" fr'''{c}\n{d}'''", ["a", "b", "c", "d"]),
+        ("python", "b'{a}' '{b}' c", ["c"]),
+    ],
+)
+def test_names_are_those_outside_of_comments_and_texts(language, text, names):
+    tokens = list(_tokens(text, _LEXERS[language]))
+    assert [name for name, _ in tokens] == names
+    assert all(text[at:].startswith(name) for name, at in tokens)
+
+
+@pytest.mark.parametrize(
+    ("language", "mentioned", "stem", "expected"),
+    [
+        ("c", {"demo_status_t"}, "demo_status", True),
+        ("c", {"DEMO_STATUS_LENGTH"}, "demo_status", True),
+        ("c", {"demo_status"}, "demo_status", True),
+        ("c", {"demo_statuses"}, "demo_status", False),
+        ("c", {"my_demo_status_t"}, "demo_status", False),
+        ("c", set(), "demo_status", False),
+        ("python", {"Status"}, "Status", True),
+        ("python", {"Status_x", "STATUS"}, "Status", False),
+        ("rust", {"Status"}, "Status", True),
+    ],
+)
+def test_a_source_mentions_a_type_by_its_name_or_in_c_by_its_prefix(
+    language, mentioned, stem, expected
+):
+    assert _mentions(language, mentioned, stem) is expected
+
+
+def test_sources_are_found_in_the_order_of_folders_and_names(tmp_path):
+    names = "a.C b.hpp c.txt deep/d.pyi deep/e.ino .venv/f.py target/g.rs z/.git/h.c"
+    for name in [*names.split(), "node_modules/i.py", "z/j.rs", "a/k.cxx", "l.inc"]:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    found = [str(path.relative_to(tmp_path)) for path in _sources(tmp_path)]
+    assert found == [
+        "a.C",
+        "b.hpp",
+        "l.inc",
+        "a/k.cxx",
+        "deep/d.pyi",
+        "deep/e.ino",
+        "z/j.rs",
+    ]
+    assert list(_sources(tmp_path / "a.C")) == [tmp_path / "a.C"]
+    for name, text, help in (
+        ("c.txt", "is no C, Python or Rust source", "known are .c, .h, "),
+        ("none", "there is no ", "give --uses a folder, or a source file"),
+    ):
+        with pytest.raises(UserError) as error:
+            list(_sources(tmp_path / name))
+        assert text in str(error.value) and error.value.help.startswith(help)
+
+
+def test_a_generated_file_is_known_by_its_first_characters(tmp_path):
+    changes = {"level": {"": ["change"]}}
+    for before, count in ((0, 0), (400 - len(MARK), 0), (401 - len(MARK), 1)):
+        file = tmp_path / f"{before}.c"
+        file.write_text(f"{' ' * before}{MARK} */ */\nlevel;\n")
+        uses = list(_in_file(file, "c", changes))
+        assert len(uses) == count
+    assert (uses[0].line, uses[0].column, uses[0].text) == (2, 1, "level;")
+
+
+def test_a_use_has_its_line_and_each_change_once(tmp_path):
+    file = tmp_path / "a.c"
+    file.write_bytes(b"x level\r\n\tlevel; // level\r\nlevel")
+    both = {"level": {"": ["one"], "x": ["two", "one"], "y": ["three"]}}
+    uses = list(_in_file(file, "c", both))
+    assert [(use.line, use.column, use.text, use.changes) for use in uses] == [
+        (1, 3, "x level", ("one", "two")),
+        (2, 2, "\tlevel; // level", ("one", "two")),
+        (3, 1, "level", ("one", "two")),
+    ]
+    assert {use.file for use in uses} == {str(file)}

@@ -35,8 +35,10 @@ _SKIPPED = frozenset(
 )
 
 _NAME = r"(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
+# A character such as '"' begins no string. A lifetime of Rust, such as 'a, is none.
 _C_LIKE = re.compile(
-    rf'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|{_NAME}', re.DOTALL
+    rf"""//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'|{_NAME}""",
+    re.DOTALL,
 )
 _TEXT = r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
 _PYTHON = re.compile(
