@@ -9,7 +9,8 @@ from pathlib import Path
 
 from icdgen.diff import inputs, report, reports
 from icdgen.diff.compare import Comparison, compare
-from tests.icd.files import loaded
+from icdgen.loading import load
+from tests.icd.files import write
 
 FOLDER = Path(__file__).parent / "rules"
 CASES = sorted(path for path in FOLDER.iterdir() if path.is_dir())
@@ -28,12 +29,16 @@ def printed(case: Path) -> str:
     return reports.get("text")(compared(case), everything=True)
 
 
-def compared_texts(folder: Path, old: str, new: str) -> Comparison:
-    """Compare two ICDs that have no findings. `HEAD` is added to a text without it."""
+def compared_texts(
+    folder: Path, old: str, new: str, is_checked: bool = True
+) -> Comparison:
+    """Compare two ICDs that have no findings, or that are not checked. `HEAD` is added
+    to a text without it.
+    """
     sides = []
     for name, text in (("old", old), ("new", new)):
         (folder / name).mkdir(parents=True, exist_ok=True)
-        result = loaded(folder / name, text)
+        result = load([write(folder / name, text)], check=is_checked)
         assert result.findings == []
         sides.append(result.icd)
     return compare(*sides)
