@@ -59,13 +59,13 @@ def test_setting_a_number_changes_its_bits_and_no_others(place, data, number):
 
 
 LSB0 = PacketMap(
-    messages=(None, None),
+    messages=(None, None, None),
     at=1,
     bytes=2,
     msb0=False,
     received=True,
     beyond_end=False,
-)  # of 32 packets: two messages with two bytes each
+)  # of 48 packets: three messages with two bytes each
 
 
 @pytest.mark.parametrize("msb0", [False, True])
@@ -73,11 +73,11 @@ LSB0 = PacketMap(
 def test_a_packet_has_one_bit_in_the_map(msb0, received):
     form = replace(LSB0, msb0=msb0, received=received)
     octets = empty_map(form)
-    assert octets == (b"\0\0\0\0" if received else b"\xff\xff\xff\xff")
-    for position in range(32):
+    assert octets == (b"\0" if received else b"\xff") * 6
+    for position in range(48):
         assert not is_received(form, octets, position)
         mark_received(form, octets, position)
-        assert [n for n in range(32) if is_received(form, octets, n)] == [
+        assert [n for n in range(48) if is_received(form, octets, n)] == [
             *range(position + 1)
         ]
         changed = octets[position // 8] ^ (0 if received else 0xFF)
@@ -90,9 +90,9 @@ def test_a_packet_has_one_bit_in_the_map(msb0, received):
 
 def test_a_packet_beyond_the_map_is_never_received():
     octets = empty_map(LSB0)
-    for position in (32, 33, 1000):
+    for position in (48, 49, 1000):
         mark_received(LSB0, octets, position)
         assert not is_received(LSB0, octets, position)
-    assert octets == bytes(4)
-    mark_received(LSB0, octets, 31)
-    assert octets == b"\0\0\0\x80"
+    assert octets == bytes(6)
+    mark_received(LSB0, octets, 47)
+    assert octets == bytes(5) + b"\x80"
