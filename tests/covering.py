@@ -203,6 +203,7 @@ COVERING: dict[str, tuple[str, ...]] = {
 # Tests of a file or folder in a file with another name, which are to run first.
 FIRST: dict[str, str] = {
     "codegen/icdgen/backends/c/__init__.py": "tests/c/test_output.py",
+    "codegen/icdgen/backends/c/physical.py": "tests/c/test_accessors.py",
     "codegen/icdgen/backends/html/errata.py": "tests/site/test_long_lists.py",
     "codegen/icdgen/backends/html/packet_formats.py": "tests/site/test_packets.py",
     "codegen/icdgen/backends/html/units.py": "tests/site/test_long_lists.py",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.backends.c.conditional import absent_value, presence_test
+from icdgen.backends.c.conditional import absent_value, presence_test, write_optional
 from icdgen.describe import describe
+from tests.describe.small import message_of
 from tests.icd.files import loaded, status
 from tests.limits import assert_limits
 
@@ -93,3 +94,18 @@ def test_all_conditions_must_be_met(tmp_path):
 )
 def test_an_absent_field_is_zero_or_its_constant(tmp_path, more, value):
     assert absent_value(last_field(tmp_path, "{Kind: 1}", more)) == value
+
+
+def test_an_optional_field_is_added_to_the_zeros_of_its_bits(tmp_path):
+    fields = (
+        "at: 0, bits: 4, name: Kind, type: uint",
+        "at: 4, bits: 10, name: Across, type: uint, when: {Kind: 1}",
+        "at: 16, bits: 16, name: Word, type: uint, when: {Kind: 1}, byte_order: big",
+    )
+    message = message_of(tmp_path, *fields, length=4)
+    _, across, word = message.members
+    assert write_optional(across) == [
+        "buffer[0] = ICDGEN_U8(buffer[0] | (ICDGEN_U8(message->across) << 4));",
+        "buffer[1] = ICDGEN_U8(buffer[1] | ICDGEN_U8(message->across >> 4));",
+    ]
+    assert write_optional(word) == ["icdgen_store_u16be(&buffer[2], message->word);"]
