@@ -104,7 +104,7 @@ def test_requests_by_packets_have_their_responses():
         (
             True,
             "packet read: id of the telemetry",
-            "waits 60 ms, tries again 1 times",
+            "waits 60 ms, tries again 1 time",
             f"{page}read",
         ),
         (False, "the telemetry", "", ""),

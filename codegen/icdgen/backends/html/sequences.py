@@ -30,6 +30,7 @@ from icdgen.protocol.procedures import (
     SkipUnless,
     Test,
 )
+from icdgen.wording import count
 
 TOP, ROW = 40, 46
 _TEXT, _NOTE = 50, 62  # characters that fit between the lifelines
@@ -84,7 +85,8 @@ def acknowledges(
     """Return the acknowledge of a telecommand and the request of telemetry, for each
     bus of the ICD.
     """
-    waits = f"waits {node_facts.client.reply_timeout} ms, tries again {node_facts.client.retries} times"
+    again = count(node_facts.client.retries, "time")
+    waits = f"waits {node_facts.client.reply_timeout} ms, tries again {again}"
     sequences = list(_on_framed_link(relations, node, node_facts))
     if node_facts.framing:
         answer = "acknowledge: id and error code" if node_facts.acknowledge else ""
@@ -140,18 +142,18 @@ def _on_framed_link(
     notes = {
         ACK: "it is done",
         NAK: "it is refused",
-        BUSY: f"sent again after {client.busy_pause} ms, {client.retries} times at most",
+        BUSY: f"sent again after {client.busy_pause} ms, {count(client.retries, 'time')} at most",
         PROGRESS: "the time-out starts again",
     }
     if rows := responses.general_responses(relations, node):
-        waits = f"waits {client.reply_timeout} ms; if it may be repeated, {client.retries} more times"
+        waits = f"waits {client.reply_timeout} ms; if it may be repeated, {count(client.retries, 'more time')}"
         arrows = [Arrow(True, "telecommand", waits), *_response_arrows(rows, notes)]
         yield SequenceDiagram(
             "Framed link, telecommand", node.title, arrows, _remarks(arrows)
         )
     if request := responses.request_row(relations, node):
         timeout = request.timeout or f"{client.reply_timeout} ms"
-        waits = f"waits {timeout}, tries again {client.retries} times"
+        waits = f"waits {timeout}, tries again {count(client.retries, 'time')}"
         sent = "request: id of the telemetry"
         if request.packet.text:
             sent = f"packet {request.packet.text}: id of the telemetry"
