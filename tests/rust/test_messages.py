@@ -387,3 +387,19 @@ def test_elements_with_arrays_have_as_many_bytes_as_their_arrays(tmp_path):
     assert messages.element_bytes(part) == "3 + 2 * number(self.inner, 0, 0).min(3)"
     # Parts of such elements are counted in elements.
     assert messages.part_bytes(part) == "number(self.last, 0, 1)"
+
+
+def test_an_overlay_over_two_bytes_is_a_block_of_its_method(tmp_path):
+    message = message_of(
+        tmp_path,
+        "at: 0, bits: 16, name: Word, type: uint",
+        "at: 4, bits: 8, name: Middle, type: uint, view: true",
+    )
+    (overlay,) = message.overlays
+    assert messages.overlay_value(overlay) == (
+        "{\n"
+        "            let mut value = bytes[0] >> 4;\n"
+        "            value |= (bytes[1] & 0x0f) << 4;\n"
+        "            value\n"
+        "        }"
+    )

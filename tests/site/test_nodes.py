@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from icdgen.backends.html import nodes
+from icdgen.backends.html.examples import example_frames
 from icdgen.backends.html.relations import PageLink, Relations
 from icdgen.loading import load
+from tests.conformance.icds import LINKS
 from tests.icd.files import loaded, status
 
 BASE = """\
@@ -94,7 +96,6 @@ def test_the_home_page_counts_everything(relations):
 def test_the_example_of_the_home_page_is_telemetry_with_a_scale(relations):
     home = nodes.home(relations)
     assert home["example"] == PageLink("Scaled", "user/scaled.html")
-    # Escape, start, id, data, escape, end
 
 
 def test_the_card_of_a_node_has_its_facts_and_counts(relations):
@@ -207,3 +208,29 @@ def test_the_first_message_of_a_shared_id_is_the_one_of_the_log(tmp_path):
     relations = Relations(loaded(tmp_path, text).icd)
     values = nodes.values(relations, relations.icd.nodes[0])
     assert [link.text for _, link in values["loggable"]] == ["First"]
+
+
+@pytest.mark.parametrize(("length", "end"), [(80, "a"), (81, "…")])
+def test_the_title_of_a_node_has_80_characters_at_most(tmp_path, length, end):
+    text = (
+        f"icdgen: 1\nnode: {{name: demo, title: {'a' * length}, byte_order: little,"
+        " bit_order: lsb0}\nmessages: []\n"
+    )
+    relations = Relations(loaded(tmp_path, text).icd)
+    assert nodes.brief(relations, relations.icd.nodes[0]) == {
+        "name": "demo",
+        "title": "a" * 79 + end,
+        "url": "demo/index.html",
+    }
+
+
+def test_the_example_to_paste_is_the_first_frame_with_its_framing():
+    relations = Relations(load([LINKS / "battery.yaml"]).icd)
+    home = nodes.home(relations)
+    assert home["example"].text == "Cell Voltages"
+    message = relations.icd.nodes[0].messages[2]
+    data = example_frames(message, relations.icd.nodes[0])[0].frame
+    words = home["paste_example"].split()
+    # Escape, start and id, the data, escape and end
+    assert words[:3] == ["1F", "7F", "82"] and words[-2:] == ["1F", "FF"]
+    assert bytes.fromhex("".join(words[3:-2])) == data
