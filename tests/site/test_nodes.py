@@ -231,6 +231,6 @@ def test_the_example_to_paste_is_the_first_frame_with_its_framing():
     message = relations.icd.nodes[0].messages[2]
     data = example_frames(message, relations.icd.nodes[0])[0].frame
     words = home["paste_example"].split()
-    # Escape, start and id, the data, escape and end
+    # Escape, start and id, then data and checksum, then escape and end
     assert words[:3] == ["1F", "7F", "82"] and words[-2:] == ["1F", "FF"]
-    assert bytes.fromhex("".join(words[3:-2])) == data
+    assert bytes.fromhex("".join(words[3:19])) == data and len(words) == 23

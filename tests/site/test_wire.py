@@ -7,8 +7,10 @@ from dataclasses import replace
 
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
+from icdgen.loading import load
 from icdgen.runtime_objects.links import link_of
 from tests import links
+from tests.conformance.icds import LINKS
 
 
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
@@ -78,6 +80,20 @@ def test_a_telemetry_frame_has_its_bytes_on_each_bus(shipped):
         ("Request", "04920001"),
         ("Answer", "05920100 2E FB 1F 00 00 00"),
     ]
+
+
+def test_telemetry_with_a_checksum_on_the_uart_shows_it():
+    icd = load([LINKS / "battery.yaml"]).icd
+    form = Relations(icd).wire(icd.nodes[0].messages[3]).facts.checksum.algorithm.crc
+    check = links.crc(form, b"\x83\x04").to_bytes(2, "big").hex(" ").upper()
+    assert lines(icd, "battery", "Last Error", b"\x04") == {
+        "UART": [
+            ("Request", "1F 7F 83 1F FF"),
+            ("Answer", "1F 7F 83 04 1F FF"),
+            ("with CRC", f"1F 7F 83 04 {check} 1F FF"),
+        ],
+        "I²C": [("Request and answer", "40 83 repeated start 41 04")],
+    }
 
 
 def test_long_frames_are_split_into_packets_that_count_down(shipped):

@@ -248,14 +248,7 @@ def _uart_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
                 "Telecommand", _uart_chunks(wire.link, message.telecommand_id, data)
             )
         )
-        checked = _checked_speaker(wire, "telecommand", "uart")
-        if checked:
-            lines.append(
-                WireLine(
-                    "with CRC",
-                    _uart_chunks(wire.link, message.telecommand_id, data, checked),
-                )
-            )
+        lines += _uart_lines_with_crc(wire, "telecommand", message.telecommand_id, data)
     if message.telemetry_id is not None:
         lines.append(
             WireLine("Request", _uart_chunks(wire.link, message.telemetry_id, b""))
@@ -263,6 +256,7 @@ def _uart_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
         lines.append(
             WireLine("Answer", _uart_chunks(wire.link, message.telemetry_id, data))
         )
+        lines += _uart_lines_with_crc(wire, "telemetry", message.telemetry_id, data)
     return Bus(
         "UART",
         _uart_note(buses_of(wire.section)["uart"].get("line", {}), wire.facts.framing),
@@ -270,8 +264,21 @@ def _uart_bus(message: Message, wire: Wire, data: bytes) -> Bus | None:
     )
 
 
+def _uart_lines_with_crc(
+    wire: Wire, direction: str, id: int, data: bytes
+) -> Iterator[WireLine]:
+    checked = _checked_speaker(wire, direction, "uart")
+    if checked:
+        chunks = _uart_chunks(wire.link, id, data, checked, direction)
+        yield WireLine("with CRC", chunks)
+
+
 def _uart_chunks(
-    link: Link, id: int, data: bytes, checked: Speaker | None = None
+    link: Link,
+    id: int,
+    data: bytes,
+    checked: Speaker | None = None,
+    direction: str = "",
 ) -> list[WireChunk]:
     """Return the transmitted bytes, split at the borders of id, data and checksum."""
     # On the UART, a message has the bytes of an I2C write between the framing bytes.
@@ -295,7 +302,7 @@ def _uart_chunks(
     ]
     chunks += _data_chunks(data_sent)
     if checked:
-        chunks.append(_crc_chunk(check_sent, checked, "telecommand", "uart"))
+        chunks.append(_crc_chunk(check_sent, checked, direction, "uart"))
     return [*chunks, WireChunk("frame", _hex_text(line[ends[-1] :]), "end of message")]
 
 
