@@ -206,7 +206,7 @@ FIRST: dict[str, str] = {
     "codegen/icdgen/backends/c/physical.py": "tests/c/test_accessors.py",
     "codegen/icdgen/backends/html/errata.py": "tests/site/test_long_lists.py",
     "codegen/icdgen/backends/html/protocol.py": "tests/site/test_protocol_values.py",
-    "codegen/icdgen/backends/html/repeats.py": "tests/site/test_sections.py",
+    "codegen/icdgen/backends/html/repeats.py": "tests/site/test_represented_arrays.py",
     "codegen/icdgen/backends/html/packet_formats.py": "tests/site/test_packets.py",
     "codegen/icdgen/backends/html/units.py": "tests/site/test_long_lists.py",
     "codegen/icdgen/backends/rust/examples.py": "tests/rust/test_example_text.py",

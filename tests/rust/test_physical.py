@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of
+from icdgen.backends.rust.accessors import (
+    accessors,
+    curve_of,
+    field_row,
+    scale_of,
+    texts,
+)
 from icdgen.backends.rust.physical import big_parts, derived_statements, has_constant
 from icdgen.describe import describe
 from tests.icd.files import loaded, status
@@ -309,3 +315,17 @@ def test_a_derived_value_is_computed_in_doubles(tmp_path):
     first, *_, last = derived_statements(square)
     assert first == "        let quiet_ = f64::from(self.quiet);"
     assert last.startswith("        quiet(")
+
+
+def test_accessors_of_arrays_of_texts_come_first(tmp_path):
+    message = message_of(
+        tmp_path,
+        "at: 0, bits: 16, name: Label, type: text",
+        "at: 16, bits: 8, name: Level, type: uint, formula: raw*0.5",
+        "at: 24, bits: 16, name: Words, type: text, count: 2",
+        "at: 56, bits: 8, name: End, type: text",
+        length=8,
+    )
+    names = [accessor.field.model.name for accessor in texts(message)]
+    assert names == ["Words", "Label", "End"]
+    assert accessors(message.members[0]) == []

@@ -139,7 +139,9 @@ def test_an_array_of_structs_is_a_section_of_its_first_element(tmp_path):
         length=10,
     )
     text += "    derived:\n      - {name: Double, formula: Head*2}\n"
-    assert shown(sections_of(tmp_path, text)) == [
+    rows = sections_of(tmp_path, text)
+    assert [row.is_element for row in rows] == [False, True, False]
+    assert shown(rows) == [
         ("Byte 0", 0, 1, [1], True),
         ("Points × 3", 1, 4, [2, 3], True),
         ("Derived values", 10, 10, [8], True),
