@@ -406,6 +406,7 @@ def test_a_field_across_bytes_has_the_byte_order_that_continues_its_bits(
     [
         ("[1, 2]", 16, []),
         ("[1, 2]", 24, ["2 bytes are given for 24 bits"]),
+        ("[255]", 16, ["1 byte is given for 16 bits"]),
         ("[1, 2]", 8, ["2 bytes are given for 8 bits"]),
         ("15", 4, []),
         ("16", 4, ["16 does not fit 4 bits"]),

@@ -387,7 +387,8 @@ def _check_given_values(field: Map) -> Iterator[Fault]:
     # A mapping has a value for each direction.
     for each in value.values() if isinstance(value, Map) else [value]:
         if isinstance(each, Seq | list) and len(each) * 8 != bits:
-            text = f"{count(len(each), 'byte')} are given for {count(bits, 'bit')}"
+            are = "is" if len(each) == 1 else "are"
+            text = f"{count(len(each), 'byte')} {are} given for {count(bits, 'bit')}"
         elif isinstance(each, int) and each >> bits > 0:
             text = f"{each} does not fit {count(bits, 'bit')}"
         else:
