@@ -259,3 +259,103 @@ def test_declared_ranges_decide_instead_of_the_ids_of_a_uart(tmp_path):
     head = UART.replace("{link: {", f"{{link: {{{ranges}, ")
     messages = command("Ping", 130), telemetry("State", 129), telemetry("B", 131)
     assert uart_codes(tmp_path, *messages, head=head) == ["ICD056"]
+
+
+KEYS_OF_KINDS = {
+    "telecommand": ("`id`", ["id"]),
+    "telemetry": ("`id`", ["id"]),
+    "configuration": ("`set_id` and `get_id`", ["set_id", "get_id"]),
+}
+
+
+@pytest.mark.parametrize("kind", KEYS_OF_KINDS)
+def test_a_message_has_the_ids_of_its_kind(kind, tmp_path):
+    shown, own = KEYS_OF_KINDS[kind]
+    text = node(
+        "demo", f"name: A, id: 1, set_id: 2, get_id: 3, kind: {kind}, length: 0"
+    )
+    assert [(f.message, f.help) for f in findings(tmp_path, text) if f.code == "ICD059"] == [
+        (f"a {kind} message has no `{key}`", f"remove it: {kind} has {shown}")
+        for key in ("id", "set_id", "get_id")
+        if key not in own
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KEYS_OF_KINDS)
+def test_only_telemetry_has_no_acknowledge_and_hazard(kind, tmp_path):
+    ids = "set_id: 1, get_id: 2" if kind == "configuration" else "id: 1"
+    keys = "acknowledge: false, hazard: It is lost."
+    text = node("demo", f"name: A, {ids}, kind: {kind}, length: 0, {keys}")
+    assert codes(tmp_path, text) == ["ICD065"] * 2 * (kind == "telemetry")
+
+
+SHARED = "shares_id: true, "
+
+
+@pytest.mark.parametrize(
+    ("shared", "lines"),
+    [
+        ("ABC", []),
+        ("AB", [(6, "`C`")]),
+        ("BC", [(5, "`A`"), (6, "`A`")]),
+        ("A", [(5, "`B`"), (6, "`C`")]),
+        ("", [(5, "each of the two"), (6, "each of the two")]),
+    ],
+)
+def test_each_message_of_a_shared_id_is_compared_with_the_first(
+    shared, lines, tmp_path
+):
+    messages = [
+        command(name, "0x05", SHARED * (name in shared) + fixed(value))
+        for value, name in enumerate("ABC")
+    ]
+    reported = findings(tmp_path, node("demo", *messages))
+    one = ", and only one of the two has `shares_id`" * bool(shared)
+    assert [(f.code, f.place.line, f.message, f.help) for f in reported] == [
+        (
+            "ICD181",
+            line,
+            f"telecommand id 0x05 already belongs to `A` (line 4){one}",
+            "correct one `id`; or, if they share the id on purpose, add `shares_id: "
+            f"true` to {to}",
+        )
+        for line, to in lines
+    ]
+
+
+def test_shares_id_needs_a_message_of_the_same_direction_in_one_device(tmp_path):
+    """A file that includes both messages is such a device."""
+    one = command("A", 5, SHARED + fixed(1))
+    other = node("base", command("B", 5, SHARED + fixed(2)))
+    assert codes(tmp_path, node("demo", one)) == ["ICD182"]
+    state = telemetry("B", 5, SHARED + fixed(2))
+    assert codes(tmp_path, node("demo", one, state)) == ["ICD182"] * 2
+    assert codes(tmp_path, with_base(node("demo", one), other)) == ["ICD182"] * 2
+    assert codes(tmp_path, with_base(node("demo", one, head=INCLUDE), other)) == []
+
+
+@pytest.mark.parametrize(
+    ("bits", "given", "is_right"),
+    [
+        (8, [1], True),
+        (8, [1, 2], False),
+        (11, [1, 2], True),
+        (11, [1], False),
+        (16, [1, 2], True),
+        (17, [1, 2], False),
+        (29, [0, 0, 0, 1], True),
+        (32, [1, 2, 3], False),
+    ],
+)
+def test_an_id_in_bytes_has_the_bytes_of_its_bits(bits, given, is_right, tmp_path):
+    reported = findings(tmp_path, node("demo", command("Ping", given), bits=bits))
+    size = -(-bits // 8)
+    needed = f"{size} byte{'s' * (size > 1)}"
+    has = f"{len(given)} byte{'s' * (len(given) > 1)}"
+    assert [(f.code, f.message, f.help) for f in reported] == [
+        (
+            "ICD111",
+            f"ids have {bits} bits, which is {needed}: `Ping` has an id of {has}",
+            f"write {needed}, or correct `id_bits` in `node`",
+        )
+    ] * (not is_right)
