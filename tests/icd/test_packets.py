@@ -197,5 +197,8 @@ messages:
 {message("State", 9, "telemetry", length)}"""
         messages = [f.message for f in reported(tmp_path, text, "ICD188")]
         size = length + around
-        expected = f"the {size} bytes of `State` are not a multiple of the unit {unit}"
+        of_state = (
+            "1 byte of `State` is" if size == 1 else f"{size} bytes of `State` are"
+        )
+        expected = f"the {of_state} not a multiple of the unit {unit}"
         assert messages == [expected] * (size % unit > 0)

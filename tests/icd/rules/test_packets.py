@@ -267,7 +267,7 @@ def test_the_reserved_bytes_of_a_request_are_whole_units(counts, reserved, tmp_p
     text = packets(rows, STATE, SAVE, keys=keys)
     size = reserved + 3 * (counts == "message")
     assert messages(tmp_path, text, "ICD188") == [
-        f"{size} byte{'s' * (size != 1)} are not a multiple of the unit 2"
+        f"{'1 byte is' if size == 1 else f'{size} bytes are'} not a multiple of the unit 2"
     ] * (size % 2)
 
 

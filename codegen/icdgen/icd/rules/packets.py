@@ -300,7 +300,7 @@ def _units(
         around = packet.overhead if row.get("counts") == "message" else 0
         reserved = link.declared.reserved_in(packet.declared)
         if not messages and (reserved + around) % unit:
-            text = f"{count(reserved + around, 'byte')} are not a multiple of the unit {unit}"
+            text = _not_a_multiple(reserved + around, unit)
             yield Fault.at(row, "unit", text, "correct `unit` or `reserved`")
     sizes: dict[tuple[str, int], int] = {}
     for message in messages:
@@ -316,7 +316,7 @@ def _units(
             text = f"{what} has no fixed length, which the {row['role']} needs"
             help = "let the message have a fixed length, or remove `unit`"
         elif (message.length + around) % unit:
-            text = f"the {message.length + around} bytes of {what} are not a multiple of the unit {unit}"
+            text = _not_a_multiple(message.length + around, unit, what)
             help = "correct `unit`, or the length of the message"
         elif is_of_response and number >> row["bits"]:
             text = f"a length of {count(row['bits'], 'bit')} does not hold {number}, that of {what}"
@@ -324,3 +324,9 @@ def _units(
         else:
             continue
         yield Fault.at(row, "unit" if "unit" in row else "role", text, help)
+
+
+def _not_a_multiple(size: int, unit: int, message: str = "") -> str:
+    """Return the text about the bytes of a message, or of a packet without a message."""
+    what = f"the {count(size, 'byte')} of {message}" if message else count(size, "byte")
+    return f"{what} {'is' if size == 1 else 'are'} not a multiple of the unit {unit}"
