@@ -116,6 +116,35 @@ def test_a_response_to_a_request_repeats_any_id_of_telemetry(id, bits, tmp_path)
     assert_limits(is_wide_enough, least=bits)
 
 
+def test_a_response_to_a_request_repeats_a_byte_of_the_id(tmp_path):
+    """The node has ids of 16 bits, so that there is no third byte."""
+    state = sent("State", 1, field(64), kind="telemetry")
+
+    def text(bits: int, repeated: str) -> str:
+        keys = (
+            f"    requests: {{nak: {{message: Ack, echo: {{Number: '{repeated}'}}}}}}\n"
+        )
+        return link("ack: none", ack(bits), state, keys=keys)
+
+    for byte in ("id[0]", "id[1]"):
+        assert_limits(
+            lambda bits, byte=byte: (
+                messages(tmp_path, text(bits, byte), "ICD177") == []
+            ),
+            least=8,
+        )
+        (found,) = reported(tmp_path, text(7, byte), "ICD177")
+        assert found[2:] == (
+            f"`Number` of 7 bits cannot repeat `{byte}` of 8 bits",
+            "name another field",
+        )
+    (found,) = reported(tmp_path, text(32, "id[2]"), "ICD177")
+    assert found[2:] == (
+        "a request of telemetry has no part but its id and its header",
+        "write `id`, or `header.` and the name of a field",
+    )
+
+
 @pytest.mark.parametrize(
     ("type", "least", "most"), [("uint", 0, 7), ("int", -4, 3)]
 )  # fmt: skip
@@ -435,3 +464,18 @@ def test_messages_of_one_id_have_repeated_parts_at_one_place(
     )
     found = reported(tmp_path, link(commands, ack(32), *content), "ICD178")
     assert found == [expected] * is_moved
+
+
+@pytest.mark.parametrize("repeated", ["id", "header.flags", "Value", "Other"])
+def test_only_parts_that_both_messages_of_one_id_have_are_compared(repeated, tmp_path):
+    """`A` has `Value`, and no message has `Other` (ICD177)."""
+    content = [
+        sent(
+            "A", 1, field(8, "Value"), length=2, keys=", shares_id: true, reserved: 1"
+        ),
+        sent("B", 1, field(24, "Data"), length=3, keys=", shares_id: true"),
+    ]
+    text = link(
+        f"ack: {{message: Ack, echo: {{Number: {repeated}}}}}", ack(32), *content
+    )
+    assert messages(tmp_path, text, "ICD178") == []

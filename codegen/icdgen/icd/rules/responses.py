@@ -169,11 +169,8 @@ def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
                 )
             elif name in names and ids.count(names[name]) > 1:
                 message = f"other telemetry has the id of {quote(name)}, so a client cannot tell that it is a response"
-                yield declared.fault(
-                    "message",
-                    message,
-                    "make it one message, with a field that `status` names",
-                )
+                help = "make it one message, with a field that `status` names"
+                yield declared.fault("message", message, help)
 
 
 def _sources(ctx: Context, link: DeclaredLink) -> Iterator[Fault]:
@@ -301,9 +298,11 @@ def _reason_against_echo(
             text = "a request of telemetry has no part but its id and its header"
             return text, "write `id`, or `header.` and the name of a field"
         ids = [id for id, _ in messages_with_ids(ctx, node, TELEMETRY)]
-        bits = max(ids, default=0).bit_length()
-        if repeated == ID and bits > width:
-            text = f"{quote(name)} of {count(width, 'bit')} cannot repeat an id of {count(bits, 'bit')}"
+        what, bits = "an id", max(ids, default=0).bit_length()
+        if repeated != ID:
+            what, bits = quote(repeated), 8
+        if bits > width:
+            text = f"{quote(name)} of {count(width, 'bit')} cannot repeat {what} of {count(bits, 'bit')}"
             return text, "name another field"
     for message in declared.telecommands:
         text, help = _misfit(node, name, width, message, repeated)
