@@ -71,7 +71,9 @@ def test_a_missing_message_with_the_id_of_a_message_is_reported(
     assert finding.help == "correct one `id`"
 
 
-@pytest.mark.parametrize("id", [-1, 2**32, "[256]", "[-1]", "[]", "[0, 0, 0, 0, 1]"])
+@pytest.mark.parametrize(
+    "id", [-1, 2**32, "[256]", "[1, 256]", "[-1, 1]", "[]", "[0, 0, 0, 0, 1]"]
+)
 def test_a_missing_message_with_an_impossible_id_has_one_finding(id, tmp_path):
     text = node("demo", command("Ping", 1), bits=32, head=lost(id))
     assert codes(tmp_path, text) == ["ICD010"]

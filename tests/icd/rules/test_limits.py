@@ -10,7 +10,7 @@ import pytest
 
 from icdgen.icd.meanings import Limits
 from icdgen.icd.rules.limits import Bounds, bounds
-from tests.icd.files import status
+from tests.icd.files import codes, status
 from tests.icd.rules.reported import reported
 
 CHOICES = [None, Fraction(1), Fraction(2)]
@@ -92,6 +92,22 @@ def test_the_first_limit_of_a_type_without_numbers_is_reported(
     found = reported(tmp_path, field(keys, type, bits), "ICD033")
     text = f"`{key}` has no meaning for type `{type}`"
     assert found == [(9, marked, text, f"remove `{key}`")]
+
+
+@pytest.mark.parametrize(
+    ("keys", "type", "bits", "code"),
+    [
+        ("max: -1", "float", 32, None),
+        ("max: -1", "uint", 32, "ICD034"),
+        ("above: 1", "bool", 1, "ICD033"),
+        ("max: -1", "bytes", 32, "ICD033"),
+    ],
+)
+def test_only_integers_are_compared_with_raw_values(keys, type, bits, code, tmp_path):
+    text = status(
+        f"at: 0, bits: {bits}, name: A, type: {type}, {keys}", length=(bits + 7) // 8
+    )
+    assert codes(tmp_path, text) == ([code] if code else [])
 
 
 @pytest.mark.parametrize(
