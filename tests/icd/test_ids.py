@@ -361,3 +361,9 @@ def test_an_id_in_bytes_has_the_bytes_of_its_bits(bits, given, is_right, tmp_pat
             f"write {needed}, or correct `id_bits` in `node`",
         )
     ] * (not is_right)
+
+
+def test_shares_id_is_not_reported_beside_a_message_with_errors(tmp_path):
+    """It may be the other message of the id."""
+    messages = command("A", 5, SHARED + fixed(1)), command("B", 5, SHARED + "length: x")
+    assert codes(tmp_path, node("demo", *messages)) == ["ICD010"]

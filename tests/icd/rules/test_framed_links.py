@@ -467,6 +467,7 @@ BROKEN = {
         "role: flags, value: x",
         "role: flags, value: true",
         "role: flags, value: [256]",
+        "role: flags, value: [1, 256]",
         "role: flags, value: [-1]",
         "role: flags, value: [x]",
         "role: flags, value: {telecommand: 1, telemetry: x}",

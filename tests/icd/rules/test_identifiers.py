@@ -26,8 +26,9 @@ ANOTHER = "other words from which its names in all languages are built"
 
 
 class FewNames:
-    """Language that declares these identifiers: the name of a message (none for the
-    runtime), the text and, if it is not the usual one, the scope.
+    """Language that declares these identifiers: the name of a message (or what else
+    declares it, the runtime by default), the text and, if it is not the usual one, the
+    scope.
     """
 
     def __init__(
@@ -43,8 +44,8 @@ class FewNames:
         sources["demo"] = icd.nodes[0].source
         sources |= {row["symbol"]: row for row in sources["demo"].get("units", ())}
         for name, text, *scope in self._rows:
-            owner = f"message `{name}`" if name else "the runtime"
-            source = sources[name] if name else None
+            source = sources.get(name)
+            owner = f"message `{name}`" if source else name or "the runtime"
             yield Identifier(scope[0] if scope else "file", text, owner, source)
 
 
@@ -144,6 +145,15 @@ def test_equal_names_in_two_scopes_do_not_clash(tmp_path):
 def test_a_clash_with_a_name_of_the_runtime_is_reported_at_the_line(rows, tmp_path):
     assert texts(tmp_path, FewNames("One", *rows)) == [
         (5, "message `B` and the runtime both become `same` in One")
+    ]
+
+
+def test_clashes_of_a_line_with_two_names_of_the_runtime_are_two_findings(tmp_path):
+    rows = ("B", "one"), ("", "one"), ("B", "two"), ("the header", "two")
+    languages = [FewNames(title, *rows[n : n + 2]) for n, title in ((0, "One"), (2, "Two"))]  # fmt: skip
+    assert sorted(texts(tmp_path, *languages)) == [
+        (5, "message `B` and the header both become `two` in Two"),
+        (5, "message `B` and the runtime both become `one` in One"),
     ]
 
 
