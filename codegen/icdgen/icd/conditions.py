@@ -109,8 +109,12 @@ def faults_of_values(
             or (field["type"] == "enum" and field.get("enum", "") not in enums)
         ):
             continue  # `faults_of_names` or another rule reports it
+        values = _as_list(listed)
+        is_constant_listed = "const" in field and field["const"] in (
+            _raw_value(field, value, enums) for value in values
+        )
         raws: list[int] = []
-        for value in _as_list(listed):
+        for value in values:
             raw = _raw_value(field, value, enums)
             if raw is not None:
                 raws.append(raw)
@@ -129,9 +133,11 @@ def faults_of_values(
                 )
             elif "const" in field and raw != field["const"]:
                 text = f"`{name}` is always {field['const']}, so `{item['name']}` is never present"
-                yield Fault.at_key(
-                    when, name, text, "correct the value, or remove the field"
-                )
+                help = "correct the value, or remove the field"
+                if is_constant_listed:
+                    text = f"`{name}` is never {_shown(value)}, but always {field['const']}"
+                    help = "remove the value"
+                yield Fault.at_key(when, name, text, help)
         if len(set(raws)) < len(raws):
             yield Fault.at_key(
                 when, name, f"a value of `{name}` is given twice", "remove one of them"
