@@ -80,7 +80,7 @@ def apply(
                     "give this entry an id of its own",
                 )
             )
-        seen[entry["id"]] = entry.at("id")
+        seen.setdefault(entry["id"], entry.at("id"))
         _apply_entry(tree, entry, applied, named)
     return applied
 
