@@ -9,10 +9,12 @@ because manuals abbreviate them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import Orders
 from icdgen.icd.located import Map
 from icdgen.icd.model import ContainedMessage, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
@@ -107,6 +109,7 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
         )
         if frame is None or frame is message or frame.layout.sequence:
             continue  # ICD046 or ICD122 reports it
+        home = ctx.home_of(frame, node)
         start, end = part.at, part.at + frame.length * 8
         if end > message.length * 8:
             continue  # ICD046 reports it
@@ -137,7 +140,11 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
                     _position_in(frame, field.name, start, source.at("at")),
                 )
             else:
-                differences = list(_differences(field, counterpart, frame))
+                orders = (
+                    field.declared_orders.within(node.orders),
+                    counterpart.declared_orders.within(home.orders),
+                )
+                differences = list(_differences(field, counterpart, frame, orders))
                 reported |= {id(fault.owner) for fault in differences}
                 yield from differences
         if missing:
@@ -184,23 +191,40 @@ def _position_in(frame: Message, name: str, start: int, here: Place) -> str:
     return f"{where}, which is bit {start + same_name.at:,} here: correct `at`, or the field before it"
 
 
-def _quoted_value(source: Map, key: str) -> str:
+def _orders_with_effect(field: NodePlace) -> tuple[str, ...]:
+    """Return the keys of the orders on which the bits of a field depend."""
+    has_whole_bytes = field.at % 8 == 0 and field.bits % 8 == 0
+    is_in_a_byte = field.at % 8 + field.bits <= 8
+    keys = {
+        "byte_order": not is_in_a_byte and not field.scalar.is_bytes,
+        "bit_order": not has_whole_bytes,
+    }
+    return tuple(key for key, has_effect in keys.items() if has_effect)
+
+
+def _quoted_value(source: Mapping[str, Any], key: str) -> str:
     """Return the value of a key in backticks, or ``absent``."""
     return quote(source[key]) if key in source else "absent"
 
 
 def _differences(
-    field: NodePlace, counterpart: NodePlace, frame: Message
+    field: NodePlace,
+    counterpart: NodePlace,
+    frame: Message,
+    orders: tuple[Orders, Orders],
 ) -> Iterator[Fault]:
     """Yield a fault with all attributes in which a field differs from its counterpart
-    in the repeated frame.
+    in the repeated frame. ``orders`` are those in effect for both.
     """
     own, other = field.scalar.source, counterpart.scalar.source
     keys = [key for key in _KEYS if own.get(key) != other.get(key)]
+    own_orders, other_orders = (
+        {"byte_order": each.byte, "bit_order": each.bit} for each in orders
+    )
     keys += (
         key
-        for key in ("byte_order", "bit_order")
-        if getattr(field, key) != getattr(counterpart, key)
+        for key in _orders_with_effect(field)
+        if own_orders[key] != other_orders[key]
     )
     scale = field.scalar.scale
     if scale is not None and scale == counterpart.scalar.scale and "formula" in keys:
@@ -208,8 +232,10 @@ def _differences(
     if keys:
         key = keys[0]
         place = own.at(key) if key in own else own.place
+        # Orders in effect: the field, its owners or the node can declare them.
+        here, there = {**own, **own_orders}, {**other, **other_orders}
         values = "; ".join(
-            f"{key} {_quoted_value(own, key)} here, {_quoted_value(other, key)} there"
+            f"{key} {_quoted_value(here, key)} here, {_quoted_value(there, key)} there"
             for key in keys
         )
         reference = f"{quote(counterpart.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
