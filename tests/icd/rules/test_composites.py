@@ -291,6 +291,7 @@ def test_overlay_fields_have_no_counterpart(tmp_path):
         ("{id: 261}", []),
         ("{id: 0x0106}", ["the id `0x0106`, the detail table `0x01 0x05`"]),
         ("{id: [1, 6]}", ["the id `0x01 0x06`, the detail table `0x01 0x05`"]),
+        ("{set_id: 0x05}", ["the set id `0x05`, the detail table none"]),
         ("{length: 0x05}", ["the length `5`, the detail table `0`"]),
         (
             "{length: 1, name: Stat}",

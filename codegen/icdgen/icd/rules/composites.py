@@ -259,12 +259,14 @@ def list_tables_match_detail_tables(ctx: Context) -> Iterator[Fault]:
             if own != value and not (
                 key in _IDS and own is not None and number(own) == number(value)
             ):
-                values = [
-                    quote(_as_written(ctx, side, key))
-                    for side in (listed, message.source)
-                ]
-                listed_value = f"the {key.replace('_', ' ')} {values[0]}"
-                text = f"the list table gives {quote(message.name)} {listed_value}, the detail table {values[1]}"
+                listed_value = quote(_as_written(ctx, listed, key))
+                own_value = (
+                    quote(_as_written(ctx, message.source, key))
+                    if own is not None
+                    else "none"
+                )
+                name = key.replace("_", " ")
+                text = f"the list table gives {quote(message.name)} the {name} {listed_value}, the detail table {own_value}"
                 help = f"decide in an erratum: `held` has the other `{key}`, or `listed: null` to ignore the list table"
                 yield Fault(message.source, listed.at(key), text, help)
 
