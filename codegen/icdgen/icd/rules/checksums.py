@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from icdgen.icd import checksum
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import (
     TELECOMMAND,
@@ -18,10 +19,14 @@ from icdgen.icd.model import (
     Node,
     framed_link,
 )
-from icdgen.icd.packets import declared_packets
+from icdgen.icd.packets import ID_ROLE, declared_packets
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
+from icdgen.icd.trees import at_path
 from icdgen.wording import quote
+
+# Parameters of a CRC, in the order of `icdgen.icd.checksum.crc`.
+_PARAMETERS = ("width", "polynomial", "init", "reflect_in", "reflect_out", "xor_out")
 
 
 @rule("ICD108", needs_complete=True)
@@ -58,16 +63,7 @@ def _fault(
     """Return the fault of a message that, with its checksum, equals the ``longer``
     message of another node.
     """
-    given = next(
-        ctx.fact(each, "link", "checksums", row.get("checksum", ""))
-        for each in (node, other)
-        if (row := _of_telecommands(ctx, each))
-    )
-    data = (
-        ""
-        if message.length
-        else f", {message.telecommand_id:02X} {given.get('empty', given.get('init', 0)):02X},"
-    )
+    data = "" if message.length else _shown_data(ctx, node, other, message)
     key = "set_id" if "set_id" in message.source else "id"
     sent = f"{quote(message.name)} of {node.name} with its checksum{data}"
     help = "give one of them another id or length, or accept it in an erratum, and send this one without a checksum"
@@ -77,6 +73,25 @@ def _fault(
         f"{sent} is {quote(longer.name)} where {other.name} runs",
         help,
     )
+
+
+def _shown_data(ctx: Context, node: Node, other: Node, message: Message) -> str:
+    """Return the bytes of a message without data, with its checksum; empty if the
+    checksum is not declared, which ICD173 reports.
+    """
+    sender = node if _of_telecommands(ctx, node) else other
+    row, id = _of_telecommands(ctx, sender), message.telecommand_id or 0
+    declared = ctx.fact(sender, "link", "checksums", row.get("checksum", ""))
+    if not isinstance(declared, Mapping) or declared.get("kind") != checksum.CRC:
+        return ""
+    covers_id = at_path(row, ("covers", "from")) == ID_ROLE
+    if "empty" in declared and not covers_id:
+        value = declared["empty"]
+    else:
+        covered = bytes([id]) if covers_id else b""
+        value = checksum.crc(covered, *(declared[key] for key in _PARAMETERS))
+    digits = 2 * _extra_bytes(ctx, sender)
+    return f", {id:02X} {value:0{digits}X},"
 
 
 def _extra_bytes(ctx: Context, node: Node) -> int:
