@@ -212,13 +212,15 @@ def _check_covers(packet: LinkPacket, part: str, field: Map) -> Iterator[Fault]:
             help = "name the role of a field of the frame, or `data`"
             yield Fault.at(covers, key, message, help)
             return
-        if matches[0][0] != part_of_key:
+        # A role can occur in both parts.
+        in_part = [match for place, match in matches if place == part_of_key]
+        if not in_part:
             message = f"a checksum covers the data, but `{key}: {role}` names a field of the {matches[0][0]}"
             help = "`from` names a field of the header or `data`, `to` one of the trailer or `data`"
             yield Fault.at(covers, key, message, help)
             return
         # Of several fields of a role, all are covered.
-        _, bounds[key] = matches[0] if key == "from" else matches[-1]
+        bounds[key] = in_part[0] if key == "from" else in_part[-1]
     first, last = bounds["from"], bounds["to"]
     if first and first["at"] % 8:
         help = "begin with a field at a whole byte"
