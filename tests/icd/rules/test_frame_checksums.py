@@ -101,6 +101,7 @@ def test_a_polynomial_with_its_highest_term_is_shown_without(
     [
         ("A, B, C, D", []),
         ("A, B, C", ["`D` has no seed"]),
+        ("A, B", ["`C` has no seed, nor has 1 other"]),
         ("A", ["`B` has no seed, nor have 2 others"]),
         ("A, B, C, D, E", ["there is no message `E`"]),
         (

@@ -178,7 +178,9 @@ def _check_seeds(ctx: Context, link: DeclaredLink, checksum: Map) -> Iterator[Fa
     if without_seed:
         message = f"{quote(without_seed[0])} has no seed"
         if len(without_seed) > 1:
-            message += f", nor have {len(without_seed) - 1} others"
+            others = len(without_seed) - 1
+            verb = "has" if others == 1 else "have"
+            message += f", nor {verb} {count(others, 'other')}"
         help = "give every message a seed, or remove `seeds`"
         yield Fault.at_key(checksum, "seeds", message, help)
 
