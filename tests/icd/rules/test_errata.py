@@ -57,6 +57,9 @@ def test_a_code_that_is_found_nowhere_is_reported_once(tmp_path, others, more):
     ]
 
 
-def test_a_code_of_no_rule_is_reported_once_for_each_place(tmp_path):
-    text = MESSAGES + ENTRY.format("{message: Status}", "ICD02, icd024, ICD024")
-    assert rows(tmp_path, text, "ICD085") == []
+def test_a_code_of_no_rule_is_reported_where_it_is(tmp_path):
+    text = MESSAGES + ENTRY.format("{message: M1}", "ICD999, ICD024, E501")
+    assert rows(tmp_path, text, "ICD085") == [
+        "errata/demo.yaml:4:64 there is no rule ICD999",
+        "errata/demo.yaml:4:80 there is no rule E501",
+    ]

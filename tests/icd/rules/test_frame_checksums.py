@@ -148,6 +148,7 @@ def test_checksums_that_a_field_can_name_are_listed(tmp_path):
 SUM = "sum: {kind: sum, width: 8}"
 ID, FLAGS = "{bits: 8, role: id}", "{bits: 8, role: flags}"
 CONSTANT, HALF = "{bits: 8, role: constant}", "{bits: 4, role: constant}"
+BIT = "{bits: 1, role: constant}"
 BEGINS = "it begins within a byte"
 ITSELF = "the checksum covers itself"
 OF_TRAILER = (
@@ -167,7 +168,7 @@ def covers(first: str, last: str, bits: int = 8) -> str:
     [
         # In the trailer, a checksum begins after the last byte that it covers.
         ([ID], [FLAGS, covers("id", "flags")], []),
-        ([ID], [FLAGS.replace("8", "7"), "{bits: 1, role: constant}", covers("id", "flags")], []),
+        ([ID], [FLAGS.replace("8", "7"), BIT, covers("id", "flags")], []),
         ([ID], [FLAGS.replace("8", "4"), covers("id", "flags", 4)], [ITSELF]),
         ([ID], [covers("id", "data")], []),
         ([ID], [covers("id", "checksum")], [ITSELF]),
@@ -179,6 +180,8 @@ def covers(first: str, last: str, bits: int = 8) -> str:
         ([ID, covers("id", "data")], [], [ITSELF]),
         ([covers("id", "data", 4), ID], [], [BEGINS, ITSELF]),
         ([FLAGS.replace("8", "4"), ID], [covers("id", "data")], [BEGINS]),
+        ([FLAGS, covers("id", "data"), ID], [], []),
+        ([BIT, covers("flags", "data"), FLAGS.replace("8", "7"), ID], [], [BEGINS, ITSELF]),
         # The first of several fields of a role, and the last in the trailer.
         ([HALF, HALF, ID], [covers("constant", "data")], []),
         ([ID], [CONSTANT, covers("id", "constant"), CONSTANT], [ITSELF]),
