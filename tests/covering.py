@@ -211,8 +211,6 @@ FIRST: dict[str, str] = {
     "codegen/icdgen/backends/html/units.py": "tests/site/test_long_lists.py",
     "codegen/icdgen/backends/rust/examples.py": "tests/rust/test_example_text.py",
     "codegen/icdgen/backends/rust/procedures.py": "tests/rust/test_procedure_text.py",
-    "codegen/icdgen/definitions/can_accounting.py": "tests/definitions/test_can_shapes.py",
-    "codegen/icdgen/definitions/xtce_parts.py": "tests/definitions/test_xtce.py",
     "codegen/icdgen/diff/change.py": "tests/diff/test_reports.py",
     "codegen/icdgen/diff/changes/": "tests/diff/test_rules.py",
     "codegen/icdgen/diff/reports/": "tests/diff/test_reports.py",
@@ -222,7 +220,7 @@ FIRST: dict[str, str] = {
     "codegen/icdgen/importer/reading/pdf.py": "tests/importer/test_bad_pdf.py",
     "codegen/icdgen/importer/reading/spreadsheet.py": "tests/importer/rules/test_sources.py",
     "codegen/icdgen/importer/rules/attach.py": "tests/importer/rules/test_enumerations.py",
-    "codegen/icdgen/protocol/reading.py": "tests/protocol/test_logs_and_files.py",
+    "codegen/icdgen/protocol/procedure_steps.py": "tests/protocol/test_procedure_reader.py",
 }
 
 
