@@ -326,17 +326,25 @@ class KaitaiLayout(Container[KaitaiPart]):
 
         Raises `NotSupported` if it does not fit into the enclosing part.
         """
-        if self.ends and self.at + part.bits > self.ends[-1]:
-            raise NotSupported("it is longer than the part that contains it")
+        self._check_end(part.bits)
         if self.first_variable is not None and part.bits % 8:
             raise NotSupported(
                 "it follows a part of variable size, and does not have whole bytes"
             )
         self.add(part)
 
+    def _check_end(self, bits: int) -> None:
+        """Raise `NotSupported` if the next ``bits`` do not fit into the enclosing part."""
+        if self.ends and self.at + bits > self.ends[-1]:
+            raise NotSupported("it is longer than the part that contains it")
+
     def _constant(self, where: tuple[str, ...], always: bytes, attribute: Map) -> None:
-        """Add the bytes of `contents` as constant integers of up to 8 bytes."""
+        """Add the bytes of `contents` as constant integers of up to 8 bytes.
+
+        Raises `NotSupported` if they do not fit into the enclosing part.
+        """
         self._align()
+        self._check_end(8 * len(always))
         for start in range(0, len(always), _WORD):
             data = always[start : start + _WORD]
             name = where if len(always) <= _WORD else (*where, str(start // _WORD + 1))
@@ -413,6 +421,9 @@ class KaitaiLayout(Container[KaitaiPart]):
                 if is_present and "repeat" not in attribute
                 else None
             )
+            if size is not None:
+                self._align()
+                self._check_end(8 * size)
         except NotSupported:
             size = None
         # Bytes up to the end of the frame could be more than a frame can have.
