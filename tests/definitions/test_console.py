@@ -80,6 +80,7 @@ def test_renamed_identifiers_are_listed_up_to_twenty():
     ]
     listed = [f"  {name}" for name in names(20)]
     head = "{} names that are not valid identifiers got one:"
+    assert tail_of(2) == [head.format(2), *listed[:2]]
     assert tail_of(20) == [head.format(20), *listed]
     assert tail_of(21) == [head.format(21), *listed, "  and 1 more"]
 

@@ -234,6 +234,9 @@ def test_the_longest_frame_has_65535_bytes():
     assert most(3, 0) == MOST_BYTES - 3
     assert most(3, 16) == MOST_BYTES - 5
     assert most(3, 16, 32, type="uint", bits=32) == (MOST_BYTES - 5) // 4
+    counted = [data(size="N", plus=0), part("B", 8)]
+    result, _ = fields(counted, [part("N", 16)], length=2)
+    assert result[0]["up_to"] == MOST_BYTES - 3  # less than its counter can state
     assert most(3, 16, type="bytes", up_to=20) == 20
 
 

@@ -323,3 +323,48 @@ def test_telemetry_is_polled_until_a_number_is_not_zero(tmp_path):
     assert bus.command.sources == (ID,)
     (reply,) = bus.request.responses
     assert (reply.verdict, reply.telemetry, bus.request.timeout) == ("reply", None, 0)
+
+
+IN_TRAILER = """\
+protocol:
+  link:
+    framing: {by: cobs}
+    packets:
+      refusal:
+        from: device
+        header: [{at: 0, bits: 8, role: constant, value: 1}, {at: 8, bits: 8, role: sequence}]
+        trailer: [{at: 0, bits: 8, role: id}, {at: 8, bits: 8, role: reason, enum: Reason}]
+        reserved: 5
+      command: {from: host, header: [{at: 0, bits: 8, role: constant, value: 2}, {at: 8, bits: 8, role: id}]}
+      read:
+        from: host
+        header:
+          - {at: 0, bits: 8, role: constant, value: 3}
+          - {at: 8, bits: 8, role: id}
+          - {at: 16, bits: 8, role: sequence}
+      data: {from: device, header: [{at: 0, bits: 8, role: constant, value: 4}, {at: 8, bits: 8, role: id}]}
+    requests:
+      packet: read
+      nak: {packet: refusal, echo: {sequence: header.sequence, id: id}, reason: reason}
+    client: {reply_timeout_ms: 100}
+enums:
+  - {name: Reason, members: [{value: 1, name: Length}]}
+messages:
+  - {name: State, id: 6, kind: telemetry, length: 0}
+  - {name: Stop, id: 3, kind: telecommand, length: 0, response: none}
+"""
+
+
+def test_a_number_of_a_trailer_stands_behind_the_reserved_bytes(tmp_path):
+    result = loaded(tmp_path, IN_TRAILER)
+    assert result.ok, [finding.message for finding in result.findings]
+    exchange = stream_of(result.icd).request.exchange
+    _, nak = exchange.responses
+    # Header and reserved bytes: 2 + 5.
+    assert (nak.reason.at, nak.reason.size) == (8, 1)
+    assert [echo.place.at for echo in nak.echoes] == [1, 7]
+    # The sequence number stands in the header of the packet that requests.
+    assert (exchange.in_header, exchange.sources[-1]) == (
+        1,
+        NumberPlace(2, 1, 0, 8, True),
+    )
