@@ -401,6 +401,7 @@ RAW = ' useCalibratedValue="false"'
     ("text", "raw"),
     [
         (comparison(value="255"), 255),
+        (comparison(value="0"), 0),
         (comparison(value=" 0xff "), 255),
         (comparison("S", "-128"), -128),
         (comparison("S", "-0x02"), -2),
