@@ -114,17 +114,19 @@ def nodes_of(*contents, words) -> dict[str, list[str]]:
 
 def test_tables_belong_to_nodes_by_their_numbers_or_groups():
     words = with_nodes(
-        {"name": "a", "tables": (2, 3)},
+        {"name": "a", "tables": (3, 4)},
         {"name": "b", "group": 2},
-        {"name": "c", "tables": (4, 4), "group": 1},
+        {"name": "c", "tables": (1, 1), "group": 1},
+        {"name": "d", "tables": (4, 9)},
     )
     tables = [enum(f"E{n}", "x", label=n, number=n) for n in range(1, 6)]
-    grouped = enum("G", "x", label=4, number=6)
+    grouped = enum("G", "x", label=1, number=6)
     grouped.table.run = 2
-    # A table that no node states belongs to the node of the table before, or the first.
+    # A table that no node states belongs to the node of the table before.
     assert nodes_of(*tables, grouped, words=words) == {
-        "a": ["E1", "E2", "E3"],
-        "c": ["E4", "E5"],
+        "c": ["E1", "E2"],
+        "a": ["E3", "E4"],
+        "d": ["E5"],
         "b": ["G"],
     }
 

@@ -29,7 +29,7 @@ def word(text: str, x0: float, *, size: float = SIZE, bottom: float = 20.0) -> W
     [
         (6.0, 16.0, "10⁻³ m"),
         (8.0, 18.7, "10⁻³ m"),
-        (8.0, 18.9, "10-3 m"),  # hardly raised
+        (8.0, 18.8, "10-3 m"),  # hardly raised
         (8.1, 16.0, "10-3 m"),  # nearly as large as the text
         (6.0, 20.0, "10-3 m"),  # on the line
         (6.0, 22.0, "10-3 m"),  # a subscript
@@ -113,3 +113,10 @@ def test_a_box_is_around_all_its_things():
     things = [TextLine([word("a", 3)]), PageBox(7, 1.0, 12.0, 4.0, 15.0)]
     assert box_around(2, things) == PageBox(2, 1.0, 10.0, 8.0, 20.0)
     assert box_around(2, things[1:]) == PageBox(2, 1.0, 12.0, 4.0, 15.0)
+
+
+@pytest.mark.parametrize(("top", "count"), [(14.9, 1), (15.0, 2)])
+def test_a_line_is_as_high_as_its_largest_word(top, count):
+    raised = word("2", 5, size=6.0, bottom=15.0)
+    large = word("L", 40, size=30.0, bottom=top + 30)
+    assert len(lines([word("m", 0), raised, large])) == count

@@ -100,6 +100,7 @@ def test_a_row_is_that_of_the_kind_and_the_id_or_else_of_the_name():
     first, second = message("State", id=3), message("State", "telecommand", id=4)
     compared([first, second], row)
     assert (first.listed, second.listed) == ({"name": "STATE.", "id": 9}, {})
+    assert (first.kind, second.kind) == ("telemetry", "telecommand")
 
 
 @pytest.mark.parametrize(
@@ -199,6 +200,8 @@ def test_a_table_of_several_enumerations_needs_a_title():
     what = "it points to table 8, which has 4 enumerations: `A` and `B` and `C`"
     assert resolved(enums, enum_table=8) == unresolved(what)
     assert resolved(enums, enum_table=8, enum_title="B") == ("enum", "B", [])
+    what = "it points to table 8, which has 2 enumerations: `A` and `B`"
+    assert resolved(enums[:2], enum_table=8) == unresolved(what)
     assert resolved(enums, enum_title="Modes")[0] == "uint"
 
 

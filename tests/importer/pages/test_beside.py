@@ -132,6 +132,8 @@ def test_tables_that_overlap_vertically_are_side_by_side():
     [
         (boxed(190, 400), True),
         (boxed(189.9, 400), False),
+        (boxed(-100, 0), True),
+        (boxed(-100, 0.1), False),
         (boxed(200, 400, top=199.9, bottom=300.0), True),
         (boxed(200, 400, top=200.0, bottom=300.0), False),
         (boxed(200, 400, top=0.0, bottom=100.1), True),

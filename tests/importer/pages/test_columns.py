@@ -78,6 +78,18 @@ def test_an_edge_has_words_of_both_columns_beside_it():
     assert edge((60, 70), (80, 90)) == 75
 
 
+def test_words_of_the_column_behind_the_next_one_are_not_beside_an_edge():
+    spans = [(0.0, 30.0), (130.0, 160.0), (260.0, 290.0)]
+
+    def first_edge(x1: float) -> float:
+        row = [word("a", 0, 20), word("b", 60, 62), word("c", 260, x1)]
+        return boundaries(spans, [TextLine(row)], 0, 300)[1]
+
+    # The third heading has its centre at 275.
+    assert first_edge(289.8) == 103.5
+    assert first_edge(290.2) == 40
+
+
 @pytest.mark.parametrize(("end", "middle"), [(24.9, 70.0), (25.0, 22.5)])
 def test_an_edge_is_in_no_gap_of_less_than_half_the_type_size(end, middle):
     # Three words begin at the end of the gap, so that it is a column otherwise.

@@ -302,3 +302,9 @@ def test_registers_are_as_long_as_their_part_or_their_fields():
     drafts = draft("A", 0), draft("B", 8, 5)
     (message,), _, _ = built(part(*drafts, own=own), order=BIG_MSB)
     assert [(f.name, f.at) for f in message.fields] == [("B", 3), ("A", 8)]
+
+
+def test_a_struct_has_as_many_bytes_as_its_fields_need():
+    for bits, length in ((7, 1), (8, 1), (9, 2)):
+        ((_, size, _),), _, _ = grouped(draft("X", 16, bits), count="2")
+        assert size == length

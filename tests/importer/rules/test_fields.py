@@ -424,3 +424,25 @@ def test_descriptions_are_searched_only_if_the_profile_states_phrases():
     unread = "value = RAW^2"
     _, (finding,) = read({"bits": "8", "text": unread}, words=words)
     assert finding[:2] == ("IMP040", "warning") and finding[2].endswith(f": `{unread}`")
+
+
+def test_a_range_over_bytes_is_placed_by_its_ends_or_reported():
+    ends = {"byte": "1", "bit": "4", "last_byte": "2", "end_bit": "3"}
+    result = field(**ends)
+    assert (result.at, result.bits) == (12, 8)
+    assert problem(**ends | {"bit": "8"})[2] == "a byte has no bit 8"
+
+
+def test_rows_with_one_fault_are_named_by_their_fields():
+    rows = [{"name": name, "type": ""} for name in ("A", "B")]
+    _, ((code, _, message),) = read(*rows)
+    assert code == "IMP026"
+    assert message.endswith("its type is not stated; the same in 1 more row: `B`")
+
+
+@pytest.mark.parametrize(("kind", "table"), [("enum", 8), ("uint", None)])
+def test_only_descriptions_of_enumerations_name_a_table(kind, table):
+    words = profile.Profile(WORDS.data, {"phrases": {}}, [])
+    given = {"bits": "8", "type": kind, "text": "Possible values are in Table 8: Modes"}
+    (result,), _ = read(given, words=words)
+    assert result.described.enum_table == table

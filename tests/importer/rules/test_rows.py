@@ -37,6 +37,10 @@ def test_without_headings_columns_have_numbers():
     )
 
 
+def test_a_table_without_cells_has_no_columns():
+    assert rows(head="none") == ([], [])
+
+
 def test_headings_in_several_rows_are_joined_and_equal_ones_numbered():
     titles, data = rows("A>2|Bv2|B", "x|y|", "0|1|2|3", head="A", head_rows=2)
     assert titles == ["A x", "A y", "B", "B.2"]

@@ -42,8 +42,9 @@ def test_fields_are_sorted_by_their_first_bits():
 
 
 def test_parts_with_consecutive_numbers_are_one_field():
-    low, high = draft("X", 6, 2, part=(0, 1)), draft("X", 8, 4, part=(2, 5))
-    assert joined(high, draft("A", 0, 6), low) == (
+    low, high = draft("X", 6, 2, part=(0, 1)), draft("X", 9, 3, part=(3, 5))
+    middle = draft("X", 8, 1, part=(2, 2))
+    assert joined(high, draft("A", 0, 6), low, middle) == (
         [("A", 0, 6, None), ("X", 6, 6, None)],
         [],
     )
