@@ -284,15 +284,26 @@ def test_formulas_that_contradict_their_announcement_are_one_finding():
         announced("C", 16, "raw"),
     ]
     text = "table 7: the formula of `{}{} is announced as giving the {} value and gives the {} one"
-    _, findings = fields(*drafts, announced("D", 24, "physical"))
+    physical = [announced("D", 24, "physical"), announced("E", 32, "physical")]
+    _, findings = fields(*drafts, *physical)
     assert findings == [
         (
             "IMP041",
             "warning",
             text.format("A`", " and of 2 more fields", "raw", "physical"),
         ),
-        ("IMP041", "warning", text.format("D`", "", "physical", "raw")),
+        (
+            "IMP041",
+            "warning",
+            text.format("D`", " and of 1 more field", "physical", "raw"),
+        ),
     ]
+
+
+def test_a_formula_that_contradicts_its_announcement_is_named_alone():
+    described = {"formula": "raw*2", "formula_for": "raw"}
+    ((_, _, message),) = fields(draft("A", described=described))[1]
+    assert message.startswith("table 7: the formula of `A` is announced as")
 
 
 def test_registers_are_as_long_as_their_part_or_their_fields():

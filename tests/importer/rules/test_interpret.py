@@ -284,7 +284,7 @@ def test_orders_on_which_fields_depend_must_be_stated():
     assert findings("8", "8") == []
     assert findings("8", "16") == [byte_order.format("`F1`", "depends")]
     assert findings("4", "4", "8") == [
-        bit_order.format("`F0` and 1 more fields", "depend")
+        bit_order.format("`F0` and 1 more field", "depend")
     ]
     # A field of 8 bits over two bytes depends on both.
     assert findings("4", "8", "4") == [
@@ -335,7 +335,7 @@ def test_the_explanation_of_a_table_has_rules_columns_parts_and_findings():
         "  headings of columns: Byte | Name | Note | Unit | Rest",
         "  rule `pins` (2) does not apply: the headings differ: `Pin` is wanted as cell 1, the table has `Byte`",
         "  rule `state` (2) applies: message",
-        "    1 rows below the headings",
+        "    1 row below the headings",
         "    column `Byte`: `byte`",
         "    column `Name`: `name`",
         "    column `Note`: ignored",
@@ -345,7 +345,9 @@ def test_the_explanation_of_a_table_has_rules_columns_parts_and_findings():
         "      bit    0 +8  uint  Mode V",
         f"  error[IMP102] (line 1): {unread}",
     ]
-    assert explain(result, 1).split("\n")[-2:] == [
+    first, *_, unapplied, unread = explain(result, 1).split("\n")
+    assert first == "table 1, line 1: 1 row, 1 column"
+    assert [unapplied, unread] == [
         "  no rule applies: the table is not imported",
         "  warning[IMP100] (line 1): no rule applies to table 1 with the headings `X`",
     ]

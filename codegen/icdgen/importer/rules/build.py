@@ -28,6 +28,7 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import TablePart, known_kind
 from icdgen.importer.rules.split_fields import joined_parts
 from icdgen.importer.words import squeezed
+from icdgen.wording import count
 
 
 class MessageBuilder:
@@ -141,7 +142,9 @@ class MessageBuilder:
             ]
             if names:
                 subject = f"the formula of `{names[0]}`" + (
-                    f" and of {len(names) - 1} more fields" if names[1:] else ""
+                    f" and of {count(len(names) - 1, 'more field')}"
+                    if names[1:]
+                    else ""
                 )
                 self.notes.warn(
                     "IMP041",

@@ -14,6 +14,7 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import TablePart
 from icdgen.importer.rules.rows import read_rows
 from icdgen.importer.rules.rule import TableRule
+from icdgen.wording import count
 
 SHOWN = 60  # characters of a cell
 
@@ -27,7 +28,9 @@ def explain(interpretation: Interpretation, number: int) -> str:
     )
     table = choice.table
     place = f", {table.spot.place}" if table.spot.place else ""
-    lines = [f"{table.title}{place}: {len(table.rows)} rows, {table.width} columns"]
+    lines = [
+        f"{table.title}{place}: {count(len(table.rows), 'row')}, {count(table.width, 'column')}"
+    ]
     lines += [f"  caption: {table.caption}"] if table.caption else []
     lines += [f"  heading: {heading}" for heading in table.headings]
     lines += [f"  before:  {text[: 2 * SHOWN]}" for text in table.before[-5:]]
@@ -66,7 +69,7 @@ def _columns(rule: TableRule, table: SourceTable) -> list[str]:
             roles[title] = " or ".join(
                 f"`{pattern.text}`" for pattern in column.patterns
             )
-    lines = [f"    {len(rows)} rows below the headings"]
+    lines = [f"    {count(len(rows), 'row')} below the headings"]
     for title in filter(None, titles):
         use = roles.get(title)
         if not use and title in rule.ignore:
@@ -82,11 +85,11 @@ def _part(part: TablePart) -> list[str]:
     lines = [f"    {part.rule.what}: {given}" if given else f"    {part.rule.what}"]
     lines += [f"      value {value}: {name[:SHOWN]}" for value, name in part.pairs]
     for draft in part.drafts:
-        count = f" x {draft.count}" if draft.count else ""
+        elements = f" x {draft.count}" if draft.count else ""
         formula = f", {draft.described.formula}" if draft.described.formula else ""
         unit = f" {draft.described.unit}" if draft.described.unit else ""
         lines.append(
-            f"      bit {draft.at:>4} +{draft.bits}{count}  {draft.kind}  {draft.name[:SHOWN]}{unit}{formula}"
+            f"      bit {draft.at:>4} +{draft.bits}{elements}  {draft.kind}  {draft.name[:SHOWN]}{unit}{formula}"
         )
         lines += [
             f"        value {value}: {name[:SHOWN]}" for value, name in draft.members

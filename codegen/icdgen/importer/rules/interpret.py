@@ -51,6 +51,7 @@ from icdgen.importer.source_tables import (
     group_by_headings,
     texts_in_and_around,
 )
+from icdgen.wording import count
 
 _IDS = ("id", "set_id", "get_id")
 _HEX = re.compile(r"\b(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*[hH])\b")
@@ -431,7 +432,9 @@ class _Interpreter:
         for key, (size, affected, values) in dependent.items():
             if affected and not self.profile.states_order(key):
                 further = (
-                    f" and {len(affected) - 1} more fields" if affected[1:] else ""
+                    f" and {count(len(affected) - 1, 'more field')}"
+                    if affected[1:]
+                    else ""
                 )
                 self.notes.error(
                     "IMP109",
@@ -470,11 +473,10 @@ class _Interpreter:
                         f"`{' | '.join(table.titles)[:40]}`" for table in tables[:30]
                     )
                 )
-                count = f"{len(tables)} table{'s' if len(tables) != 1 else ''}"
                 survey.import_findings.append(
                     ImportFinding(
                         "IMP108",
-                        f"rule `{rule.name}` ignores {count}: {shown[:300]}",
+                        f"rule `{rule.name}` ignores {count(len(tables), 'table')}: {shown[:300]}",
                         SourcePlace(),
                         "make sure that none describes a message",
                         "note",
