@@ -82,7 +82,10 @@ def test_empty_columns_at_the_right_are_left_out(csv_blocks):
     assert csv_blocks("A,,B,,\n0,,,,\n") == [[(1, ["A", "", "B"]), (2, ["0", "", ""])]]
 
 
-@pytest.mark.parametrize(("text", "line"), [('A,B\n0,"x"y\n1,z\n', 2), ('"A,B', 1)])
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [('A,B\n0,"x"y\n1,z\n', 2), ('"A,B', 1), ('A,B\n0,x\n1,"y\n2,z\n', 3)],
+)
 def test_a_quote_that_does_not_fit_is_a_finding_at_its_line(tmp_path, text, line):
     path = tmp_path / "a.csv"
     path.write_text(text)

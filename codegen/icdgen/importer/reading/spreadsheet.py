@@ -63,12 +63,14 @@ def read_csv(path: Path) -> Document:
             start = reader.line_num + 1
     except csv.Error as error:
         message = f"this CSV cannot be parsed: {error}"
+        # A quote that is not closed extends to the end of the file.
+        is_open = str(error) == "unexpected end of data"
         raise Findings(
             [
                 Finding(
                     CODE,
                     message,
-                    Place(name, reader.line_num),
+                    Place(name, start if is_open else reader.line_num),
                     "check the quotes in this line",
                 )
             ]
