@@ -362,3 +362,24 @@ def test_texts_of_parts_are_shortened_in_an_explanation():
         return name in text
 
     assert_limits(is_whole, most=60)
+
+
+def test_the_enumeration_of_a_field_is_none_of_its_message():
+    columns = [*COLUMNS, column("Values", "members"), column("Enum", "enumeration")]
+    source = table(
+        "Byte|Name|Values|Enum",
+        "0|A|0: Off; 1: On|",
+        "1|B|0: Off|Mode",
+        before=[BEFORE],
+    )
+    result = read(source, rules=[rule(**STATE | {"columns": columns})])
+    assert messages(result) == [("State", 0x21, ["A", "B"])]
+    enums = [r.content for r in result.survey.results if r.what == "enumeration"]
+    assert [(e.name, len(e.members)) for e in enums] == [("A", 2), ("Mode", 1)]
+    assert explain(result, 1).split("\n")[-5:] == [
+        "      bit    0 +8  enum  A",
+        "        value 0: Off",
+        "        value 1: On",
+        "      bit    8 +8  enum  B",
+        "        value 0: Off",
+    ]
