@@ -11,9 +11,11 @@ from icdgen.backends.c import (
     includes,
     procedure_headers,
 )
+from icdgen.backends.origin import origin
 from icdgen.describe import describe
+from icdgen.loading import load
 from tests.describe.small import node_of
-from tests.icd.files import loaded
+from tests.icd.files import loaded, write
 
 ICD = """\
 icdgen: 1
@@ -106,6 +108,46 @@ def test_files_are_generated_for_what_a_node_declares(tmp_path, render):
         "demo/empty.h",
         "demo.h",
     ]
+
+
+LINKED = """\
+protocol:
+  link:
+    buses:
+      uart:
+        framing: {by: escape, escape: 16, start: 2, end: 3, data: 16}
+messages:
+  - {name: Zero, id: 0, kind: telecommand, length: 0}
+  - name: Wide
+    id: 255
+    kind: telemetry
+    length: 2
+    fields: [{at: 0, bits: 16, name: Rate, type: uint, formula: raw*2^-70}]
+"""
+
+
+def test_a_link_has_the_wire_layer_and_a_client_but_procedures_only_if_it_has_some(
+    tmp_path, render
+):
+    icd = load([write(tmp_path, LINKED)], check=False).icd
+    files = {str(path): text for path, text in CBackend().files(icd, render)}
+    assert [*files] == [
+        "icdgen.h",
+        "icdgen_wide.h",
+        "icdgen_wire.h",
+        "icdgen_wire.c",
+        "demo/zero.h",
+        "demo/wide.h",
+        "demo/link.h",
+        "demo/link.c",
+        "demo/client.h",
+        "demo.h",
+    ]
+    node = icd.nodes[0]
+    for path, text in files.items():
+        of = None if path.startswith("icdgen") else node
+        assert text.startswith(f"/* {origin(of)} */\n"), path
+    assert "uint8_t id" in files["demo.h"]
 
 
 @pytest.fixture

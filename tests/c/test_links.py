@@ -372,6 +372,17 @@ def test_an_exchange_has_its_sources_and_the_responses_that_have_a_row():
         f"            2u, 1u, 2u, true, 250u, &{node}outcome_poll}},",
         f"{{NULL, {node}responses_1,\n            0u, 0u, 1u, false, 0u, NULL}},",
     ]
+    assert {table.name.removeprefix(node): table.type for table in tables.tables} == {
+        "sources_0[]": "icd_number_place_t",
+        "place_0[]": "icd_number_place_t",
+        "place_1[]": "icd_number_place_t",
+        "echoes_0[]": "icd_echo_t",
+        "meanings_0[]": "icd_meaning_t",
+        "responses_0[]": "icd_response_t",
+        "outcome_poll": "icd_outcome_poll_t",
+        "responses_1[]": "icd_response_t",
+        "exchanges[]": "icd_exchange_t",
+    }
     # Places in the id and the data count the bytes of the id already.
     assert rows["sources_0[]"] == [
         "{2u, 2u, 4u, 12u, false},",
@@ -453,6 +464,10 @@ def test_a_packet_format_has_the_only_ids_of_its_messages_if_no_field_has_them()
         "{{0x4u, 0x0u}, NULL, NULL, 0u, 0u, 1u, ICD_PACKET_MESSAGE, {true, true}, "
         "5u}, /* * / */"
     )
+    assert [table.type for table in tables.tables] == [
+        "icd_packet_field_t",
+        "icd_check_form_t",
+    ]
     assert rows_by_name(tables)["check_0"] == [
         "&icdgen_node_demo_checksum_sum, /* algorithm */",
         "1u, 2u, true, /* covered */",
@@ -484,9 +499,36 @@ def test_a_framing_has_its_packets_messages_and_escape_characters():
         f"&{node}request, /* request of telemetry */",
         f"&{node}escaping, /* escape characters */",
     ]
+    assert {table.name.removeprefix(node): table.type for table in tables.tables} == {
+        "packets[]": "icd_packet_form_t",
+        "exchanges[]": "icd_exchange_t",
+        "sent[]": "icd_stream_row_t",
+        "received[]": "icd_stream_row_t",
+        "request": "icd_telemetry_request_t",
+        "escaping": "icd_escaping_t",
+        "stream": "icd_stream_form_t",
+    }
     assert rows["request"] == [f"&{node}exchanges[0], 1u,"]
     assert rows["escaping"] == ["0x1fu, 0x00u, 0xffu, 0x00u, false, true,"]
     assert tables.tables[-1].comment == "    /** Assumed by: usual */"
+
+
+def test_telemetry_that_only_responds_is_listed_in_rows_of_eight():
+    exchanges = [Exchange((), (a_response(id),), 0) for id in range(9)]
+    rows = tuple(
+        StreamRow(id, 0, 9, False, 0, "Any", exchange)
+        for id, exchange in enumerate(exchanges)
+    )
+    tables = tables_of(facts={"stream": a_stream(a_format(), telecommands=rows)})
+    tables.declare_stream()
+    listed = rows_by_name(tables)
+    assert listed["confirming[]"] == [
+        "0x0u, 0x1u, 0x2u, 0x3u, 0x4u, 0x5u, 0x6u, 0x7u,",
+        "0x8u,",
+    ]
+    assert listed["stream"][3].startswith("9u, icdgen_node_demo_confirming, ")
+    (table,) = (each for each in tables.tables if each.name.endswith("confirming[]"))
+    assert table.type == "uint32_t"
 
 
 def test_the_first_byte_of_a_packet_follows_the_escape_byte_if_the_icd_has_one():

@@ -255,6 +255,46 @@ def test_an_overlay_is_a_function_and_an_absent_field_has_its_initial_value(tmp_
         assert kind == 1 or frame_value == 0
 
 
+def test_a_text_is_set_from_strings_of_c_and_read_as_one(tmp_path):
+    text = selftest_of(
+        tmp_path,
+        "at: 0, bits: 24, name: Word, type: text",
+        "at: 24, bits: 64, name: Wide, type: uint",
+        length=11,
+    )
+    word = members_of(text, "Word")
+    stem = "demo_status_selftest_word"
+    assert (word["type"], word["size"]) == ("ICDGEN_SELFTEST_BYTES", "3")
+    assert (word["get_text"], word["set_text"]) == (
+        f"{stem}_get_text",
+        f"{stem}_set_text",
+    )
+    assert "return demo_status_set_word_text((demo_status_t *)message, text);" in text
+    rows = table(text, f"{stem}_texts")
+    assert word["text_count"] == str(len(rows))
+    assert '{"", (const uint8_t[]){0x0, 0x0, 0x0}},' in rows
+    assert any(row.endswith(", NULL},") for row in rows)
+    # The getter of each frame, or NULL where a C string cannot have the bytes.
+    read = table(text, "demo_status_selftest_texts")
+    (count,) = re.findall(r"\.vector_count = (\d+),", text)
+    assert len(read) == int(count) and '"",' in read
+    assert all(row == "NULL," or row.startswith('"') for row in read)
+    assert (members_of(text, "Wide")["size"], members_of(text, "Wide")["packed"]) == (
+        "8",
+        "8",
+    )
+
+
+def test_an_id_of_several_messages_has_no_single_length(tmp_path):
+    backend = backends.get("c-selftest")
+    icd = icd_of(tmp_path, MESSAGES.format(length=2))
+    files = backend.files(icd, Renderer.of_backend(backend))
+    (text,) = (text for path, text in files if path.parent.name == "nodes")
+    ids = "".join(table(text, "demo_telecommand_selftest_ids"))
+    rows = [int(id) for id in re.findall(r"\{(\d+)u, ", ids)]
+    assert rows == [id for id in range(256) if id != 5]
+
+
 def test_raw_values_of_more_than_16_bits_are_literals_of_64():
     def is_short(value):
         return selftest_rows._unsigned_literal(value) == f"{value}u"

@@ -50,6 +50,48 @@ def test_a_message_has_its_ids_and_the_directions_of_these(tmp_path):
     ]
 
 
+def test_an_id_has_the_name_of_its_constant(tmp_path):
+    node = node_of(tmp_path, MESSAGES)
+    names = {
+        direction: [(of_id.id, of_id.first.id_name) for of_id in node.ids(direction)]
+        for direction in ("telecommand", "telemetry")
+    }
+    assert names == {
+        "telecommand": [(0, "id"), (7, "set_id")],
+        "telemetry": [(255, "id"), (9, "get_id")],
+    }
+
+
+def test_names_of_checksums_are_those_of_the_link(tmp_path):
+    text = """\
+protocol:
+  link:
+    checksums:
+      crc8: {kind: crc, width: 8, polynomial: 7, init: 0, xor_out: 0,
+             reflect_in: false, reflect_out: false}
+      sum: {kind: sum, width: 8}
+"""
+    node = node_of(tmp_path, text)
+    assert node.checksums == ("crc8", "sum")
+    assert node.is_linked
+    assert node_of(tmp_path, MESSAGES).checksums == ()
+
+
+def test_comments_on_telemetry_have_its_bit_of_the_log_mask(tmp_path):
+    text = (
+        MESSAGES + "loggable: [{bit: 3, id: 255}, {bit: 4, id: 0}, {bit: 5, id: 9}]\n"
+    )
+    node = node_of(tmp_path, text)
+    bits = [
+        [bit for bit in range(9) if f"Bit {bit} of the log" in paragraphs]
+        for message in node.messages
+        for paragraphs in [" ".join(message.comment.paragraphs)]
+    ]
+    # The id 0 is that of a telecommand.
+    assert bits == [[], [3], [5]]
+    assert node.log_bits == {255: 3, 0: 4, 9: 5}
+
+
 def test_a_direction_without_messages_is_left_out(tmp_path):
     text = MESSAGES.splitlines()[:2]
     node = node_of(tmp_path, "\n".join(text) + "\n")
