@@ -63,6 +63,13 @@ def double_of(folder, keys, bits=16):
             "icdgen_physical_u64(message->rate, 1, 0, 2)",
             "icdgen_set_u64(&message->rate, value, 1, 0, 2, UINT64_C(1099511627775))",
         ),
+        # The smallest field whose limit is beyond 32 bits.
+        (
+            33,
+            "type: uint, formula: raw",
+            "icdgen_physical_u64(message->rate, 1, 0, 1)",
+            "icdgen_set_u64(&message->rate, value, 1, 0, 1, UINT64_C(8589934591))",
+        ),
         (
             64,
             "type: int, formula: raw/4294967295",
@@ -229,6 +236,14 @@ def test_an_overlay_is_read_by_its_getter_and_has_no_setter(tmp_path):
             "ICDGEN_U8(icdgen_nearest32(value - INT32_C(1000), 10))",
             "(value < 995) || (value > 3554)",
         ),
+        (
+            8,
+            "type: uint, formula: -raw*0.001",
+            "int32_t",
+            "message->rate * INT32_C(-1)",
+            "ICDGEN_U8(INT32_C(0) - value)",
+            "(value < -255) || (value > 0)",
+        ),
         # The raw value of 32 bits, scaled, needs 64.
         (
             32,
@@ -301,6 +316,29 @@ def test_each_step_of_a_derived_value_is_a_volatile_double(tmp_path):
     )
     assert accessor.expression == "icdgen_quiet(step_4)"
     assert (accessor.end, accessor.assignment, accessor.title) == ("sum", "", "")
+
+
+def test_a_step_that_is_longer_than_a_line_continues_on_the_next(tmp_path):
+    def first_line(length):
+        folder = tmp_path / str(length)
+        folder.mkdir()
+        text = status(f"at: 0, name: {'a' * length}, bits: 64, type: float", length=8)
+        formula = "a" * length + " + 1"
+        text += f"    derived: [{{name: Sum, formula: {formula}}}]\n"
+        (accessor,) = double_accessors(node_of(folder, text).messages[0])
+        line = accessor.declared[0]
+        name = "a" * length
+        assert line.split() == [
+            *f"const double {name} =".split(),
+            f"message->{name};",
+        ]
+        assert "\n" not in line or f" =\n        message->{name};" in line
+        return line
+
+    fixed = len("    const double  = message->;")
+    assert_limits(
+        lambda length: "\n" not in first_line(length), most=(120 - fixed) // 2
+    )
 
 
 def test_the_comment_of_an_overlay_says_when_it_is_0(tmp_path):

@@ -72,8 +72,8 @@ def declared(folder, keys, first=()):
             'float = _base.field(NAME, 0, 32, "float", default=0.0)',
         ),
         (
-            "bits: 24, type: bytes",
-            'bytes = _base.field(NAME, 0, 24, "bytes", default=bytes(3))',
+            "bits: 56, type: bytes",
+            'bytes = _base.field(NAME, 0, 56, "bytes", default=bytes(7))',
         ),
         (
             "bits: 24, type: text",
@@ -343,13 +343,14 @@ def views(folder, *fields, length=4, derived=""):
 
 
 def test_an_overlay_field_is_read_from_the_frame_and_scaled_exactly(tmp_path):
-    low, mode, falling = views(
+    low, mode, falling, plain = views(
         tmp_path,
         "at: 0, bits: 32, name: Whole, type: uint",
         "at: 0, bits: 8, name: Low, type: int, view: true, unit: V, "
         "formula: raw*0.5 - 3",
         "at: 8, bits: 8, name: Mode, type: enum, enum: Mode, view: true",
         "at: 16, bits: 8, name: Falling, type: uint, view: true, formula: 1 - raw",
+        "at: 24, bits: 8, name: Plain, type: uint, view: true, formula: raw*2",
     )
     assert view_info(low) == (
         '_base.FieldInfo("low", "Low", 0, 8, "int", unit="V", physical="low_v", '
@@ -362,6 +363,31 @@ def test_an_overlay_field_is_read_from_the_frame_and_scaled_exactly(tmp_path):
     )
     assert getter(mode) == '_base.view(self, "mode", Mode)'
     assert physical(falling) == "(self.falling * -1 + 1) / 1"
+    assert physical(plain) == "(self.plain * 2 + 0) / 1"
+
+
+def test_an_overlay_on_a_calibration_has_a_line_for_each_of_several_pieces(tmp_path):
+    single, several = views(
+        tmp_path,
+        "at: 0, bits: 16, name: Everything, type: uint",
+        "at: 0, bits: 8, name: Single, type: uint, view: true, formula: raw^2",
+        f"at: 8, bits: 8, name: Several, type: uint, view: true, {POINTS}, "
+        "outside: extrapolate",
+        length=2,
+    )
+    assert view_info(single) == (
+        '_base.FieldInfo("single", "Single", 0, 8, "uint", '
+        'physical="single_physical", curve=((0.0, (0.0, 0.0, 1.0)),))'
+    )
+    assert view_info(several) == (
+        '_base.FieldInfo("several", "Several", 8, 8, "uint", '
+        'physical="several_physical", curve=(\n'
+        "                (10.0, (1.0, 0.5)),\n"
+        "                (20.0, (6.0, 2.0)),\n"
+        "                (30.0, (26.0, 2.0)),\n"
+        "            ))"
+    )
+    assert physical(several) == '_base.on_curve(self, "several")'
 
 
 def test_a_derived_value_has_its_operands_and_steps(tmp_path):

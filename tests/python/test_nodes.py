@@ -100,8 +100,29 @@ def test_names_of_a_node_are_listed_with_their_modules(tmp_path):
         ]
     )  # fmt: skip
     assert enum_classes(node) == [("Run Mode", "RunMode")]
-    assert public([node])[:2] == ["FieldInfo", "IcdError"]
-    assert "demo" in public([node]) and "is_special" in public([node])
+    assert public([node]) == [
+        "FieldInfo", "IcdError", "LengthError", "Message", "NODES", "OpenEnum",
+        "RangeError", "Struct", "UnknownIdError", "demo", "is_special",
+    ]  # fmt: skip
+
+
+LINKED = """\
+protocol:
+  link:
+    buses:
+      uart:
+        framing: {by: escape, escape: 16, start: 2, end: 3, data: 16}
+messages:
+  - {name: Zero, id: 0, kind: telecommand, length: 0}
+"""
+
+
+def test_a_node_with_a_link_has_its_description(tmp_path):
+    node = node_of(tmp_path, LINKED)
+    assert declared(node) == [("LINK", "._link"), ("Zero", "._types.zero")]
+    assert "LINK" in public_of_node(node)
+    # Without procedures, there is no module for them.
+    assert "procedures" not in public_of_node(node)
 
 
 @pytest.mark.parametrize(
