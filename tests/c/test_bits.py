@@ -314,16 +314,13 @@ def test_bits_beyond_a_field_are_masked_in_its_type(tmp_path, keys, expression):
 def test_the_type_for_all_bits_beyond_is_that_of_the_widest_narrow_field(tmp_path):
     def is_32(bits):
         # A field of 64 bits has no bits beyond it.
-        return (
-            excess_type(
-                message_of(
-                    tmp_path,
-                    f"name: Value, at: 0, bits: {bits}, type: int",
-                    "name: Whole, at: 64, bits: 64, type: uint",
-                    length=16,
-                )
-            )
-            == "uint32_t"
+        message = message_of(
+            tmp_path,
+            f"at: 0, name: Value, bits: {bits}, type: int",
+            "at: 64, name: Whole, bits: 64, type: uint",
+            length=16,
         )
+        assert excess_type(message) == f"uint{32 if bits < 33 else 64}_t"
+        return excess_type(message) == "uint32_t"
 
     assert_limits(is_32, most=32)

@@ -89,11 +89,22 @@ def test_all_conditions_must_be_met(tmp_path):
         ("type: uint", "0u"),
         ("type: int", "0"),
         ("type: float", "0"),
+        ("type: enum, enum: Mode", "0u"),
         ("type: uint, const: 7", "DEMO_STATUS_VALUE_CONST"),
     ],
 )
 def test_an_absent_field_is_zero_or_its_constant(tmp_path, more, value):
     assert absent_value(last_field(tmp_path, "{Kind: 1}", more)) == value
+
+
+def test_an_absent_flag_is_false(tmp_path):
+    _, flag = message_of(
+        tmp_path,
+        "at: 0, bits: 7, name: Kind, type: uint",
+        "at: 7, bits: 1, name: Flag, type: bool, when: {Kind: 1}",
+        length=1,
+    ).members
+    assert absent_value(flag) == "false"
 
 
 def test_an_optional_field_is_added_to_the_zeros_of_its_bits(tmp_path):

@@ -9,6 +9,7 @@ import pytest
 from icdgen.backends.c.decoding import (
     counter_tests,
     decode_statements,
+    element_bytes,
     element_count,
     elements_received,
     first_byte,
@@ -367,3 +368,67 @@ def test_a_count_that_the_part_cannot_have_is_refused(
 )
 def test_a_length_that_no_frame_has_is_refused(tmp_path, fields, length, text):
     assert misfit_length(message_of(tmp_path, *fields, length=length)) == text
+
+
+def test_bytes_behind_the_last_part_do_not_count_for_its_length(tmp_path):
+    message = message_of(
+        tmp_path,
+        "at: 0, name: Number, bits: 8, type: uint",
+        "at: 8, name: Data, bits: 16, type: uint, count: Number, up_to: 5",
+        "at: 8, after: Data, name: Sum, bits: 8, type: uint",
+        length=1,
+    )
+    assert misfit_length(message) == "(length > 11u) || (((length - 1u) % 2u) != 0u)"
+
+
+NESTED = """\
+structs:
+  - name: Curve
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Kind, type: uint}
+      - {at: 16, bits: 16, name: Points, type: uint, count: Inner, up_to: 3}
+      - {at: 16, after: Points, bits: 8, name: Marks, type: uint, count: More, up_to: 2}
+BEHIND
+"""
+TRAILER = "      - {at: 16, after: Marks, bits: 8, name: Trailer, type: uint}"
+
+
+@pytest.mark.parametrize(
+    ("behind", "bytes"),
+    [("", "2u + inner_1 + inner_2"), (TRAILER, "2u + inner_1 + inner_2 + 1u")],
+)
+def test_an_element_has_the_bytes_of_its_parts(tmp_path, behind, bytes):
+    message = message_of(
+        tmp_path,
+        "at: 0, name: Number, bits: 8, type: uint",
+        "at: 8, name: Inner, bits: 8, type: uint",
+        "at: 16, name: More, bits: 8, type: uint",
+        "at: 24, name: Curves, struct: Curve, count: Number, up_to: 2",
+        length=3,
+        head=NESTED.replace("BEHIND", behind),
+    )
+    assert element_bytes(message.last_part) == bytes
+
+
+def test_a_call_in_a_loop_is_broken_if_it_is_longer_than_a_line():
+    def is_one_line(width):
+        fixed = "        (&message->points[element], &buffer[element * 3u]);"
+        name = "f" * (width - len(fixed))
+        text = for_each("points", "3u", name, ElementBytes(0, 3))
+        return len(text.splitlines()) == 3
+
+    assert_limits(is_one_line, most=120)
+
+
+def test_a_part_that_is_in_a_loop_keeps_the_indentation_of_several_lines(tmp_path):
+    name = "T" * 60
+    message = message_of(
+        tmp_path, f"at: 0, bits: 12, name: {name}, type: uint, count: 4", length=6
+    )
+    (statement,) = decode(message)
+    assert statement.splitlines()[2:5] == [
+        "        uint32_t part_bits_0 = ICDGEN_U32(part[0]);",
+        "        part_bits_0 |= ICDGEN_U32(part[1] & 0x0Fu) << 8;",
+        f"        message->{name.lower()}[element] = ICDGEN_U16(part_bits_0);",
+    ]
