@@ -12,12 +12,9 @@ from icdgen.backends.c.links import (
     _LinkTables,
     _storable_messages,
     buffer_sizes,
-    link_code,
     received_bytes,
 )
-from icdgen.describe import describe
-from icdgen.describe.links import Assumptions, SentMessage, links_of
-from icdgen.loading import load
+from icdgen.describe.links import SentMessage
 from icdgen.protocol.exchange import (
     BusExchanges,
     Echo,
@@ -50,7 +47,6 @@ from icdgen.protocol.sections import (
     LogMessage,
     TimePart,
 )
-from tests.icd.files import write
 from tests.limits import assert_limits
 
 SUM = ChecksumAlgorithm("sum", "sum", Crc(8, 7, 1, False, False, 2), {})
@@ -296,6 +292,13 @@ def test_logs_times_and_the_index_have_a_row_for_each_part():
     names = ("log_mask", "log_message", "packed_time", "index_entry")
     assert declared == [f"&icdgen_node_demo_{name}" for name in names]
     rows = rows_by_name(tables)
+    assert [table.type for table in tables.tables] == [
+        "icd_log_bit_t",
+        "icd_log_mask_form_t",
+        "icd_log_message_form_t",
+        "icd_time_form_t",
+        "icd_index_form_t",
+    ]
     assert rows["log_bits[]"] == [
         "{0, 4u}, /* bit 0: First * / */",
         *(f"{{-1, 8u}}, /* bit {bit} */" for bit in range(1, 7)),
@@ -542,91 +545,46 @@ def test_the_first_byte_of_a_packet_follows_the_escape_byte_if_the_icd_has_one()
     ]
 
 
-BUSES = """\
-icdgen: 1
-node: {name: demo, title: Demo, byte_order: big, bit_order: msb0, node_type: 0}
-protocol:
-  link:
-    buses:
-      uart:
-        framing: {by: escape, escape: 16, start: 2, end: 3, data: 16}
-      i2c: {write: {address_8bit: 0xAE}}
-messages:
-  - {name: First, kind: telecommand, id: 0, length: 0}
-  - {name: Last, kind: telecommand, id: 255, length: 3}
-  - {name: Early, kind: telemetry, id: 0, length: 1}
-"""
-
-
-def test_a_link_has_its_members_in_the_order_of_the_runtime(tmp_path):
-    icd = load([write(tmp_path, BUSES)], check=False).icd
-    (link,) = links_of(describe(icd)).values()
-    code = link_code(link, Assumptions(link.facts))
-    assert [(each.function, each.bus) for each in code.links] == [
-        ("link", None),
-        ("uart_link", "uart"),
-        ("i2c_link", "i2c"),
-    ]
-    of_node, of_uart, of_i2c = (list(each.table.rows) for each in code.links)
-    node = "icdgen_node_demo_"
-    exchanges = f"{{&{node}on_uart,\n            &{node}on_i2c,\n            NULL}}"
-    assert of_node == [
-        f"{node}nodes, /* whose messages */",
-        "1u, /* how many */",
-        "false, /* byte order: little */",
-        "true, /* bit 0 is the most significant one */",
-        "0u, 0u, /* ids of telemetry */",
-        "0u, /* how many codes of refusals */",
-        "0u, /* how many unsolicited */",
-        f"ICDGEN_ROWS({node}telecommands), /* how many can be sent */",
-        f"ICDGEN_ROWS({node}telemetry), /* how many can be requested */",
-        f"{node}telecommands, /* what can be sent */",
-        f"{node}telemetry, /* what can be requested */",
-        "4u, 2u, 4u, /* longest telecommand, reply, any */",
-        "3u, /* longest without id and checksum */",
-        "4u, /* buffer for what is received */",
-        "NULL, /* framing */",
-        f"{exchanges}, /* exchanges on UART, I2C, CAN */",
-        "NULL, /* checksums of messages */",
-        "NULL, /* codes of refusals */",
-        f"&{node}framing, /* framing of the UART */",
-        "0u, /* bytes of an acknowledge */",
-        "NULL, /* unsolicited */",
-        "NULL, /* unsolicited logs */",
-        "NULL, /* CAN */",
-        "{1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, "
-        "/* times and limits: icd_client_settings_t */",
-        "0, /* node type */",
-        "-1, /* interface version */",
-        "87, /* I2C address */",
-        "true, /* I2C: a read may follow its write without a stop */",
-        "-1, /* boot time in ms */",
-        "NULL, /* mask of logs */",
-        "NULL, /* log files */",
-        "NULL, /* packed times */",
-        "NULL, /* index of files */",
-        "NULL, /* identification */",
-    ]
-    # Clients on a bus need only its exchanges and its framing.
-    on_i2c = {f"&{node}on_uart": "NULL", f"&{node}framing": "NULL"}
-    assert of_i2c == [_replaced(row, on_i2c) for row in of_node]
-    assert of_uart == [_replaced(row, {f"&{node}on_i2c": "NULL"}) for row in of_node]
-    assert [table.name.removeprefix(node) for table in code.tables] == [
-        "uart_exchanges[]",
-        "on_uart",
-        "i2c_exchanges[]",
-        "on_i2c",
-        "telecommands[]",
-        "telemetry[]",
-        "nodes[]",
-        "framing",
+def test_unsolicited_telemetry_has_the_id_in_front_of_it():
+    facts = {
+        "telemetry": {0: a_message("Zero */", length=4), 255: a_message("Last")},
+        "unsolicited": {1: 0, 255: 255},
+    }
+    tables = tables_of(facts=facts)
+    assert tables.declare_unsolicited() == "icdgen_node_demo_unsolicited"
+    (table,) = tables.tables
+    assert table.type == "icd_unsolicited_t"
+    assert table.rows == [
+        "{1u, 0u, 4u}, /* Zero * / */",
+        "{255u, 255u, 2u}, /* Last */",
     ]
 
 
-def _replaced(row, changes):
-    for old, new in changes.items():
-        row = row.replace(old, new)
-    return row
+def test_each_checksum_has_its_kind_and_parameters():
+    crc = ChecksumAlgorithm("CRC-8/X", "crc", Crc(8, 7, 0xFF, False, True, 0, 0x55), {})
+    tables = tables_of(facts={"checksums": {"CRC-8/X": crc, "sum": SUM}})
+    tables.declare_algorithms()
+    rows = rows_by_name(tables)
+    assert [table.type for table in tables.tables] == [
+        "uint8_t",
+        "icd_checksum_algorithm_t",
+        "icd_checksum_algorithm_t",
+    ]
+    comment = (
+        "/* width, polynomial, init, reflected in, out, xor out, whether there is one "
+        "of no bytes, which, tables */\n        "
+    )
+    table = "ICDGEN_TABLE(icdgen_node_demo_checksum_crc_8_x_table)"
+    assert rows["checksum_crc_8_x"] == [
+        "ICD_CHECK_CRC,",
+        f"{comment}{{8u, 0x7u, 0xffu, false, true, 0x0u, true, 0x55u,\n"
+        f"         {table}, NULL}},",
+    ]
+    assert rows["checksum_sum"] == [
+        "ICD_CHECK_SUM,",
+        f"{comment}{{8u, 0x7u, 0x1u, false, false, 0x2u, false, 0x0u,\n"
+        "         NULL, NULL},",
+    ]
 
 
 def test_logs_and_files_can_be_left_out_together_with_their_tables():

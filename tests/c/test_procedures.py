@@ -144,6 +144,15 @@ def test_each_kind_of_step_is_a_row_with_its_index_and_where_it_continues():
         "{ICD_STEP_JUMP, 0u, false, 0u},",
         "{ICD_STEP_SEND, 0u, false, 0u}, /* Reset * / */",
     ]
+    assert {
+        name.removesuffix("[]"): table.type
+        for name, table in tables_of(*steps).items()
+        if name[:-2] in ("tests", "receives", "checksums")
+    } == {
+        "tests": "icd_test_t",
+        "receives": "icd_receive_form_t",
+        "checksums": "icd_checksum_test_t",
+    }
     assert rows_of("tests", *steps) == [
         "{0u, {6u, true}},",
         "{5u, {1u, false}},",
@@ -175,6 +184,16 @@ def test_a_telecommand_has_its_bytes_and_the_fields_that_get_values():
         ", ".join(["0x00u", "0xffu"] * 8) + ",",
         "0x00u, 0xffu,",
     ]
+    assert {name: table.type for name, table in tables.items()} == {
+        "data_1[]": "uint8_t",
+        "puts_0[]": "icd_put_t",
+        "data_2[]": "uint8_t",
+        "data_3[]": "uint8_t",
+        "puts_1[]": "icd_put_t",
+        "sends[]": "icd_send_form_t",
+        "steps[]": "icd_step_form_t",
+        "form": "icd_procedure_form_t",
+    }
     # The id is in front of the data, as four bytes.
     assert tables["puts_0[]"].rows == [
         "{{4u, 1u, 0u, 8u, true}, {1u, false}},",
@@ -195,6 +214,10 @@ def test_a_poll_has_tests_of_its_end_before_tests_of_failure():
         "{0x80u, takes_1, conditions_0, 2u, 1u, 1u, 20u, 500u},",
         "{0x80u, NULL, conditions_1, 0u, 0u, 2u, 0u, 500u},",
     ]
+    types = {name: table.type for name, table in tables.items()}
+    assert types["takes_0[]"] == types["takes_1[]"] == "icd_take_t"
+    assert types["conditions_0[]"] == "icd_test_t"
+    assert types["polls[]"] == "icd_poll_form_t"
     assert tables["takes_0[]"].rows == ["{{6u, 2u, 4u, 12u, false}, 7u},"]
     assert tables["conditions_0[]"].rows == [
         "{5u, {1u, false}},",
@@ -270,6 +293,7 @@ def test_blocks_have_their_sizes_and_their_map():
         "{0x0u, 0x0u}, /* Reset * / */",
         "{0xffu, 0x80u}, /* State */",
     ]
+    assert "0u, /* largest number of bytes to send */" in tables["form"].rows
     plain = tables_of(blocks=blocks())["blocks"].rows
     assert plain[0] == "true, /* sends */"
     assert plain[1].startswith("0u, ") and plain[-1].startswith("NULL, ")

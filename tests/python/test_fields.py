@@ -125,6 +125,23 @@ def test_a_field_has_its_place_and_its_default(tmp_path, keys, text):
     ).replace("( ", "(").replace(", )", ")")
 
 
+def test_each_special_value_has_a_line(tmp_path):
+    special = "special: [{value: 255, meaning: none}, {value: 254, meaning: busy}]"
+    assert declared(tmp_path, f"bits: 8, type: uint, {special}").splitlines() == [
+        "int = _base.field(",
+        "        'Say \"A\"',",
+        "        0,",
+        "        8,",
+        '        "uint",',
+        "        default=0,",
+        "        special=(",
+        '            (255, "none"),',
+        '            (254, "busy"),',
+        "        ),",
+        "    )",
+    ]
+
+
 def test_an_optional_field_has_the_values_of_its_conditions(tmp_path):
     first = (
         "at: 0, bits: 8, name: Kind, type: uint",
