@@ -298,8 +298,8 @@ def test_each_step_of_a_derived_value_is_a_volatile_double(tmp_path):
     text = status(
         "at: 0, name: Rate, bits: 16, type: int, formula: raw*0.5, unit: V",
         "at: 16, name: Height, bits: 64, type: float",
-        "at: 80, name: Message, bits: 8, type: uint",
-        length=11,
+        "at: 80, name: Message, bits: 32, type: float",
+        length=14,
     )
     formula = "Rate*2 + Height^3 - Message"
     text += f"    derived:\n      - {{name: Sum, formula: '{formula}'}}\n"
@@ -316,6 +316,7 @@ def test_each_step_of_a_derived_value_is_a_volatile_double(tmp_path):
     )
     assert accessor.expression == "icdgen_quiet(step_4)"
     assert (accessor.end, accessor.assignment, accessor.title) == ("sum", "", "")
+    assert (accessor.type, accessor.elements) == ("double", 0)
 
 
 def test_a_step_that_is_longer_than_a_line_continues_on_the_next(tmp_path):
@@ -352,5 +353,8 @@ def test_the_comment_of_an_overlay_says_when_it_is_0(tmp_path):
         (low,) = message.overlays
         return " ".join(re.sub(r"^ \*", "", overlay_comment(low), flags=re.M).split())
 
-    assert "0 if it makes none, as a raw value does not fit" in comment(5)
+    assert comment(5).endswith(
+        " Read from the frame that the message makes: 0 if it makes none, as a raw "
+        "value does not fit its field. /"
+    )
     assert "if it makes none" not in comment(8)
