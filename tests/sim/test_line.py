@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
+from types import SimpleNamespace
 
 import pytest
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
@@ -216,6 +218,25 @@ def test_bytes_that_are_due_are_one_piece():
     (piece,) = device.pieces(0)
     assert [e.message[0] for e in UartDecoder(device.link).feed(piece)] == [146, 146]
     assert device.pieces(0) == [b""]
+
+
+def test_a_device_without_acknowledges_and_outcomes_cannot_refuse():
+    assert line().no_refusal == ""
+    computer = line().computer
+    for polled, acknowledged, is_able in (
+        (None, False, False),
+        (None, True, True),
+        (FACTS.polled, False, True),
+    ):
+        telecommands = {
+            id: replace(each, acknowledge=acknowledged)
+            for id, each in FACTS.telecommands.items()
+        }
+        computer.program.facts = SimpleNamespace(
+            polled=polled, telecommands=telecommands, longest_telecommand=20
+        )
+        device = UartLine(computer, Faults(Random(1), []))
+        assert (device.no_refusal == "") is is_able
 
 
 def test_reasons_of_a_refusal_are_names_or_numbers():
