@@ -171,3 +171,28 @@ def test_a_label_is_cut_to_its_box():
     assert _label("a" * 9, 29) == "aaa…"
     assert _label("abc", 23) == "abc"
     assert _label("abcd", 23) == ""
+
+
+def test_an_added_or_removed_message_has_a_frame_on_one_side(tmp_path):
+    text = message(LEVEL, length=1)
+    other = text.replace("Status", "Blob").replace("130", "140").replace("Level", "Xy")
+    comparison = compared_texts(tmp_path, text, other, is_checked=False)
+    pairs = {pair.any.name: pair for pair in comparison.match.nodes[0].messages}
+    for name, y, kind in (("Status", OLD_Y, "gone"), ("Blob", NEW_Y, "come")):
+        drawing = draw(pairs[name], comparison.changes)
+        (row,) = drawing.parts
+        assert [(frame.y, frame.width / CELL) for frame in row.frames] == [(y, 8)]
+        assert [(box.y, box.kind) for box in row.boxes] == [(y, kind)]
+        assert row.links == []
+
+
+@pytest.mark.parametrize(("length", "rows"), [(7, 1), (8, 1), (9, 2), (16, 2), (17, 3)])
+def test_a_row_has_64_bits(tmp_path, length, rows):
+    last = f"at: {8 * length - 8}, bits: 8, name: Last, type: uint"
+    drawing = drawn(
+        tmp_path,
+        message(last, length=length),
+        message(last.replace("uint", "int"), length=length),
+    )
+    count = sum(1 if isinstance(part, BitRow) else (rows - 1) for part in drawing.parts)
+    assert count == rows
