@@ -122,6 +122,31 @@ checksums:
     }
 
 
+def test_the_first_field_with_a_checksum_gets_the_comments_about_what_it_covers():
+    text = """\
+icdgen: 1
+protocol:
+  stream:
+    trailer: [{checksum: crc}, {checksum: crc}]
+  checksums:
+    crc:
+      kind: crc
+      # of the manual
+      covers: {from: a, to: b}  # both
+"""
+    field = "- {checksum: crc, covers: {from: a, to: b}}"
+    lines = [line.strip() for line in format_text(text, "pump.yaml").splitlines()]
+    assert lines[3:] == [
+        "trailer:",
+        "# of the manual",
+        "# both",
+        field,
+        field,
+        "checksums:",
+        "crc: {kind: crc}",
+    ]
+
+
 def trailer(bits: int, first: str, **keys) -> list[dict]:
     covers = {"from": first, "to": "data"}
     return [

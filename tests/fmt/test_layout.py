@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from icdgen.diagnostics import Findings
+from icdgen.errors import UserError
 from icdgen.icd import source
-from icdgen.icd.fmt import format_text, same
+from icdgen.icd.fmt import format_text, same, write
 from icdgen.icd.fmt.rows import aligned
 
 HERE = Path(__file__).parent
@@ -115,6 +116,34 @@ def test_trees_are_equal_with_their_types_and_the_order_of_lists(
     first, second, expected
 ):
     assert same(first, second) is expected
+
+
+@pytest.mark.parametrize(
+    ("written", "is_fine"),
+    [
+        ("b: [1]  # y\na: 1  # x\n", True),
+        ("a: 1  # y\nb: [1]  # x\n", True),
+        ("a: 1  # x\nb: [1]\n", False),
+        ("a: 1  # x\nb: [1]  # y\n# y\n", False),
+        ("a: 1  # x\nb: [2]  # y\n", False),
+        ("a: true  # x\nb: [1]  # y\n", False),
+        ("a: 1  # x\nb: [1]  # y\nc: 1\n", False),
+    ],
+)
+def test_a_result_with_other_values_or_comments_is_not_written(
+    written, is_fine, monkeypatch
+):
+    """Each comment is there as often as before."""
+    monkeypatch.setattr(write, "write_canonical", lambda root, kind: written)
+    text = "a: 1  # x\nb: [1] # y\n"
+    if is_fine:
+        assert formatted(text) == written
+        return
+    with pytest.raises(UserError) as caught:
+        formatted(text)
+    assert str(caught.value).startswith(
+        "test.yaml: the formatter would change the meaning of this file"
+    )
 
 
 def test_only_the_keys_that_all_rows_begin_with_are_aligned():

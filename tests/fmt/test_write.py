@@ -146,6 +146,18 @@ zz: 1
     ]
 
 
+@pytest.mark.parametrize("length", [WIDTH, WIDTH + 1])
+def test_an_entry_that_does_not_fit_a_line_is_a_section(length):
+    """Of a mapping, and of a list of items that are too long to be wrapped."""
+    for value in ("{{a: 1, b: {}}}", f"[{{}}, {'x' * 41}]"):
+        filler = "x" * (length - len("zz: " + value.format("")))
+        lines = formatted(f"node: {{name: a}}\nzz: {value.format(filler)}\n")
+        is_section = length > WIDTH
+        assert lines[:2] == ["node:", "  name: a"]
+        assert lines[2] == ("" if is_section else f"zz: {value.format(filler)}")
+        assert len(lines) == (6 if is_section else 3)
+
+
 def test_comments_inside_of_a_line_move_above_it():
     text = """\
 zz: 1 # behind
@@ -164,6 +176,86 @@ messages:
         "      - {at: 0, bits: 8, name: A}  # row",
         "      # below",
         "zz: 1  # behind",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("zz: # x\n  1 # y\n", ["# x", "zz: 1  # y"]),
+        ("zz: # x\n  {a: 1} # y\n", ["# x", "zz: {a: 1}  # y"]),
+        ("zz: # x\n  |\n  text\n", ["zz: |  # x", "  text"]),
+        ("zz:\n  - # x\n    a # y\n", ["zz:", "  # x", "  - a  # y"]),
+        (
+            "zz:\n  - {a: 1} # v\n  # x\n  - # y\n    {a: 22} # z\n",
+            ["zz:", "  - {a: 1}  # v", "  # x", "  # y", "  - {a: 22}  # z"],
+        ),
+        (
+            "zz:\n  - {a: 1, # x\n    b: 2} # y\n",
+            ["zz:", "  # y", "  - a: 1  # x", "    b: 2"],
+        ),
+        (
+            "zz: # a\n  - b: # c\n      d: | # e\n        text\n    # f\n  - # g\n"
+            "    h: # i\n      j: 1\n",
+            [
+                "zz:  # a",
+                "  - b:  # c",
+                "      d: |  # e",
+                "        text",
+                "    # f",
+                "  # g",
+                "  - h: {j: 1}  # i",
+            ],
+        ),
+    ],
+)
+def test_the_last_comment_of_a_line_stays_on_it_and_others_are_above(text, lines):
+    assert [line for line in formatted(text) if line] == lines
+
+
+def test_comments_of_the_first_entry_of_an_item_are_above_the_item():
+    text = "zz:\n  - # x\n\n    # y\n    a: {b: {c: 1}} # z\n    # v\n    d: 1 # w\n"
+    assert formatted(text) == [
+        "zz:",
+        "  # x",
+        "",
+        "  # y",
+        "  - a:  # z",
+        "      b: {c: 1}",
+        "    # v",
+        "    d: 1  # w",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "lines"),
+    [
+        ("{a: [1, 2]}", ["zz: {a: [1, 2]}"]),
+        ("{a: [[1], 2]}", ["zz:", "  a: [[1], 2]"]),
+        ("{a: {b: 1}}", ["zz:", "  a: {b: 1}"]),
+        ("[[1, 2], [3]]", ["zz: [[1, 2], [3]]"]),
+        ("[[[1], 2], [3]]", ["zz: [[[1], 2], [3]]"]),
+        ("[[1], {a: 1}]", ["zz:", "  - [1]", "  - {a: 1}"]),
+        ("[{a: [1]}, {a: [22]}]", ["zz:", "  - {a: [1]}", "  - {a: [22]}"]),
+        ("[{a: [1]}, {a: [[1]]}]", ["zz:", "  - {a: [1]}", "  - a: [[1]]"]),
+        ("[{a: 1}, {a: {b: 1}}]", ["zz:", "  - {a: 1}", "  - a: {b: 1}"]),
+    ],
+)
+def test_lists_in_lists_and_mappings_are_on_one_line_to_a_depth(value, lines):
+    assert formatted(f"zz: {value}\n") == lines
+
+
+def test_the_comment_of_a_wrapped_list_is_behind_it():
+    items = ", ".join(["x" * 36] * 4)
+    first, last = formatted(f"zz: [{items}] # x\n")
+    assert "#" not in first and last.endswith("x]  # x")
+
+
+def test_a_list_with_an_empty_mapping_is_no_table():
+    assert formatted("zz: [{a: 1, b: [2]}, {}]\n") == [
+        "zz:",
+        "  - {a: 1, b: [2]}",
+        "  - {}",
     ]
 
 

@@ -161,6 +161,14 @@ def test_telecommands_share_the_only_packet_of_the_host_with_requests():
         assert ("a" in names(declared.carrying(TELECOMMAND))) == (not expected)
 
 
+def test_a_packet_that_only_responds_is_no_packet_of_telecommands():
+    packets = {"ask": {"from": "host"}, "ack": {"from": "both"}}
+    link = {"packets": packets, "requests": {"packet": "ask"}}
+    assert names(declared_packets(link).carrying(TELECOMMAND)) == ["ack"]
+    responding = declared_packets({**link, "commands": {"ack": {"packet": "ack"}}})
+    assert names(responding.carrying(TELECOMMAND)) == ["ask"]
+
+
 def test_responses_of_single_telecommands_name_packets_too():
     link = {
         "packets": {

@@ -87,6 +87,17 @@ def test_the_type_of_a_file_is_a_member(tmp_path):
         assert rows == [(str(value), message)] * (not is_member)
 
 
+def test_values_of_an_input_are_members_of_its_enumeration(tmp_path):
+    section = (
+        "  procedures:\n    one:\n      limits: {time_s: 1, requests: 1}\n"
+        "      inputs: {cause: {enum: Cause, values: [1, 4, 3, 0]}}\n"
+        "      steps: [{send: Start}]\n"
+    )
+    message = "the enumeration `Cause` has no member {}"
+    rows = reported(tmp_path, icd(section), "ICD093")
+    assert rows == [(value, message.format(value)) for value in ("4", "0")]
+
+
 def test_fields_that_a_section_names_own_bits_of_the_message(tmp_path):
     fields = "{node_type: Caus, interface_version: Minor}"
     text = icd(
