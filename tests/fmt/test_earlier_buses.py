@@ -141,7 +141,9 @@ def test_telemetry_that_is_sent_unasked_has_packets_of_its_own():
         "buses": {"uart": {"other": 1}},
         "packets": {"unasked": unasked(8, "Level")},
     }
-    rows = "{message: Level, id_of: Save}, {message: Save, id_of: Level}, {message: Setup, id_of: Setup}"
+    two = "{message: Level, id_of: Save}, {message: Save, id_of: Level}"
+    assert [*converted(one.format(two))["packets"]] == ["unasked 0", "unasked 1"]
+    rows = f"{two}, {{message: Setup, id_of: Setup}}"
     assert converted(one.format(rows))["packets"] == {
         "unasked 0": unasked(8, "Level"),
         "unasked 1": unasked(0x82, "Save"),
@@ -204,10 +206,11 @@ buses:
         - {value: 6, name: Long Got}
         - {value: 7, name: Spare}
         - {value: 8, name: Not}
+        - {value: 10, name: None Such}
         - {value: [9], name: Odd}
         - {name: None}
     telecommand: {request: Do, extended_request: Long Do, acknowledge: Did, failure: Not, acknowledge_bytes: 0}
-    telemetry: {source: {page: 2}, request: Get, response: Got, extended_response: Long Got, failure: Not}
+    telemetry: {source: {page: 2}, request: Get, response: Got, extended_response: Long Got, failure: None Such}
     extended: {data_bytes: 7}
 """
 
@@ -224,10 +227,15 @@ def test_message_types_are_packets_by_their_use():
         "Long Got": {**common, "from": "device", "type": 6, "segment_of": "Got"},
         "Spare": {**common, "from": "both", "type": 7},
         "Not": {**common, "from": "device", "type": 8},
+        "None Such": {**common, "from": "device", "type": 10},
     }
     assert link["buses"]["can"] == {
         "commands": {"ack": {"packet": "Did"}, "nak": {"packet": "Not"}},
-        "requests": {"source": {"page": 2}, "packet": "Get", "nak": {"packet": "Not"}},
+        "requests": {
+            "source": {"page": 2},
+            "packet": "Get",
+            "nak": {"packet": "None Such"},
+        },
         "segments": {"data_bytes": 7},
     }
 

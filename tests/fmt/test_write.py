@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen.icd import schema
 from icdgen.icd.fmt import format_text
 from icdgen.icd.fmt.rows import aligned
 from tests.limits import assert_limits
@@ -99,6 +100,22 @@ def test_a_long_key_has_a_mark_because_readers_look_for_the_colon_only_so_far():
         assert sum(line.lstrip().startswith("? ") for line in lines) == 2 * is_marked
 
 
+@pytest.mark.parametrize("length", [1000, 1001])
+def test_a_long_key_in_a_row_has_a_mark_too(length):
+    key = "k" * length
+    cell = f"{key}: 1" if length == 1000 else f"? {key} : 1"
+    lines = formatted(f"messages: [{{fields: [{{? {key} : 1}}]}}]\n")
+    assert lines[-1] == f"      - {{{cell}}}"
+
+
+def test_a_mapping_that_the_schema_defines_has_any_number_of_entries_on_a_line():
+    keys = [*schema.definition("struct")["properties"]]
+    struct = f"{{{', '.join(f'{key}: 1' for key in keys)}}}"
+    assert len(keys) > 6
+    lines = formatted(f"structs: [{struct}, {{name: A, fields: [{{at: 0}}]}}]\n")
+    assert lines[1] == f"  - {struct}"
+
+
 def test_cells_wider_than_a_column_may_be_do_not_widen_it():
     def is_aligned(width: int) -> bool:
         wide, narrow = aligned([{"a": "x" * width, "b": "1"}, {"a": "x", "b": "2"}])
@@ -191,6 +208,16 @@ messages:
             ["zz:", "  - {a: 1}  # v", "  # x", "  # y", "  - {a: 22}  # z"],
         ),
         (
+            "messages: [{fields: [7, {at: 0, # x\n  bits: 8} # y\n  ]}]\n",
+            [
+                "messages:",
+                "  - fields:",
+                "      - 7",
+                "      # x",
+                "      - {at: 0, bits: 8}  # y",
+            ],
+        ),
+        (
             "zz:\n  - {a: 1, # x\n    b: 2} # y\n",
             ["zz:", "  # y", "  - a: 1  # x", "    b: 2"],
         ),
@@ -224,6 +251,18 @@ def test_comments_of_the_first_entry_of_an_item_are_above_the_item():
         "      b: {c: 1}",
         "    # v",
         "    d: 1  # w",
+    ]
+
+
+def test_comments_of_the_entry_that_becomes_the_first_are_above_the_item():
+    text = "messages:\n  - id: 1\n    # x\n\n    # y\n    name: A  # z\n"
+    assert formatted(text) == [
+        "messages:",
+        "  # x",
+        "",
+        "  # y",
+        "  - name: A  # z",
+        "    id: 1",
     ]
 
 
