@@ -48,6 +48,8 @@ def test_syntax_errors_are_explained(problem, line, column, help):
         ("name: a: ^b", "a: b"),
         ("name: a^: b", "a: b"),
         ("  - ^@a", "@a"),
+        ("  - @a^b", "@ab"),
+        ("- @^a", "@a"),
         ("  - name: ^@a ", "@a"),
         ("  - {name: ^@a, at: 0}", "@a"),
         ("  - {name: x, unit: ^%, at: 0}", "%"),

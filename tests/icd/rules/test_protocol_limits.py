@@ -184,6 +184,21 @@ def test_a_bus_that_is_used_has_all_parts_of_its_identifier(key, tmp_path):
     assert [f.message for f in rows] == [message] * is_listed
 
 
+@pytest.mark.parametrize("last", [0, 255, 256])
+def test_the_last_packet_has_a_number_of_a_byte(last, tmp_path):
+    """Without messages and `max_packets`, nothing else is counted."""
+    segments = f"data_bytes: 7, packets_left_byte: 7, packets_left_in_last: {last}"
+    text = can(f"        segments: {{{segments}}}\n")
+    rows = reported(tmp_path, text, "ICD099")
+    if last < 256:
+        assert rows == []
+        return
+    ((marked, message),) = rows
+    assert marked == "256" and message.endswith(" left, a byte holds 255")
+    (finding,) = findings_of(tmp_path, text, "ICD099")
+    assert finding.help.endswith("or `max_packets`: at most 0")
+
+
 def test_parts_that_the_schema_check_reports_may_be_the_missing_ones(tmp_path):
     text = """\
 protocol:

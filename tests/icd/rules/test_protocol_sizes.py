@@ -29,7 +29,7 @@ def test_numbers_are_those_of_all_keys():
 
 
 def test_each_number_that_an_earlier_key_has_is_listed():
-    section = mapping(a=1, b=2, c=1, d="1", e=2, f=1)
+    section = mapping(a=1, b=2, c=1, d="x", e=2, f=1, g="x")
     rows = [*of_one_number(section, *"abcdefg")]
     assert rows == [("a", "c", 1), ("b", "e", 2), ("a", "f", 1)]
 
