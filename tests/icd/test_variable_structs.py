@@ -250,6 +250,12 @@ def test_a_struct_of_variable_length_is_in_an_array_that_a_field_counts(
     assert rows == [(key, message)]
 
 
+def test_a_struct_of_fixed_length_is_in_any_array(tmp_path):
+    text = icd().replace("count: Curves Count, up_to: 3", "count: {}")
+    for count in ("2", "Curves Count, up_to: 3", "rest, up_to: 3"):
+        assert reported(tmp_path, text.replace("{}", count), "ICD146") == []
+
+
 def test_one_level_of_variable_length_is_supported(tmp_path):
     outer = """\
   - name: Outer

@@ -247,6 +247,14 @@ def test_rows_are_compared_in_the_order_of_their_positions(tmp_path):
     ]
 
 
+@pytest.mark.parametrize("keys", ["byte: 0, name: B", "bytes: 9, name: B"])
+def test_rows_without_a_place_overlap_nothing(keys, tmp_path):
+    """The schema check reports them."""
+    text = layout(row(0, 2, "A"), f"{keys}, type: uint", row(1, 1, "C"))
+    message = "`C` overlaps `A` (line 7) in byte 1"
+    assert reported(tmp_path, text, "ICD092") == [("1", message)]
+
+
 def test_rows_end_within_their_size(tmp_path):
     for length, is_inside in ((9, True), (10, True), (11, False)):
         text = layout(row(0, length, "All"), size="entry_bytes: 10")

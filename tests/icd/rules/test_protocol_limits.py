@@ -184,6 +184,21 @@ def test_a_bus_that_is_used_has_all_parts_of_its_identifier(key, tmp_path):
     assert [f.message for f in rows] == [message] * is_listed
 
 
+@pytest.mark.parametrize("first", ["role: type, name: A", "name: type"])
+@pytest.mark.parametrize("second", ["role: type, name: B", "name: type"])
+def test_both_parts_with_a_role_are_marked(first, second, tmp_path):
+    text = (
+        "protocol:\n  link:\n    buses:\n      can:\n        identifier:\n"
+        f"          - {{bits: 5, {first}}}\n          - {{bits: 5, {second}}}\n"
+    )
+    finding = findings_of(tmp_path, text, "ICD101")[-1]
+    key = second.partition(":")[0]
+    assert finding.help == f"correct the `{key}` of one part, or remove it"
+    related = finding._replace(place=finding.related.place)
+    assert related.place.line == finding.place.line - 1
+    assert marked_text(text, finding) == marked_text(text, related) == "type"
+
+
 @pytest.mark.parametrize("last", [0, 255, 256])
 def test_the_last_packet_has_a_number_of_a_byte(last, tmp_path):
     """Without messages and `max_packets`, nothing else is counted."""
