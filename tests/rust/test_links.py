@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -10,7 +11,9 @@ from icdgen.backends.literals import written
 from icdgen.backends.rust import links
 from icdgen.describe import describe
 from icdgen.describe.links import links_of
+from icdgen.icd.pieces import Piece
 from icdgen.loading import load
+from icdgen.protocol.sections import Index, IndexField, LogBit, LogMask, TimePart
 from tests.conformance.icds import LINKS
 
 ALGORITHM = (
@@ -142,3 +145,105 @@ def test_a_link_without_log_needs_no_header(keys):
     facts = SimpleNamespace(longest=3, **keys)
     link = SimpleNamespace(facts=facts, joined_bytes=1, log_entry_bytes=1)
     assert links.longest_buffer(link) == 3
+
+
+def text_of(value):
+    return written(value, None)
+
+
+def literal(**description):
+    """Return the literal of a link with these parts and nothing assumed."""
+    facts = SimpleNamespace(parts={}, checksums={}, assumptions=())
+    facts.mask = description.pop("mask", None)
+    made = links._LinkLiteral(SimpleNamespace(facts=facts, **description))
+    made.assumed = SimpleNamespace(
+        why=lambda section, key: "", why_fact=lambda part, fact: ""
+    )
+    return made
+
+
+def test_a_time_has_its_parts():
+    parts = [("year", TimePart(2, 7, 1, 1980)), ("second", TimePart(0, 5, 2, 0))]
+    assert text_of(literal(time=parts).time_form()) == (
+        "link::TimeForm {\n"
+        "    year: link::TimePart { at: 2, bits: 7, factor: 1, offset: 1_980 },\n"
+        "    second: link::TimePart { at: 0, bits: 5, factor: 2, offset: 0 },\n"
+        "}"
+    )
+    assert literal(time=[]).time_form() is None
+
+
+def test_an_index_has_its_fields_by_role():
+    roles = ("type", "counter", "checksum", "size", "time", "meta")
+    fields = {role: IndexField(at, at + 1) for at, role in enumerate(roles)}
+    index = Index(entry_bytes=1000, file_type=None, fields=fields)
+    assert text_of(literal(index=index).index_form()) == (
+        "link::IndexForm {\n"
+        "    entry_bytes: 1_000,\n"
+        "    file_type: None,\n"
+        "    kind: link::Span { at: 0, bytes: 1 },\n"
+        "    counter: link::Span { at: 1, bytes: 2 },\n"
+        "    checksum: link::Span { at: 2, bytes: 3 },\n"
+        "    size: link::Span { at: 3, bytes: 4 },\n"
+        "    time: link::Span { at: 4, bytes: 5 },\n"
+        "    meta: link::Span { at: 5, bytes: 6 },\n"
+        "}"
+    )
+    assert literal(index=None).index_form() is None
+
+
+def test_a_mask_has_its_assigned_bits_in_order():
+    bits = {
+        9: LogBit(9, 0, 2, "Mode"),
+        1: LogBit(1, 255, 1, None),
+        3: LogBit(3, None, 4, None),
+    }
+    mask = LogMask(size=2, msb0=True, slot_bytes=4, fill=0, bits=bits)
+    assert text_of(literal(mask=mask).mask_form()).splitlines()[-6:] == [
+        "    fill: 0x00,",
+        "    bits: &[",
+        '        link::LogBit { bit: 1, id: 255, length: 1, name: "" },',
+        '        link::LogBit { bit: 9, id: 0, length: 2, name: "Mode" },',
+        "    ],",
+        "}",
+    ]
+    assert literal().mask_form() is None
+
+
+def test_an_identification_has_the_pieces_of_its_numbers():
+    pieces = (Piece(0, 4, 4, 0), Piece(1, 0, 8, 4))
+    place = SimpleNamespace(role="node_type", field=SimpleNamespace(pieces=pieces))
+    report = SimpleNamespace(message=SimpleNamespace(length=1000), places=(place,))
+    assert text_of(links._identification(report)) == (
+        "link::Identification {\n"
+        "    length: 1_000,\n"
+        "    node_type: &[link::Piece { byte: 0, shift: 4, bits: 4, at: 0 },"
+        " link::Piece { byte: 1, shift: 0, bits: 8, at: 4 }],\n"
+        "    interface_version: &[],\n"
+        "}"
+    )
+    assert links._identification(None) is None
+
+
+def test_assumptions_without_a_place_are_in_the_comment(monkeypatch):
+    link = link_with_assumptions(
+        [
+            ("procedures.read", "time_s", "Not here."),
+            ("link.x", "rate", "Not *stated*."),
+        ]
+    )
+    assert links.values(link)["doc"] == (
+        "/// The protocol of node `battery`. Facts that the manual omits are marked as"
+        " assumed.\n"
+        "///\n"
+        "/// Assumed (`link.x`, `rate`): Not \\*stated\\*."
+    )
+
+
+def link_with_assumptions(rows):
+    """Return a link whose facts have these assumptions as well."""
+    icd = load([LINKS / "battery.yaml"]).icd
+    link = links_of(describe(icd))["battery"]
+    more = (SimpleNamespace(section=a, key=b, why=c) for a, b, c in rows)
+    link.facts = replace(link.facts, assumptions=(*link.facts.assumptions, *more))
+    return link

@@ -329,3 +329,48 @@ def test_accessors_of_arrays_of_texts_come_first(tmp_path):
     names = [accessor.field.model.name for accessor in texts(message)]
     assert names == ["Words", "Label", "End"]
     assert accessors(message.members[0]) == []
+
+
+def test_a_long_constant_has_a_line_for_each_of_its_values(tmp_path):
+    def constant(count):
+        name = "a" * count
+        field = f"at: 0, bits: 7, type: uint, name: {name}"
+        (member,) = message_of(tmp_path, field, length=1).members
+        return name, scale_of(member)
+
+    # `    Scale::new(...);` of 100 columns is the longest line.
+    fixed = len('    Scale::new("", "0 to 127", (0, 127), (1, 0, 1));')
+    name, text = constant(100 - fixed)
+    call = f'Scale::new("{name}", "0 to 127", (0, 127), (1, 0, 1));'
+    assert text == f"const {name.upper()}: Scale =\n    {call}"
+    name, text = constant(101 - fixed)
+    assert text == (
+        f"const {name.upper()}: Scale = Scale::new(\n"
+        f'    "{name}",\n'
+        '    "0 to 127",\n'
+        "    (0, 127),\n"
+        "    (1, 0, 1),\n"
+        ");"
+    )
+
+
+def test_a_calibration_of_two_pieces_has_a_line_for_each(tmp_path):
+    points = "points: [[0, 0], [10, 10]], outside: extrapolate"
+    text = curve_of(member_of(tmp_path, f"bits: 8, type: uint, {points}"))
+    assert text.splitlines()[2:] == [
+        "    (0.0, &[0.0, 1.0]),",
+        "    (10.0, &[10.0, 1.0]),",
+        "]);",
+    ]
+
+
+def test_a_struct_as_data_has_its_fields(tmp_path):
+    structs = (
+        "structs:\n  - {name: Point, length: 1, fields: ["
+        "{at: 0, bits: 8, name: X, type: uint}]}\n"
+    )
+    field = "at: 0, name: Points, struct: Point, count: 2"
+    result = loaded(tmp_path, structs + status(field, length=2))
+    ((member,),) = (each.members for each in describe(result.icd).nodes[0].messages)
+    row = '("Points", 0, 8).array(2).fields(super::Point::FIELDS)'
+    assert field_row(member) == row

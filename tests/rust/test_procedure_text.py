@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -12,6 +13,7 @@ from icdgen.describe import describe
 from icdgen.describe.links import links_of
 from icdgen.loading import load
 from tests.conftest import ROOT
+from tests.icd.files import loaded
 
 
 @pytest.fixture(scope="module")
@@ -355,3 +357,108 @@ def test_the_parameter_of_an_input_is_no_keyword_and_no_other_parameter(
 def test_parameters_of_types_are_in_angle_brackets():
     assert procedures._angle([]) == ""
     assert procedures._angle(["'a", "F"]) == "<'a, F>"
+
+
+OUTPUTS = """\
+protocol:
+  link:
+    framing: {by: length}
+    header: [{bits: 8, role: sync, value: [0x5A]}, {bits: 8, role: id}, {bits: 8, role: length}]
+  procedures:
+    copy_all:
+      limits: {time_s: 600, requests: 100}
+      inputs: {mode: {enum: Mode}, wide: {type: uint}, flag: {type: bool}}
+      outputs: {new_state: state.State, is_busy: state.Busy, last_mode: state.Mode}
+      steps:
+        - {send: Copy, with: {Mode: mode, Wide: wide, Flag: flag}}
+        - {get: State, as: state}
+enums:
+  - {name: Mode, members: [{value: 0, name: Idle}]}
+messages:
+  - {name: Copy, id: 1, kind: telecommand, length: 6, fields: [
+      {at: 0, bits: 8, name: Mode, type: enum, enum: Mode},
+      {at: 8, bits: 17, name: Wide, type: uint},
+      {at: 40, bits: 1, name: Flag, type: bool}]}
+  - {name: Get State, id: 2, kind: telecommand, length: 0, response: {reply: State}}
+  - {name: State, id: 129, kind: telemetry, length: 3, fields: [
+      {at: 0, bits: 8, name: State, type: uint},
+      {at: 8, bits: 1, name: Busy, type: bool},
+      {at: 16, bits: 8, name: Mode, type: enum, enum: Mode}]}
+"""
+
+
+def procedures_of(icd, included=()):
+    description = describe(icd)
+    (link,) = links_of(description).values()
+    return procedures.NodeProcedures(link, description, dict(included), "some_crate")
+
+
+def test_outputs_are_methods_with_the_type_of_their_field(tmp_path):
+    result = loaded(tmp_path, OUTPUTS)
+    assert result.ok, [finding.message for finding in result.findings]
+    node = procedures_of(result.icd)
+    (text,) = node.all
+    assert (node.own, node.included) == ([text], {})
+    mode = "crate::demo::enums::Mode"
+    assert [(output.name, output.type, output.value) for output in text.outputs] == [
+        ("new_state", "u32", "self.0.output(8)"),
+        ("is_busy", "bool", "self.0.output(9).map(|flag| flag != 0)"),
+        (
+            "last_mode",
+            mode,
+            f"self.0.output(10).map(|code| {mode}::from("
+            "u8::try_from(code).unwrap_or(u8::MAX)))",
+        ),
+    ]
+    assert text.outputs[0].about == (
+        "    /// Return the new state; None until the procedure succeeded."
+    )
+
+
+def test_inputs_have_the_smallest_type(tmp_path):
+    (text,) = procedures_of(loaded(tmp_path, OUTPUTS).icd).own
+    assert text.numbers == (
+        "Some(u32::from(mode.raw())), Some(wide), Some(u32::from(flag))"
+    )
+    assert text.new.splitlines()[2:5] == [
+        "    /// - `mode`: 0 to 255.",
+        "    /// - `wide`: 0 to 131071.",
+        "    /// - `flag`",
+    ]
+    assert text.new.splitlines()[-1] == (
+        "    pub fn new(mode: crate::demo::enums::Mode, wide: u32, flag: bool)"
+        " -> Result<Self, Error> {"
+    )
+
+
+class Including:
+    """A description in which all nodes include two others."""
+
+    def __init__(self, description):
+        self.description = description
+
+    def node(self, name):
+        return SimpleNamespace(included=("other", "base"))
+
+    def __getattr__(self, name):
+        return getattr(self.description, name)
+
+
+def test_the_same_code_is_generated_once_in_the_included_node(store, texts):
+    link, description = store
+    read, write, *_ = texts.values()
+    other = replace(write, table=write.table.replace("retries: 9", "retries: 8"))
+    table = {
+        "base": SimpleNamespace(own=[read]),
+        "other": SimpleNamespace(own=[other]),
+    }
+    node = procedures.NodeProcedures(link, Including(description), table, "some_crate")
+    assert node.included == {"base": [read]}
+    assert [text.type for text in node.own] == ["Write", "List", "Copy"]
+    assert [text.type for text in node.all] == ["Read", "Write", "List", "Copy"]
+
+
+def test_an_enumeration_of_64_bits_is_converted():
+    path = ROOT / "tests" / "procedures" / "wide_enumeration.yaml"
+    (text,) = procedures_of(load([path]).icd).own
+    assert text.numbers == "u32::try_from(mode.raw()).ok()"

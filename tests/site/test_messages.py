@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.backends.html import messages
+from icdgen.backends.html.examples import example_frames
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.sections import MessageSection
 from tests.icd.files import loaded
@@ -114,3 +115,38 @@ def test_the_data_of_the_decoder_has_the_sections_with_fields(tmp_path):
     assert plan["wire"]["id_bytes"] == 1
     # The decoder lists the elements of arrays itself.
     assert "sections" not in messages._plan(relations, node, curves, [], shares)
+
+
+PAIR = """\
+messages:
+  - {name: Level, id: 1, kind: telemetry, length: 1, fields: [
+      {at: 0, bits: 8, name: Level, type: uint, const: 7}]}
+  - {name: Set Level, id: 2, kind: telecommand, length: 1, fields: [
+      {at: 0, bits: 8, name: Level, type: uint, const: 5}]}
+  - {name: Empty, id: 3, kind: telemetry, length: 0}
+"""
+
+
+def test_telemetry_shows_an_example_and_a_telecommand_its_initial_values(
+    tmp_path, monkeypatch
+):
+    result = loaded(tmp_path, PAIR)
+    (node,) = result.icd.nodes
+    relations = Relations(result.icd)
+    shown = []
+    monkeypatch.setattr(
+        messages.wire, "buses", lambda message, wire, data: shown.append(data)
+    )
+    monkeypatch.setattr(messages, "snippets", lambda *arguments: [])
+    values = {
+        message.name: messages.values(relations, node, message, None)
+        for message in node.messages
+    }
+    example = example_frames(node.messages[0], node)[0].frame
+    assert shown == [example, b"\x05", b""] and example != b"\x07"
+    assert [row["example_data"] for row in values.values()] == [True, False, False]
+    level = values["Level"]
+    assert level["url"] == "demo/level.html"
+    assert [id.value for id in level["ids"]] == [1]
+    assert (len(level["drawings"]), level["bands"]) == (1, [])
+    assert len(level["shares"]) == 1 and level["contains"] == []

@@ -232,3 +232,146 @@ def test_packets_say_who_sends_them_and_what_they_carry(name):
     assert [view.anchor for view in views] == [
         f"packet-{view.name}" if view.name else "packets" for view in views
     ]
+
+
+@pytest.mark.parametrize(
+    ("kind", "row", "text"),
+    [
+        ("ack", {"message": "Ack"}, ""),
+        (
+            "ack",
+            {"status": "Result", "success": ["OK", 0]},
+            "Result: OK, 0: confirms; otherwise: refuses",
+        ),
+        (
+            "reply",
+            {"status": "Result", "success": [0], "busy": [1], "progress": [2]},
+            "Result: 0: requested telemetry; 1: the device is busy;"
+            " 2: still being executed; otherwise: refuses",
+        ),
+        ("nak", {"reason": "Code"}, "reason in Code"),
+        (
+            "nak",
+            {"reason": "Code", "busy": ["Later", 9]},
+            "Later, 9: the device is busy; reason in Code",
+        ),
+        ("busy", {"busy": ["Later"]}, ""),
+    ],
+)
+def test_values_of_status_and_reason_are_words(kind, row, text):
+    assert responses._judges(kind, row) == text
+
+
+@pytest.mark.parametrize(
+    ("timeout", "text"), [(None, ""), (0, ""), (1, "1 ms"), (3000, "3,000 ms")]
+)
+def test_a_time_out_is_in_milliseconds(timeout, text):
+    assert responses._milliseconds(timeout) == text
+
+
+MESSAGES = {
+    ROOT / "examples" / "links" / "wheel.yaml": {
+        "Nak": [
+            (
+                "Response",
+                "refuses: Set Mode, Set Speed, Get Events, Save",
+                "wheel/protocol.html#responses",
+            )
+        ],
+        "Status": [],
+        "Save": [
+            ("Confirmed by", "Ack", "wheel/ack.html"),
+            ("Refused by", "Nak", "wheel/nak.html"),
+            ("Busy device", "Busy", "wheel/busy.html"),
+            ("Time-out", "3,000 ms", ""),
+            ("May be repeated", "", ""),
+        ],
+        "Reset": [
+            ("Response", "none", ""),
+            ("Time-out", "", ""),
+            ("May be repeated", "", ""),
+        ],
+    },
+    LINKS / "formats.yaml": {
+        "Position": [
+            (
+                "Requested by",
+                "packet read with its id",
+                "formats/protocol.html#packet-read",
+            ),
+            ("Refused by", "packet refusal", "formats/protocol.html#packet-refusal"),
+            ("Time-out", "60 ms", ""),
+        ],
+        "Alarm": [],
+        "Turn": [
+            ("Confirmed by", "Done", "formats/done.html"),
+            ("Refused by", "packet refusal", "formats/protocol.html#packet-refusal"),
+            ("Time-out", "", ""),
+            ("May be repeated", "yes", ""),
+        ],
+    },
+}
+
+
+@pytest.mark.parametrize("path", MESSAGES, ids=lambda path: path.stem)
+def test_a_message_has_its_responses_or_what_it_responds_to(path):
+    relations, node = opened(path)
+    messages = {message.name: message for message in node.messages}
+    assert {
+        name: list(responses.of_message(relations, node, messages[name]))
+        for name in MESSAGES[path]
+    } == MESSAGES[path]
+
+
+@pytest.mark.parametrize(
+    ("count", "end"), [(6, ""), (7, " and 1 more"), (8, " and 2 more")]
+)
+def test_a_response_names_six_telecommands(tmp_path, count, end):
+    text = (ROOT / "examples" / "links" / "wheel.yaml").read_text("utf-8")
+    # Four telecommands have the response already.
+    text += "".join(
+        f"  - {{name: Go {n}, id: {0x20 + n}, kind: telecommand, length: 0}}\n"
+        for n in range(count - 4)
+    )
+    (tmp_path / "wheel.yaml").write_text(text, "utf-8")
+    relations, node = opened(tmp_path / "wheel.yaml")
+    nak = next(message for message in node.messages if message.name == "Nak")
+    ((_, about, _),) = responses.of_message(relations, node, nak)
+    assert about == "refuses: Set Mode, Set Speed, Get Events, Save, Go 0, Go 1" + end
+
+
+def test_reasons_and_requests_of_a_link_are_listed():
+    relations, node = opened(ROOT / "examples" / "links" / "wheel.yaml")
+    values = responses.of_node(relations, node)
+    assert [(row.about, row.value) for row in values["reasons"]] == [
+        ("No such telecommand", "Unknown command"),
+        ("Wrong length", "Bad length"),
+        ("A value is not allowed", "Out of range"),
+        ("Wrong checksum: it is sent again at once", "Bad CRC"),
+    ]
+    assert values["requests"] is None
+    assert [(row.kind, row.judges, row.has_status) for row in values["general"]] == [
+        ("ack", "", False),
+        ("nak", "reason in Reason", False),
+        ("busy", "", False),
+    ]
+    relations, node = opened(LINKS / "formats.yaml")
+    request = responses.of_node(relations, node)["requests"]
+    assert request.packet.text == "read" and request.response is None
+    assert [link.text for link in request.messages] == ["Position", "History"]
+    assert [(row.name, row.echo) for row in request.rows] == [
+        ("packet refusal", "id = id")
+    ]
+
+
+def test_the_search_finds_each_packet_format():
+    relations, node = opened(LINKS / "formats.yaml")
+    found = {
+        title: (words.split()[-1], place.url)
+        for words, title, place in protocol.search_entries(relations, node, "x.html")
+        if title.startswith("Packet ")
+    }
+    assert found == {
+        f"Packet {name}": (name, f"x.html#packet-{name}")
+        for name in ("stopped", "refusal", "data", "command", "read")
+    }
