@@ -280,3 +280,33 @@ def test_a_length_that_packets_share_is_reported_once(tmp_path):
     assert messages(tmp_path, text, "ICD188") == [
         "the 3 bytes of `Save` are not a multiple of the unit 2"
     ]
+
+
+def test_the_first_message_that_is_no_whole_units_is_reported(tmp_path):
+    rows = {"Data": packet("device", ID, "bits: 8, role: length, unit: 2")}
+    content = message("A", 1, 2), message("B", 2, 5), message("C", 3, 3)
+    assert messages(tmp_path, packets(rows, *content), "ICD188") == [
+        "the 5 bytes of `B` are not a multiple of the unit 2"
+    ]
+
+
+@pytest.mark.parametrize("name", ["Write", "Data", "Refused"])
+def test_only_the_packet_of_requests_has_the_length_of_the_response(name, tmp_path):
+    """`Refused` carries no message, as that packet."""
+    keys = "    requests: {packet: Read, nak: {packet: Refused}}\n"
+    rows = {
+        "Read": packet("host", constant(1), ID),
+        "Write": packet("host", constant(2), ID),
+        "Data": packet("device", constant(1), ID),
+        "Refused": packet("device", constant(2)),
+    }
+    rows[name] = rows[name].replace("]", ", {bits: 8, role: response_length}]")
+    assert reported(tmp_path, packets(rows, STATE, SAVE, keys=keys), "ICD188") == [
+        (
+            7 + [*rows].index(name),
+            "response_length",
+            "a `response_length` is in a packet that only requests telemetry",
+            "name the packet in `requests: packet`, and let another one carry "
+            "telecommands",
+        )
+    ]

@@ -232,3 +232,14 @@ def test_the_parts_of_a_split_field_stay_where_the_struct_declares_them(
     )
     found = reported(tmp_path, f"{text}messages:\n{message}", "ICD145")
     assert found == [expected] * is_reported
+
+
+def test_a_split_field_without_a_name_is_reported_by_the_schema_only(tmp_path):
+    message = status(use("Point")).replace(
+        "    length", "    byte_order: big\n    length"
+    )
+    for old, new in (("name: Both, ", ""), ("name: Both", "name: [Both]")):
+        text = "structs:\n" + struct(
+            "Point", NUMBER, SPLIT.format("").replace(old, new)
+        )
+        assert set(codes(tmp_path, f"{text}messages:\n{message}")) == {"ICD010"}
