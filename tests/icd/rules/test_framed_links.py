@@ -266,6 +266,27 @@ def test_messages_without_a_fixed_length_need_a_length_if_it_delimits_them(
     assert reported(tmp_path, text, "ICD171") == ([expected] if name else [])
 
 
+def test_the_lengths_of_requested_telemetry_are_listed_in_order(tmp_path):
+    """A packet without id and length can have telemetry of one length."""
+    keys = (
+        "    packets: {Read: {from: host, header: [{bits: 16, role: id}]}, "
+        "Data: {from: device, header: [{bits: 8, role: flags}]}}\n"
+        "    requests: {packet: Read, response: Data}\n"
+    )
+    for lengths, expected in (
+        ((300, 5, 9, 5), ["5, 9 and 300"]),
+        ((300, 5), ["5 and 300"]),
+        ((5, 5), []),
+    ):
+        content = [message(f"M{n}", n, length) for n, length in enumerate(lengths)]
+        text = link([], *content, by="length", keys=keys)
+        assert messages(tmp_path, text, "ICD171") == [
+            "no field of the packet `Data` has the role `length`, and the telemetry in it "
+            f"has {sizes} bytes"
+            for sizes in expected
+        ]
+
+
 @pytest.mark.parametrize("by", ["length", "slip"])
 @pytest.mark.parametrize("is_in_header", [True, False])
 def test_a_length_behind_the_data_delimits_nothing(by, is_in_header, tmp_path):

@@ -86,6 +86,33 @@ def test_a_message_can_be_listed_once_in_each_direction(tmp_path):
     ]
 
 
+def test_a_packet_can_list_a_message_with_errors(tmp_path):
+    """The schema reports the message, and a misspelt name is still reported."""
+    rows = {"Data": packet("device", ID, keys=", messages: [State, Broken, Stat]")}
+    broken = message("Broken", 5).replace("length: 1", "length: x")
+    assert messages(tmp_path, packets(rows, STATE, broken), "ICD184") == [
+        "the node has no message `Stat` in the direction of the packet `Data`"
+    ]
+
+
+def test_packets_of_every_link_are_checked(tmp_path):
+    """Also behind a link without packets, and one without requests."""
+    rows = {
+        "Order": packet("host", ID),
+        "Data": packet("device", ID, keys=", messages: [Stat]"),
+    }
+    other = packets(rows, STATE, keys="    requests: {packet: Ordr}\n").replace(
+        "name: demo", "name: other"
+    )
+    plain = "".join(HEAD.partition("    packets:")[0]) + f"    header: [{{{ID}}}]\n"
+    text = f"{plain}messages:\n{STATE}# other.yaml\n{other}"
+    assert messages(tmp_path, text, "ICD184") == [
+        "the node has no message `Stat` in the direction of the packet `Data`",
+        "no packet carries the telemetry `State`",
+    ]
+    assert messages(tmp_path, text, "ICD186") == ["there is no packet `Ordr`"]
+
+
 FIELDS = st.lists(
     st.tuples(st.sampled_from(["constant", "sync", "flags"]), st.integers(0, 2)),
     min_size=1,
@@ -191,6 +218,28 @@ def test_a_request_in_the_only_packet_of_the_host_is_reported_at_the_requests(tm
     ]
     text = packets(rows, STATE, keys=keys.replace("{", "{packet: Order, "))
     assert [each[:2] for each in reported(tmp_path, text, "ICD186")] == [(9, "packet")]
+
+
+@pytest.mark.parametrize(("request_by", "number"), [("Read", 1), ("Raed", 0)])
+def test_telemetry_without_id_is_compared_with_requests_by_a_packet(
+    request_by, number, tmp_path
+):
+    """An unknown packet has a finding of its own (ICD186)."""
+    rows = {
+        "Read": packet("host", constant(1), ID),
+        "Data": packet("device", constant(1)),
+    }
+    state = message("State", 9, keys=", requested: false")
+    keys = f"    requests: {{packet: {request_by}, response: Data}}\n"
+    found = messages(tmp_path, packets(rows, state, keys=keys), "ICD187")
+    assert (
+        found
+        == [
+            "`State` is sent in the packet `Data`, which does not say what it carries, and "
+            "cannot be requested"
+        ]
+        * number
+    )
 
 
 def of_request(length: str, *content: str) -> str:

@@ -103,6 +103,13 @@ def test_an_enumeration_of_a_file_that_is_not_included_is_named_with_it(tmp_path
         assert found == (line, "Mode", "there is no enumeration `Mode`", help)
 
 
+def test_the_first_of_several_files_with_an_enumeration_is_named(tmp_path):
+    demo = node("demo", fields(enum("Mode")))
+    text = files(demo, one=node("one", enums("Mode")), two=node("two", enums("Mode")))
+    (found,) = reported(tmp_path, text, "ICD040")
+    assert found.help == f"`one` declares it: include {tmp_path / 'one.yaml'}"
+
+
 def test_a_name_is_compared_with_those_of_the_file_and_its_included_files(tmp_path):
     base = node("base", enums("Modes"))
     for include, help, fix in (

@@ -104,6 +104,30 @@ def test_the_first_telecommand_whose_part_is_too_wide_is_named(tmp_path):
     ]
 
 
+@pytest.mark.parametrize(
+    ("own", "inherits"),
+    [
+        ("", True),
+        (", response: none", False),
+        (", response: {ack: none}", False),
+        (", response: {ack: Done}", False),
+        (", response: {nak: Done}", True),
+    ],
+)
+def test_a_telecommand_has_the_parts_that_its_own_responses_repeat(
+    own, inherits, tmp_path
+):
+    """`Save` has no `Value`."""
+    content = [
+        ack(16),
+        sent("Done", 8, field(64), kind="telemetry"),
+        sent("Save", 1, field(64), keys=own),
+    ]
+    text = link("ack: {message: Ack, echo: {Number: Value}}", *content)
+    expected = ["`Save` has no field `Value`"] * inherits
+    assert messages(tmp_path, text, "ICD177") == expected
+
+
 @pytest.mark.parametrize(("id", "bits"), [(0x7F, 7), (0x80, 8), (0x1FF, 9)])
 def test_a_response_to_a_request_repeats_any_id_of_telemetry(id, bits, tmp_path):
     keys = "    requests: {nak: {message: Ack, echo: Number}}\n"

@@ -71,9 +71,10 @@ def test_an_overlay_field_reads_bits_that_every_frame_has(is_last, tmp_path):
 
 
 def test_the_last_part_that_an_overlay_field_reads_is_named(tmp_path):
+    """`Items` can end at bit 80."""
     more = "at: 8, after: Items, name: More, type: bytes, size: rest, up_to: 9"
-    for bits, name in ((8, "Items"), (64, "Items")):
-        overlay = f"at: 8, bits: {bits}, name: All, type: uint, view: true"
+    for at, bits, name in ((8, 8, "Items"), (16, 64, "Items"), (24, 64, "More")):
+        overlay = f"at: {at}, bits: {bits}, name: All, type: uint, view: true"
         text = "messages:\n" + message("Status", COUNTER, ITEMS, more, overlay)
         assert messages(tmp_path, text, "ICD121") == [
             f"`All` is an overlay of `{name}`, which not every frame has"
@@ -150,6 +151,19 @@ def test_a_composite_message_contains_messages_of_one_length(tmp_path):
             "remove it from `contains`",
         )
         for line in (22, 24)
+    ]
+
+
+def test_a_composite_message_contains_no_message_of_another_node(tmp_path):
+    head = "icdgen: 1\nnode: {name: base, title: Base, byte_order: little, bit_order: lsb0}\n"
+    open_message = "messages:\n" + message("Open", COUNTER, ITEMS)
+    text = (
+        "messages:\n  - name: All\n    id: 3\n    kind: telemetry\n    length: 3\n"
+        f"    contains:\n      - {{at: 0, message: Open}}\n# base.yaml\n{head}{open_message}"
+    )
+    assert messages(tmp_path, text, "ICD122") == []
+    assert messages(tmp_path, f"include: [base.yaml]\n{text}", "ICD122") == [
+        "`Open` has no fixed length, so `All` cannot repeat it"
     ]
 
 
