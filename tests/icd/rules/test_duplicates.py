@@ -90,6 +90,18 @@ def test_a_range_shares_values_with_members_inside(tmp_path):
     ]
 
 
+def test_of_ranges_with_one_end_the_longest_is_named(tmp_path):
+    text = enum(
+        "value: 3, to: 5, name: Short",
+        "value: 1, to: 5, name: Long",
+        "value: 5, name: End",
+    )
+    assert rows(tmp_path, text, "ICD053") == [
+        "7:17 `Short` (line 6) already has the value 3",
+        "8:17 `Long` (line 7) already has the value 5",
+    ]
+
+
 @pytest.mark.parametrize(
     ("first", "second", "is_wrong"),
     [
