@@ -32,6 +32,15 @@ def uint(at: int, name: str, more: str = "") -> str:
         # A name can be that of an element of an array, or of a field of a struct.
         ([uint(0, "L", ", count: 2"), uint(16, "'L[1]'")], ["14:33 L[1] line 13"]),
         ([uint(0, "L", ", count: 2"), uint(16, "'L[2]'")], []),
+        (
+            [
+                uint(0, "L", ", count: 2"),
+                uint(16, "'L[1]'"),
+                uint(24, "V"),
+                uint(32, "V"),
+            ],
+            ["14:33 L[1] line 13", "16:33 V line 15"],
+        ),
         (["at: 0, name: P, struct: Pair", uint(16, "P.B")], ["14:33 P.B line 6"]),
         (["at: 0, name: P, struct: Pair", uint(16, "P.C")], []),
         # Two arrays or structs of one name are one fault, not one for each element.
@@ -185,6 +194,19 @@ enums:
         "5:55 the alias `busy` of `Idle` is also the name of `Busy`, in line 5",
         "5:96 the alias `sleep` of `Busy` is also an alias of `Idle`, in line 5",
         "15:57 the alias `c` of `B` is also an alias of `A`, in line 14",
+    ]
+
+
+def test_aliases_of_an_included_file_are_reported_once(tmp_path):
+    head = "icdgen: 1\nnode: {{name: {0}, title: {0}, byte_order: little, bit_order: lsb0}}\n"
+    item = "{{name: {}, aliases: [{}], id: {}, kind: telecommand, length: 0}}"
+    base = f"{head.format('base')}messages:\n  - {item.format('A', 'Go', 1)}\n"
+    base += f"  - {item.format('B', 'go', 2)}\n"
+    text = f"include: [base.yaml]\nmessages:\n  - {item.format('C', 'GO', 3)}\n# base.yaml\n{base}"
+    text = text.replace("{{", "{").replace("}}", "}")
+    assert rows(tmp_path, text, "ICD074") == [
+        "base.yaml:5:25 the alias `go` of `B` is also an alias of `A`, in line 4",
+        "5:25 the alias `GO` of `C` is also an alias of `A`, in base.yaml:4",
     ]
 
 

@@ -132,6 +132,13 @@ def test_a_constant_can_differ_by_direction(tmp_path):
     ]
 
 
+def test_a_link_without_messages_is_checked_with_the_id_0(tmp_path):
+    text = link("header: [{bits: 4, role: constant, value: 1}, {bits: 4, role: id}]")
+    assert messages(tmp_path, text, "ICD196") == [
+        "without `start`, no packet can begin with 0x10, as that of each message does"
+    ]
+
+
 def test_a_link_without_messages_is_checked_by_its_constants(tmp_path):
     text = link("header: [{bits: 8, role: sync, value: 3}, {bits: 8, role: id}]")
     assert messages(tmp_path, text, "ICD196") == [
