@@ -35,6 +35,10 @@ TYPES = """\
 <EnumeratedParameterType name="mode"><IntegerDataEncoding/><EnumerationList>
 <Enumeration value="3" label="On"/><Enumeration value="4" label="5"/>
 </EnumerationList></EnumeratedParameterType>
+<ArrayParameterType name="bytes" arrayTypeRef="byte"><DimensionList><Dimension>
+<StartingIndex><FixedValue>0</FixedValue></StartingIndex>
+<EndingIndex><FixedValue>4</FixedValue></EndingIndex></Dimension></DimensionList>
+</ArrayParameterType>
 <BinaryParameterType name="rest"><BinaryDataEncoding><SizeInBits><DynamicValue>
 <ParameterInstanceRef parameterRef="A"/></DynamicValue></SizeInBits></BinaryDataEncoding>
 </BinaryParameterType>
@@ -44,7 +48,7 @@ TYPES = """\
 PARAMETERS = {
     "A": "byte", "B": "byte", "C": "byte", "S": "signed", "N": "nibble", "L": "little",
     "H": "short", "K": "scaled", "D": "bcd", "F": "float", "M": "mode", "R": "rest",
-    "P": "pair",
+    "P": "pair", "Y": "bytes",
 }  # fmt: skip
 
 
@@ -490,3 +494,70 @@ def test_an_entry_behind_variable_length_has_whole_bytes_directly_behind(last):
         f"`{name}` follows `R`, whose size is not fixed, and does not have whole bytes"
         " directly behind the entry in front of it"
     )
+
+
+def test_an_array_has_the_dimensions_of_its_type_or_of_its_entry():
+    assert rows(entry("Y") + entry("A"), "count") == [("Y", 0, 5), ("A", 40, None)]
+    inner = (
+        "<DimensionList><Dimension><StartingIndex><FixedValue>1</FixedValue>"
+        "</StartingIndex><EndingIndex><FixedValue>2</FixedValue></EndingIndex>"
+        "</Dimension></DimensionList>"
+    )
+    array = f'<ArrayParameterRefEntry parameterRef="Y">{inner}</ArrayParameterRefEntry>'
+    assert rows(array + entry("A"), "count") == [("Y", 0, 2), ("A", 16, None)]
+
+
+def command_layout(entries, arguments):
+    """Return the layout of the container of a command with these arguments."""
+    text = (
+        '<SpaceSystem name="s"><CommandMetaData><ArgumentTypeSet>'
+        + TYPES.replace("Parameter", "Argument")
+        + "</ArgumentTypeSet><MetaCommandSet><MetaCommand name='Go'><ArgumentList>"
+        + "".join(
+            f'<Argument name="{name}" argumentTypeRef="{type_}"/>'
+            for name, type_ in arguments.items()
+        )
+        + f"</ArgumentList><CommandContainer name='Go'><EntryList>{entries}</EntryList>"
+        "</CommandContainer></MetaCommand></MetaCommandSet></CommandMetaData>"
+        "</SpaceSystem>"
+    )
+    root = safe_xml.parse("a.xml", text.encode(), account=Account())
+    to = Definitions("a.xml")
+    names = XtceNames({"a.xml": root}, to)
+    (command,) = names.all("command")
+    listed = {e.get("name"): e for e in command.iterfind("ArgumentList/Argument")}
+    layout = XtceLayout(names=names, types=XtceTypes(to, names), arguments=listed)
+    layout.read(names.container_of(command))
+    return layout
+
+
+def argument(name, key="argumentRef", tag="ArgumentRefEntry"):
+    return f'<{tag} {key}="{name}"/>'
+
+
+def test_a_command_has_its_arguments_and_their_members():
+    entries = (
+        argument("A")
+        + argument("P/y")
+        + argument("a/b")
+        # XTCE 1.1 refers to arrays of arguments like this.
+        + argument("Y", "parameterRef", "ArrayArgumentRefEntry")
+    )
+    arguments = {"A": "byte", "P": "pair", "a/b": "nibble", "Y": "bytes"}
+    layout = command_layout(entries, arguments)
+    placed = [(part.path[-1], part.at, part.bits) for part in layout.parts]
+    assert placed == [("A", 0, 8), ("P y", 8, 4), ("a/b", 12, 4), ("Y", 16, 40)]
+    with pytest.raises(NotSupported, match="there is no argument `X`"):
+        command_layout(argument("X"), arguments)
+
+
+def test_a_message_has_at_most_65535_bytes():
+    def length(size):
+        return laid_out(entry("A") + fixed(8, "0") + entry("A", location(8 * size)))[
+            "length"
+        ]
+
+    assert length(65535 - 3) == 65535
+    with pytest.raises(NotSupported) as caught:
+        length(65535 - 2)
+    assert str(caught.value) == "its frames have more than 65,535 bytes"
