@@ -360,3 +360,51 @@ def test_a_primary_header_has_the_length_of_ccsds():
         layout = layout_of(packet(terms(*pairs), "LengthEntry"), PRIMARY)
         assert (layout.header() is not None) == is_header, pairs
     assert layout_of(container(entry("word", "A"))).header() is None
+
+
+def test_a_fixed_value_is_a_constant_but_not_in_an_array():
+    fixed = entry("byte", "F", "FixedValueEntry", more='fixedValue="7"')
+    assert layout_of(container(fixed)).fields(0)[0]["const"] == 7
+    dimension = "<ArrayDimensions><Dimension size='2'/></ArrayDimensions>"
+    several = entry("byte", "F", "FixedValueEntry", dimension, 'fixedValue="7"')
+    assert lost(container(entry("byte", "A") + several)) == (
+        "`F` is an array of elements of variable length, or of a constant"
+    )
+    text = entry("open", "T", inner=dimension)
+    assert lost(container(entry("byte", "A") + text)) == (
+        "`T` is an array of elements of variable length, or of a constant"
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "summary"),
+    [
+        ('errorControlType="CRC8"', "", "CRC8."),
+        ("", "", "an error control."),
+        ('errorControlType="CRC8"', "Of all bytes", "Of all bytes. CRC8."),
+        ('errorControlType="CRC8"', "Of all bytes!", "Of all bytes! CRC8."),
+    ],
+)
+def test_an_error_control_is_a_field_that_nothing_checks(kind, text, summary):
+    more = f'{kind} shortDescription="{text}"'
+    layout = layout_of(container(entry("byte", "C", "ErrorControlEntry", more=more)))
+    assert layout.fields(0)[0]["summary"] == summary
+    (finding,) = layout.types.to.import_findings
+    name = summary.removesuffix(".").rpartition(". ")[2].rpartition("! ")[2]
+    assert (finding.code, finding.message) == (
+        "IMP082",
+        f"`C` is {name} of what is in the frame",
+    )
+
+
+def test_an_abstract_container_and_an_entry_without_a_name_are_named_in_reasons():
+    any_ = container(entry("byte", "x"), "Any", more='abstract="true"')
+    assert lost(container(entry("byte", "A") + entry("Any", "Q")), any_) == (
+        "`Q` is any container that is based on `Any`"
+    )
+    nameless = container(entry("byte", "A") + '<Entry type="Any"/>')
+    layout = layout_of(nameless, any_)
+    assert layout.lost.name == "unnamed 8"
+    assert str(layout.lost.why) == (
+        "`unnamed 8` is any container that is based on `Any`"
+    )

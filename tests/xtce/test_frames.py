@@ -185,7 +185,7 @@ def test_bits_that_consumers_cannot_count_have_positions_in_the_container(tmp_pa
         more=reserved(2),
     )
     # Little endian, 12 bits: the reserved bits begin behind all fields.
-    assert frame.entries[1].run.is_little or frame.entries[0].run.is_little
+    assert [entry.run.is_little for entry in frame.entries] == [False, True, False]
     assert sorted(positions(frame), key=lambda row: row[1]) == [
         ("Status_A", 8),
         ("Status_B", 24),
