@@ -400,6 +400,13 @@ def test_a_linear_instance_is_the_formula_of_its_field():
                     "summary": "Own."}  # fmt: skip
 
 
+def test_a_division_is_a_formula_of_a_float_only():
+    item, messages = formula("a / 2 + 1", "id: a, type: f4")
+    assert (item["formula"], messages) == ("raw/2 + 1", [])
+    item, messages = formula("a / 2 + 1")
+    assert "formula" not in item and messages  # a whole number in Kaitai Struct
+
+
 @pytest.mark.parametrize("value", ["3", "0.5", "a"])
 def test_an_instance_without_a_calculation_changes_nothing(value):
     assert formula(value) == ({"type": "uint"}, [])

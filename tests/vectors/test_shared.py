@@ -106,6 +106,8 @@ def test_frames_of_another_length_state_the_common_length(tmp_path):
         is_right = len(row.frame) == 2
         assert row.expected == (None if is_right else 2)
     assert SharedRow(TELEMETRY, 5, b"", None, 2) in rows
+    zeros = [len(row.frame) for row in rows if not any(row.frame)]
+    assert zeros == [0, 1, 2, 3]
 
 
 NARROW = """\
