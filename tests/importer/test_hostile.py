@@ -6,6 +6,7 @@ import resource
 import subprocess
 import sys
 import zlib
+from collections.abc import Callable
 
 import pytest
 
@@ -54,41 +55,44 @@ def text(words: str) -> bytes:
     return stream(f"BT /F 12 Tf 72 700 Td ({words}) Tj ET".encode())
 
 
-HOSTILE = {
-    "a tree of pages that holds itself": objects(
+# Made when they are used: one of them is compressed from 500 MB.
+HOSTILE: dict[str, Callable[[], bytes]] = {
+    "a tree of pages that holds itself": lambda: objects(
         CATALOG, b"<< /Type /Pages /Kids [2 0 R 2 0 R] /Count 9 >>"
     ),
-    "pages that hold each other": objects(
+    "pages that hold each other": lambda: objects(
         CATALOG,
         b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
         b"<< /Type /Pages /Kids [2 0 R] /Parent 2 0 R /Count 1 >>",
     ),
-    "no table of objects": objects(*page(text("prose")), xref=False),
-    "a table of objects that lies": objects(*page(text("prose"))).replace(
+    "no table of objects": lambda: objects(*page(text("prose")), xref=False),
+    "a table of objects that lies": lambda: objects(*page(text("prose"))).replace(
         b"0000000015", b"0000000099"
     ),
-    "a root that is not there": objects(*page(text("prose")), root=77),
-    "contents that are half a gigabyte": objects(
+    "a root that is not there": lambda: objects(*page(text("prose")), root=77),
+    "contents that are half a gigabyte": lambda: objects(
         *page(stream(b" " * 500_000_000, squeezed=True))
     ),
-    "a page as large as a country": objects(*page(text("prose"), b"[0 0 1e9 1e9]")),
-    "a page without size": objects(*page(text("prose"), b"[0 0 0 0]")),
-    "more rules than any table": objects(
+    "a page as large as a country": lambda: objects(
+        *page(text("prose"), b"[0 0 1e9 1e9]")
+    ),
+    "a page without size": lambda: objects(*page(text("prose"), b"[0 0 0 0]")),
+    "more rules than any table": lambda: objects(
         *page(stream(b"0 0 m 9 9 l S\n" * 30_000, squeezed=True))
     ),
-    "a drawing of ten megabytes": objects(
+    "a drawing of ten megabytes": lambda: objects(
         *page(stream(b"0 0 m 9 9 l S\n" * 700_000, squeezed=True))
     ),
-    "ten thousand pages": objects(
+    "ten thousand pages": lambda: objects(
         CATALOG,
         b"<< /Type /Pages /Count 10000 /Kids [%s] >>"
         % b" ".join(b"%d 0 R" % n for n in range(3, 10_003)),
         *[b"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 595 842] >>"] * 10_000,
     ),
-    "operators without operands": objects(
+    "operators without operands": lambda: objects(
         *page(stream(b"Tj TJ Tf Td cm q Q Q Q BT ET re l m " * 500))
     ),
-    "a font that is its own parent": objects(
+    "a font that is its own parent": lambda: objects(
         *page(text("prose"))[:-1],
         b"<< /Type /Font /Subtype /Type0 /DescendantFonts [5 0 R] >>",
     ),
@@ -97,7 +101,7 @@ HOSTILE = {
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_pdf_is_a_finding_in_bounded_time_and_memory(name, tmp_path):
-    (tmp_path / "hostile.pdf").write_bytes(HOSTILE[name])
+    (tmp_path / "hostile.pdf").write_bytes(HOSTILE[name]())
 
     def bounded() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
