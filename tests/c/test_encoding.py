@@ -95,11 +95,11 @@ def test_arrays_are_written_in_rows_in_loops_or_by_functions(tmp_path):
         tmp_path,
         "at: 0, bits: 16, name: Words, type: int, count: 3, byte_order: big",
         "at: 48, bits: 12, name: Turns, type: uint, count: 5",
-        "at: 112, bits: 24, name: Bytes, type: bytes",
-        "at: 136, name: Points, struct: Point, count: 2",
-        "at: 200, name: Single, struct: Point, count: 1",
-        "at: 232, name: One, struct: Point",
-        length=34,
+        "at: 112, bits: 56, name: Bytes, type: bytes",
+        "at: 168, name: Points, struct: Point, count: 2",
+        "at: 232, name: Single, struct: Point, count: 1",
+        "at: 264, name: One, struct: Point",
+        length=38,
         head=POINT,
     )
     assert encode(message) == [
@@ -114,16 +114,16 @@ def test_arrays_are_written_in_rows_in_loops_or_by_functions(tmp_path):
         "    }",
         "buffer[12] = ICDGEN_U8(message->turns[4]);",
         "buffer[13] = ICDGEN_U8(message->turns[4] >> 8);",
-        "(void)memcpy(&buffer[14], message->bytes, 3u);",
+        "(void)memcpy(&buffer[14], message->bytes, 7u);",
         "for (size_t element = 0u; element < 2u; element++) {\n"
         "        demo_status_write_points(&message->points[element], "
-        "&buffer[17u + (element * 4u)]);\n"
+        "&buffer[21u + (element * 4u)]);\n"
         "    }",
-        "demo_status_write_single(&message->single[0], &buffer[25]);",
-        "buffer[29] = message->one.x;",
-        "buffer[30] = ICDGEN_U8(message->one.y);",
-        "buffer[31] = ICDGEN_U8(ICDGEN_U8(ICDGEN_U16(message->one.y) >> 8) & 0x0F);",
-        "(void)memset(&buffer[32], 0, 2u);",
+        "demo_status_write_single(&message->single[0], &buffer[29]);",
+        "buffer[33] = message->one.x;",
+        "buffer[34] = ICDGEN_U8(message->one.y);",
+        "buffer[35] = ICDGEN_U8(ICDGEN_U8(ICDGEN_U16(message->one.y) >> 8) & 0x0F);",
+        "(void)memset(&buffer[36], 0, 2u);",
     ]
     arrays = list(all_struct_arrays(message))
     groups = groups_of(arrays[0].element_struct, "points_")

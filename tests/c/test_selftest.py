@@ -214,22 +214,23 @@ def test_names_of_an_enumeration_end_with_a_value_without_one(tmp_path):
 def test_ids_have_the_longest_and_shortest_frame_and_the_status_of_zeros(tmp_path):
     text = selftest_of(
         tmp_path,
-        "at: 0, bits: 8, name: Last, type: uint",
-        "at: 8, bits: 16, name: Data, type: uint, "
+        "at: 0, bits: 8, name: Kind, type: uint",
+        "at: 8, bits: 8, name: Last, type: uint",
+        "at: 16, bits: 16, name: Data, type: uint, "
         "count: {field: Last, plus: -1}, up_to: 3",
-        length=1,
+        length=2,
     )
     ids = "".join(table(text, "demo_telemetry_selftest_ids"))
     rows = re.findall(r"\{(\d+)u, (-?\d+), (\d+)u, (\w+)\}", ids)
     by_id = {int(id): row for id, *row in rows}
     # The smallest counter is 1.
-    assert by_id[130] == ["7", "1", "ICD_ERROR_LENGTH"]
+    assert by_id[130] == ["8", "2", "ICD_ERROR_LENGTH"]
     assert by_id[0] == by_id[255] == ["-1", "0", "ICD_ERROR_UNKNOWN_ID"]
     assert len(by_id) == len(rows) == 256
     lengths = numbers(table(text, "demo_status_selftest_lengths"))
-    assert {1, 3, 5, 7} == {*lengths}
+    assert {2, 4, 6, 8} == {*lengths}
     tail = dict(re.findall(r"^    \.(least|counter|high) = (\d+),$", text, re.M))
-    assert tail == {"least": "1", "counter": "0", "high": "4"}
+    assert tail == {"least": "2", "counter": "1", "high": "4"}
 
 
 def test_an_overlay_is_a_function_and_an_absent_field_has_its_initial_value(tmp_path):
@@ -283,6 +284,17 @@ def test_a_text_is_set_from_strings_of_c_and_read_as_one(tmp_path):
         "8",
         "8",
     )
+
+
+def test_a_message_without_fields_has_vectors_of_its_bytes(tmp_path):
+    text = selftest_of(tmp_path, length=3)
+    assert re.findall(r"\.vector_size = (\d+),", text) == ["3"]
+    data = numbers(table(text, "demo_status_selftest_vectors"))
+    (count,) = re.findall(r"\.vector_count = (\d+),", text)
+    assert len(data) == 3 * int(count)
+    assert numbers(table(text, "demo_status_selftest_kept")) == [0, 0, 0]
+    digest = icd_of(tmp_path, status(length=3)).nodes[0].digest[:16]
+    assert f" from node demo, ICD {digest}. Do not edit. */" in text.splitlines()[0]
 
 
 def test_an_id_of_several_messages_has_no_single_length(tmp_path):
