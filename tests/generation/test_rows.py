@@ -162,6 +162,7 @@ def test_bytes_of_variable_length_have_8_bits_and_points_of_a_group_its_counter(
         "at: 0, name: Text, type: text, size: rest, up_to: 7", length=0
     )
     (row,) = rows_of(tmp_path, text)
+    assert "Further" not in row
     assert {key: row[key] for key in ("Bits", "Counter", "Up to", "Type")} == {
         "Bits": 8,
         "Counter": "rest",
