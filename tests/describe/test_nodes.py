@@ -9,7 +9,7 @@ import pytest
 from icdgen.describe import describe
 from icdgen.loading import load
 from tests.describe.small import node_of
-from tests.icd.files import write
+from tests.icd.files import status, write
 
 MESSAGES = """\
 messages:
@@ -266,6 +266,23 @@ messages:
       - {at: 24, after: Curves, bits: 8, name: More, type: uint, count: rest, up_to: 4}
   - {name: Empty, id: 8, kind: telemetry, length: 2}
 """
+
+
+def test_a_message_has_physical_and_wide_values_if_one_of_its_own_members_has(tmp_path):
+    def message(number, *fields, derived=""):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        text = status("at: 0, name: Raw, bits: 16, type: uint", *fields, length=4)
+        (one,) = node_of(folder, text + derived).messages
+        return one.has_physical, one.has_wide_steps
+
+    scaled = "at: 16, name: Rate, bits: 16, type: uint, formula: raw*0.5"
+    wide = "at: 16, name: Rate, bits: 16, type: uint, formula: raw*2^-70"
+    derived = "    derived: [{name: Twice, formula: Raw*2}]\n"
+    assert message(1) == (False, False)
+    assert message(2, scaled) == (True, False)
+    assert message(3, wide) == (True, True)
+    assert message(4, derived=derived) == (True, False)
 
 
 def test_parts_of_variable_length_are_listed_with_those_in_their_elements(tmp_path):
