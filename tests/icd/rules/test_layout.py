@@ -116,3 +116,18 @@ def test_what_makes_a_field_too_long_is_marked(field, marked, end, help, tmp_pat
 )
 def test_a_field_can_end_with_its_message(field, tmp_path):
     assert reported(tmp_path, STRUCT + status(field, length=3), "ICD020") == []
+
+
+def test_the_first_field_that_ends_furthest_is_named_in_an_overlap(tmp_path):
+    """`B` ends with `A`, and `D` begins behind the end of `A` but not of `C`."""
+    rows = {"A": (0, 16), "B": (8, 8), "C": (12, 12), "D": (16, 2), "E": (24, 8)}
+    fields = [
+        f"at: {at}, bits: {bits}, name: {name}, type: uint"
+        for name, (at, bits) in rows.items()
+    ]
+    found = reported(tmp_path, status(*fields, length=4), "ICD021")
+    assert [each.message for each in found] == [
+        "`B` overlaps `A` (line 9) in bits 8 to 15",
+        "`C` overlaps `A` (line 9) in bits 12 to 15",
+        "`D` overlaps `C` (line 11) in bits 16 to 17",
+    ]

@@ -71,6 +71,44 @@ def test_a_field_has_the_bits_of_the_part_that_it_repeats(
 
 
 @pytest.mark.parametrize(
+    ("echo", "message", "help"),
+    [
+        (
+            "ack: {message: Ack, echo: {Number: header.Lat}}",
+            "the link has no field `Lat` in its header",
+            "did you mean `Lot`?",
+        ),
+        (
+            "ack: {message: Ack, echo: {Number: header.flag}}",
+            "the link has no field `flag` in its header",
+            "did you mean `flags`?",
+        ),
+        (
+            "ack: {packet: Done, echo: {Cde: id}}",
+            "the packet `Done` has no field `Cde`",
+            "did you mean `Code`?",
+        ),
+        (
+            "ack: {packet: Done, echo: {flag: id}}",
+            "the packet `Done` has no field `flag`",
+            "did you mean `flags`?",
+        ),
+    ],
+)
+def test_similar_names_and_roles_of_frame_fields_are_suggested(
+    echo, message, help, tmp_path
+):
+    packets = (
+        "    packets: {All: {from: both, messages: [Ack, Save]}, Done: {from: device, header: "
+        "[{bits: 16, name: Code, role: type}, {bits: 8, role: flags}]}}\n"
+    )
+    keys = packets if "packet" in echo else ""
+    text = link(echo, ack(16), sent("Save", 1, field(64)), keys=keys)
+    (found,) = reported(tmp_path, text, "ICD177")
+    assert (found.message, found.help) == (message, help)
+
+
+@pytest.mark.parametrize(
     ("type", "why"),
     [
         ("uint", None),
