@@ -410,6 +410,29 @@ def test_reasons_are_members_of_the_enumeration_of_any_refusal(tmp_path):
     ]
 
 
+@pytest.mark.parametrize(
+    ("key", "marked"),
+    [("status: Number", "Number"), ("status: Other, reason: Number", "Number")],
+)
+def test_a_reason_of_too_many_values_is_marked_at_the_key_that_names_it(
+    key, marked, tmp_path
+):
+    """The status of a refusal is its reason if no other field is."""
+    enums = "enums: [{name: Why, members: [{value: 0, name: Fine}, {value: 1, to: 257, name: Bad}]}]\n"
+    number = "at: 0, bits: 16, name: Number, type: enum, enum: Why"
+    answer = sent("Ack", 9, number, field(8, "Other", 16), kind="telemetry")
+    commands = f"ack: {{message: Ack, {key}, success: [0]}}"
+    text = link(commands, answer, sent("Save", 1, field(64)), enums=enums)
+    assert reported(tmp_path, text, "ICD177") == [
+        (
+            7,
+            marked,
+            "the reason `Bad` is a range of 257 values, more than 256",
+            "shorten the range to the values that the device uses, or remove it",
+        )
+    ]
+
+
 OTHER_LINKS = [
     "can: {max_data_bytes: 8}",
     "i2c: {write: {address_7bit: 16}}",
