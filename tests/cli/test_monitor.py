@@ -7,10 +7,11 @@ import re
 from contextlib import contextmanager
 
 import pytest
-from icdgen_runtime.wire.events import Done, Timeout
+from icdgen_runtime.wire.events import Arrived, Done, Timeout
 
 from icdgen.commands import monitor as command
 from icdgen.link.ports import PortError
+from tests.conftest import ROOT
 
 ANSWER = Done(146, 1, b"\xe8\x03\1")
 NO_ANSWER = Timeout(146, 3)
@@ -194,3 +195,41 @@ def test_rounds_have_the_given_period(monitor, monkeypatch):
 def test_options_have_limits(monitor, words, is_accepted):
     result = monitor(Sessions(ANSWER), "--once", *words)
     assert result.status == (0 if is_accepted else 2)
+
+
+@pytest.mark.parametrize(
+    ("arrives", "status", "text"),
+    [
+        ([True, True], 0, "Uptime"),
+        ([True, False], 1, "last value"),
+        ([False, False], 1, "nothing came"),
+    ],
+)
+def test_on_a_framed_link_a_round_collects_what_arrives(
+    icdgen, monkeypatch, arrives, status, text
+):
+    now = [100.0]
+    monkeypatch.setattr(command.time, "monotonic", lambda: now[0])
+    due = list(arrives)
+
+    class Listening(Sessions):
+        @contextmanager
+        def open_session(self, icd, facts, **options):
+            self.on_event = options["on_event"]
+            yield self
+
+        def wait(self, until: float) -> bool:
+            now[0] = until / 1000
+            if not due.pop(0):
+                return False
+            self.on_event(Arrived(0x80, b"\1\2\3", {}))
+            return True
+
+    sessions = Listening()
+    monkeypatch.setattr(command, "open_session", sessions.open_session)
+    monkeypatch.setattr(command, "identity_problem", sessions.identity_problem)
+    wheel = ROOT / "examples" / "links" / "wheel.yaml"
+    words = ("wheel", "Status", "--icd", wheel, "--port", "tcp://x:1", "--count", "2")
+    result = icdgen("monitor", *words)
+    assert (result.status, due, sessions.requested) == (status, [], [])
+    assert text in result.out.split("\n\n")[-1]

@@ -103,6 +103,13 @@ def test_each_option_changes_one_setting(started, words, changed):
     assert options == DEFAULTS | changed
 
 
+def test_values_can_come_first(icdgen, demo, monkeypatch):
+    values: list[object] = []
+    monkeypatch.setattr(run, "run", lambda *words: values.append(words[3].values))
+    icdgen("sim", "--set", "A", "x=1", "y=2", "--icd", demo)
+    assert values == [(("A", "x=1"), ("A", "y=2"))]
+
+
 def test_a_word_after_an_option_without_a_message_is_refused(icdgen, demo):
     result = icdgen("sim", "--icd", demo, "--set", "A", "x=1", "--strict", "y=2")
     assert result.status == 2
