@@ -177,10 +177,12 @@ COVERING: dict[str, tuple[str, ...]] = {
         *_MESSAGES,
     ),
     "runtime/rust/": ("tests/rust", "tests/runtime", *_MESSAGES, *_LINKS),
-    "runtime/rust/src/wire/client/": (
+    "runtime/rust/src/wire/": (
+        "tests/rust/test_wire.py",
         "tests/rust/test_stream_client.py",
-        "tests/rust",
         *_LINKS,
+        "tests/rust",
+        "tests/every_language",
     ),
     "scripts/": ("tests/cli/test_readme.py", "tests/test_house.py"),
     "templates/assurance/": ("tests/assurance",),

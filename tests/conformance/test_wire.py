@@ -4,6 +4,8 @@ changed and random requests as the reference does.
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import json
 import random
 
@@ -11,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from icdgen.icd.model import Icd
 from icdgen.runtime_objects import reference
 from tests.conformance import odd_protocol, wire, wire_changed, wire_random
 from tests.conformance.build import build
@@ -86,6 +89,31 @@ def test_an_unusual_protocol_is_answered_like_the_reference(odd_icd, name):
     source = random.Random(7)
     exchanges = list(wire_changed.requests(odd_icd, vectors, source, 1000))
     assert differences(exchanges, Testee(build(language, odd_icd))) == []
+
+
+@pytest.mark.parametrize("always", ["telecommand", "telemetry"])
+def test_checksums_can_be_mandatory_in_one_direction_only(odd_icd, always):
+    """Rust, too, with few messages, since it takes long to compile all of them."""
+    icd, language = _with_checksums(odd_icd, always), all_languages()["rust-debug"]
+    vectors = wire.vectors_of(icd)
+    (result,) = wire.run([language], icd, vectors)
+    assert result.differences == 0, "\n".join(result.shown)
+    exchanges = list(wire_changed.requests(icd, vectors, random.Random(7), 1000))
+    assert differences(exchanges, Testee(build(language, icd))) == []
+
+
+def _with_checksums(odd_icd: Icd, always: str) -> Icd:
+    """Return the bootloader with checksums that are mandatory in this direction and
+    optional in the other.
+    """
+    section = odd_icd.node("cubeacp").protocol["link"]
+    packets = copy.deepcopy(section["packets"])
+    del packets[always]["trailer"][0]["optional"]
+    bootloader = odd_icd.node("bootloader")
+    protocol = {**bootloader.protocol, "link": {**section, "packets": packets}}
+    return Icd(
+        (odd_icd.node("common"), dataclasses.replace(bootloader, protocol=protocol))
+    )
 
 
 def test_changed_requests_are_answered_like_the_reference(icd, testee):

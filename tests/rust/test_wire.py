@@ -6,12 +6,14 @@
 from __future__ import annotations
 
 import random
+from pathlib import Path
 
 import pytest
 
 from tests import links
 from tests.conformance import wire_random
 from tests.rust import harness
+from tests.rust.tools import USED, Toolchain, run
 
 SMALL = """\
 icdgen: 1
@@ -53,6 +55,13 @@ def test_a_node_with_few_features_works_like_the_reference_codec(tmp_path):
         {"op": "dos_time", "value": 3},
     ]
     assert harness.differences(icd, harness.build_testee(icd), requests) == []
+
+
+def test_a_joiner_needs_room_for_all_packets_of_a_message(shipped, tmp_path):
+    tools = Toolchain("default")
+    library = tools.library(shipped.crate, *USED)
+    program = Path(__file__).with_name("joiner.rs")
+    run(tools.program(program, library, tmp_path / "program"))
 
 
 def test_a_node_without_a_protocol_has_no_link(shipped):

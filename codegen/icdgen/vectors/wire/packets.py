@@ -57,6 +57,12 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
                 "packets": [_row(packet) for packet in can_split(link, message)],
             },
         )
+        if message.kind not in CAN_WITH_DATA:
+            (packet,) = can_split(link, message)
+            yield (
+                f"{why}, received with a byte",
+                {"op": "can_join", "packets": [_row(CanPacket(packet.id, b"\x05"))]},
+            )
     if form.extended:
         most = form.extended.bytes
         about = {
