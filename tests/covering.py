@@ -150,7 +150,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         "tests/c/test_checksums.py",
         *_LINKS,
     ),
-    "runtime/c-selftest/": ("tests/c/test_cmake.py", "tests/features"),
+    "runtime/c-selftest/": (
+        "tests/c/test_selftest.py",
+        "tests/c/test_cmake.py",
+        "tests/features",
+    ),
     "runtime/python/": (
         "tests/python",
         "tests/protocol",
@@ -192,7 +196,11 @@ COVERING: dict[str, tuple[str, ...]] = {
         *_MESSAGES,
     ),
     "templates/c/": ("tests/c", *_MESSAGES, *_LINKS),
-    "templates/c-selftest/": ("tests/c/test_cmake.py", "tests/features"),
+    "templates/c-selftest/": (
+        "tests/c/test_selftest.py",
+        "tests/c/test_cmake.py",
+        "tests/features",
+    ),
     "templates/diff/": ("tests/diff",),
     "templates/html/": ("tests/site",),
     "templates/init/": ("tests/cli/test_first_device.py", "tests/cli"),

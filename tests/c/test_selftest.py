@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import struct
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from icdgen.backends.c_selftest import rows as selftest_rows
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 from icdgen.render import Renderer
+from tests.c import harness
 from tests.icd.files import loaded, status, write
 from tests.limits import assert_limits
 
@@ -314,3 +316,36 @@ def test_raw_values_of_more_than_16_bits_are_literals_of_64():
     assert_limits(is_short, least=0, most=0xFFFF)
     assert selftest_rows._unsigned_literal(-1) == "UINT64_C(0xFFFFFFFFFFFFFFFF)"
     assert selftest_rows._unsigned_literal(1 << 63) == "UINT64_C(0x8000000000000000)"
+
+
+PASSES = """\
+#include "icdgen_selftest.h"
+
+int main(void)
+{
+    icdgen_selftest_totals_t totals = {0};
+    icdgen_selftest(icdgen_selftest_nodes[0], &totals, NULL, NULL);
+    return totals.failures == 0u && totals.checks > 0u ? 0 : 1;
+}
+"""
+
+
+@pytest.mark.needs("gcc")
+@pytest.mark.parametrize("options", [(), ("-DICDGEN_NO_DOUBLE",)])
+def test_the_self_test_passes_with_and_without_physical_values(options, tmp_path):
+    scaled = "at: 0, bits: 16, name: Angle, type: int, unit: deg, formula: raw*0.01"
+    icd = loaded(tmp_path, status(scaled)).icd
+    sources = [tmp_path / "main.c"]
+    sources[0].write_text(PASSES)
+    for name in ("c", "c-selftest"):
+        backend = backends.get(name)
+        renderer = Renderer.of_backend(backend)
+        for file, text in backend.files(icd, renderer):
+            (tmp_path / name / file).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name / file).write_text(text)
+            if name == "c-selftest" and file.suffix == ".c":
+                sources.append(tmp_path / name / file)
+    includes = (f"-I{tmp_path / 'c'}", f"-I{tmp_path / 'c-selftest'}")
+    flags = ("-std=c99", *harness.WARNINGS, *options, *includes)
+    program = harness.compile(*sources, *flags, "-lm", output=tmp_path / "program")
+    subprocess.run([program], check=True)

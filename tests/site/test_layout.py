@@ -162,6 +162,22 @@ def test_bytes_code_and_names_can_be_copied(browser, served):
             page.wait_for_selector(".copy.done", state="detached")
 
 
+def test_a_page_without_a_clipboard_copies_a_selection(browser, served):
+    """Browsers give no clipboard to pages that were opened from a folder."""
+    allowed = ["clipboard-read", "clipboard-write"]
+    with opened(browser, served, KINDS["numbers"], permissions=allowed) as page:
+        page.evaluate("navigator.clipboard.writeText('before')")
+        page.evaluate(
+            "() => { navigator.clipboard.writeText = () => Promise.reject('refused') }"
+        )
+        page.locator(".names dd >> nth=0").locator("button.copy").click()
+        page.wait_for_selector(".copy.done", timeout=5000)
+        assert page.evaluate("navigator.clipboard.readText()") == (
+            "cubeacp_estimated_attitude_angles_t"
+        )
+        assert page.locator("textarea:not([id])").count() == 0
+
+
 def test_results_of_the_search_stay_on_the_screen_of_a_phone(browser, site):
     with opened(browser, site.as_uri() + "/", KINDS["home"], viewport=PHONE) as page:
         page.fill("#search", "attitude")
