@@ -119,12 +119,12 @@ class Relations:
                     member.errata,
                     PageLink(f"{enum.name}: {member.name}", f"{url}#{anchor}"),
                 )
-        # Log masks refer to frames by their telemetry id.
-        by_id = {
-            m.telemetry_id: m
-            for m in used_messages.values()
-            if m.telemetry_id is not None
-        }
+        # Log masks refer to frames by their telemetry id. Of messages that share an id,
+        # the first one stands for all, as on the page of the node.
+        by_id: dict[int, Message] = {}
+        for message in used_messages.values():
+            if message.telemetry_id is not None:
+                by_id.setdefault(message.telemetry_id, message)
         for row in node.loggable:
             if row.id in by_id:
                 message = by_id[row.id]
