@@ -80,10 +80,10 @@ const icdgenValues = ((codec, frames) => {
 
   function floatText(field, value) {
     const number = codec.floatValue(field, value);
-    if (field.bits === 64 || !Number.isFinite(number)) return numberText(number);
+    if (field.bits === 64 || number === 0 || !Number.isFinite(number)) return numberText(number);
     for (let digits = 1; digits < 10; digits += 1) {
       const text = number.toPrecision(digits);
-      if (Object.is(Math.fround(Number(text)), number)) return Object.is(number, -0) ? "-0" : String(Number(text));
+      if (Object.is(Math.fround(Number(text)), number)) return String(Number(text));
     }
     return String(number);
   }
