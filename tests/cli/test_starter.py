@@ -167,8 +167,9 @@ def test_ids_that_are_taken_or_out_of_range_are_replaced_by_the_first_free_ones(
     ],
 )
 def test_lengths_are_multiples_of_the_unit_of_the_link(unit, lengths):
-    header = [{"bits": 8, "role": "length", **({"unit": unit} if unit > 1 else {})}]
-    link = {"framing": {"by": "length"}, "header": header}
+    """The greatest unit counts if lengths are sent in several."""
+    rows = [{"bits": 8, "role": "length"}, {"bits": 8, "role": "length", "unit": unit}]
+    link = {"framing": {"by": "length"}, "header": rows}
     messages = messages_of(MESSAGES)
     _lengthen(messages, style_with(protocol={"link": link}))
     shown = [entries(message) for message in messages]

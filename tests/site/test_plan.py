@@ -181,8 +181,9 @@ def test_other_fields_are_named_by_their_index_among_all_elements(tmp_path):
 
 
 def test_ranges_of_members_have_their_last_value(tmp_path):
-    (enum,) = loaded(tmp_path, ENUMS + status()).icd.nodes[0].enums
-    assert enum_plan(enum) == [[0, "Idle"], [1, "Run", 3]]
+    text = ENUMS.replace("value: 0,", "value: -2, to: 0,")
+    (enum,) = loaded(tmp_path, text + status()).icd.nodes[0].enums
+    assert enum_plan(enum) == [[-2, "Idle", 0], [1, "Run", 3]]
 
 
 @pytest.mark.parametrize("sign", [1, -1])

@@ -114,6 +114,7 @@ def test_a_page_that_does_not_exist_is_named():
         ("localhost.example", 403),
         ("example:localhost", 403),
         ("127.0.0.11", 403),
+        ("localhost:1:2", 403),
         (None, 403),
     ],
 )

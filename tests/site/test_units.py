@@ -21,7 +21,7 @@ messages:
       {at: 16, bits: 8, name: C, type: int, unit: min}]}
 """
 FIELDS = (
-    "at: 0, bits: 8, name: Count, type: uint",
+    "at: 0, bits: 8, name: Count, type: uint, unit: V",
     "at: 8, bits: 16, name: Levels, type: uint, count: 3, unit: C",
     "at: 56, bits: 1, name: Flag, type: bool",
     "at: 64, bits: 32, name: Rate, type: float",
@@ -50,7 +50,8 @@ def test_types_have_their_numbers_of_fields_and_units_their_quantity(tmp_path, m
     ]
     # Quantities are in alphabetical order, units in the order of their first field.
     heat = ("temperature (degrees Celsius)", ["C"])
-    assert symbols == [heat, *([("time", ["s", "min"])] if more else [])]
+    times = [("time", ["s", "min"])] if more else []
+    assert symbols == [heat, *times, ("voltage", ["V"])]
     numberings = {
         ("Demo", "little-endian", "lsb0"),
         ("Second", "big-endian", "msb0"),
