@@ -7,6 +7,7 @@ from __future__ import annotations
 from contextlib import chdir
 from pathlib import Path
 
+from icdgen.diagnostics import Place
 from icdgen.diff import inputs, report, reports
 from icdgen.diff.compare import Comparison, compare
 from icdgen.loading import load
@@ -42,3 +43,31 @@ def compared_texts(
         assert result.findings == []
         sides.append(result.icd)
     return compare(*sides)
+
+
+def rows_of(comparison: Comparison, *codes: str) -> list[tuple]:
+    """Return the changes with these codes: code, kind, message, old and new value, the
+    text at the old and at the new place, and the details.
+    """
+    return [
+        (
+            change.code,
+            change.kind,
+            change.message,
+            change.was,
+            change.now,
+            text_at(change.old),
+            text_at(change.new),
+            *change.details,
+        )
+        for change in comparison.changes
+        if change.code in codes
+    ]
+
+
+def text_at(place: Place | None) -> str | None:
+    """Return the text at a place of a file; None without a place."""
+    if place is None:
+        return None
+    line = Path(place.file).read_text(encoding="utf-8").splitlines()[place.line - 1]
+    return line[place.column - 1 :][: place.length]

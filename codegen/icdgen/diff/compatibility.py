@@ -217,7 +217,12 @@ def _verdict(
         new = candidates[0]
     if new is None:
         after = getattr(pair.after, key, None)
-        return NO, (f"its id is {after} now" if after is not None else "it is gone",)
+        if after is None:
+            return NO, ("it is gone",)
+        # The message may still have its id, if only the node no longer uses it.
+        if after == getattr(old, key):
+            return NO, ("the node no longer uses it",)
+        return NO, (f"its id is {after} now",)
     # Another message took over the id.
     if comparison.match.messages.get(id(new)) is not pair:
         return NO, (f"the id means {quote(new.name)} now",)

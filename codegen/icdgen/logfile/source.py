@@ -146,8 +146,8 @@ class LogSource:
 
 def _damage_text(damage: Damage) -> str:
     rows = "about 1 row is" if damage.rows == 1 else f"about {damage.rows:,} rows are"
-    size = damage.end - damage.start
-    return f"damaged: bytes {damage.start:,} to {damage.end - 1:,} ({size:,} bytes); {rows} left out"
+    size = count(damage.end - damage.start, "byte")
+    return f"damaged: bytes {damage.start:,} to {damage.end - 1:,} ({size}); {rows} left out"
 
 
 def _jump_text(jump: TimeJump) -> str:

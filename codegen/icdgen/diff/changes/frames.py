@@ -59,6 +59,7 @@ def id_taken_over(ctx: ComparisonContext) -> Iterator[CheckResult]:
         if not node.both:
             continue
         for kind, key in DIRECTIONS.items():
+            keys = ("id", "set_id" if kind == "telecommand" else "get_id")
             before, after = (
                 by_id(icd.messages_of(side), key) for icd, side in ctx.sides(node)
             )
@@ -81,11 +82,8 @@ def id_taken_over(ctx: ComparisonContext) -> Iterator[CheckResult]:
                     now=new.name,
                     details=(f"Old software takes one for the other.{same}",),
                     pair=new_pair,
-                    places=(old_pair.places(_ID)[0], new_pair.places(_ID)[1]),
+                    places=(old_pair.places(keys)[0], new_pair.places(keys)[1]),
                 )
-
-
-_ID = ("id", "set_id", "get_id")
 
 
 def _exchanged(
@@ -157,10 +155,17 @@ def length_changed(pair: MessagePair, ctx: ComparisonContext) -> Iterator[CheckR
     else:
         what = f"lost {some(tail, 'field')} at its end" if tail else f"shrank by {by}"
     text = f"{quote(new.name)} has {count(new.length, 'byte')}, had {old.length}: it {what}"
-    taken = length_text(old) if old.may_end_early else f"exactly {old.length} bytes"
+    taken = (
+        length_text(old)
+        if old.may_end_early
+        else f"exactly {count(old.length, 'byte')}"
+    )
     details = [f"Decoders of the other release refuse the frame: they take {taken}."]
     if tail and not ctx.is_touched_before(pair, shorter * 8):
-        details.append(f"The first {shorter} bytes are as they were.")
+        first = (
+            "byte is as it was" if shorter == 1 else f"{shorter} bytes are as they were"
+        )
+        details.append(f"The first {first}.")
     yield CheckResult(
         text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details)
     )
