@@ -47,249 +47,134 @@ CASES: dict[str, tuple[str | None, str | None, list[tuple]]] = {
         words("telecommand", 10, 1, A),
         None,
         [
-            (
-                "DIF101",
-                "error",
-                "`Set Heater` is gone: telecommand 10 is no longer spoken",
-                "telecommand 10, 1 byte",
-                "",
-                "Set Heater",
-                None,
-            )
+            ("DIF101", "error",
+             "`Set Heater` is gone: telecommand 10 is no longer spoken",
+             "telecommand 10, 1 byte", "", "Set Heater", None)
         ],
     ),
     "Orbit Position": (
         None,
         f"{CONFIGURED}set_id: 0, get_id: 140".replace("length: 1", "length: 9"),
         [
-            (
-                "DIF102",
-                "addition",
-                "`Orbit Position` is new: configuration 0 / 140, 9 bytes",
-                "",
-                "configuration 0 / 140, 9 bytes",
-                None,
-                "Orbit Position",
-            )
+            ("DIF102", "addition",
+             "`Orbit Position` is new: configuration 0 / 140, 9 bytes", "",
+             "configuration 0 / 140, 9 bytes", None, "Orbit Position")
         ],
     ),
     "First Id": (
         words("telemetry", 0, 1, A),
         words("telemetry", 141, 1, A),
         [
-            (
-                "DIF103",
-                "error",
-                "the telemetry id of `First Id` is 141, was 0",
-                "0",
-                "141",
-                "0",
-                "141",
-            )
+            ("DIF103", "error", "the telemetry id of `First Id` is 141, was 0", "0",
+             "141", "0", "141")
         ],
     ),
     "Both Ids": (
         f"{CONFIGURED}set_id: 12, get_id: 142, fields: [{A}]",
         f"{CONFIGURED}set_id: 13, get_id: 143, fields: [{A}]",
         [
-            (
-                "DIF103",
-                "error",
-                "the telecommand id of `Both Ids` is 13, was 12",
-                "12",
-                "13",
-                "12",
-                "13",
-            ),
-            (
-                "DIF103",
-                "error",
-                "the telemetry id of `Both Ids` is 143, was 142",
-                "142",
-                "143",
-                "142",
-                "143",
-            ),
+            ("DIF103", "error", "the telecommand id of `Both Ids` is 13, was 12",
+             "12", "13", "12", "13"),
+            ("DIF103", "error", "the telemetry id of `Both Ids` is 143, was 142",
+             "142", "143", "142", "143"),
         ],
     ),
     "Also Sent": (
         words("telemetry", 144, 1, A),
         f"{CONFIGURED}set_id: 14, get_id: 145, fields: [{A}]",
         [
-            (
-                "DIF103",
-                "error",
-                "the telemetry id of `Also Sent` is 145, was 144",
-                "144",
-                "145",
-                "144",
-                "145",
-            ),
-            (
-                "DIF105",
-                "addition",
-                "`Also Sent` is a configuration now, was a telemetry",
-                "telemetry",
-                "configuration",
-                "telemetry",
-                "configuration",
-            ),
+            ("DIF103", "error", "the telemetry id of `Also Sent` is 145, was 144",
+             "144", "145", "144", "145"),
+            ("DIF105", "addition",
+             "`Also Sent` is a configuration now, was a telemetry", "telemetry",
+             "configuration", "telemetry", "configuration"),
         ],
     ),
     "Only Sent": (
         f"{CONFIGURED}set_id: 16, get_id: 146, fields: [{A}]",
         words("telemetry", 146, 1, A),
         [
-            (
-                "DIF105",
-                "error",
-                "`Only Sent` is a telemetry now, was a configuration",
-                "configuration",
-                "telemetry",
-                "configuration",
-                "telemetry",
-                "It can no longer be sent.",
-            )
+            ("DIF105", "error",
+             "`Only Sent` is a telemetry now, was a configuration", "configuration",
+             "telemetry", "configuration", "telemetry", "It can no longer be sent.")
         ],
     ),
     "Grown": (
         words("telemetry", 150, 1, A),
         words("telemetry", 150, 3, A, C),
         [
-            (
-                "DIF106",
-                "error",
-                "`Grown` has 3 bytes, had 1: it gained `Gamma` at its end",
-                "1 bytes",
-                "3 bytes",
-                "1",
-                "3",
-                f"{REFUSED}1 byte.",
-                "The first byte is as it was.",
-            )
+            ("DIF106", "error",
+             "`Grown` has 3 bytes, had 1: it gained `Gamma` at its end", "1 bytes",
+             "3 bytes", "1", "3", f"{REFUSED}1 byte.", "The first byte is as it was.")
         ],
     ),
     "Shrunk": (
         words("telemetry", 151, 3, A, B, C),
         words("telemetry", 151, 1, A),
         [
-            (
-                "DIF106",
-                "error",
-                "`Shrunk` has 1 byte, had 3: it lost `Beta` and `Gamma` at its end",
-                "3 bytes",
-                "1 bytes",
-                "3",
-                "1",
-                f"{REFUSED}3 bytes.",
-                "The first byte is as it was.",
-            )
+            ("DIF106", "error",
+             "`Shrunk` has 1 byte, had 3: it lost `Beta` and `Gamma` at its end",
+             "3 bytes", "1 bytes", "3", "1", f"{REFUSED}3 bytes.",
+             "The first byte is as it was.")
         ],
     ),
     "Padded": (
         words("telemetry", 152, 2, A),
         words("telemetry", 152, 3, A),
         [
-            (
-                "DIF106",
-                "error",
-                "`Padded` has 3 bytes, had 2: it grew by 1 byte",
-                "2 bytes",
-                "3 bytes",
-                "2",
-                "3",
-                f"{REFUSED}2 bytes.",
-            )
+            ("DIF106", "error", "`Padded` has 3 bytes, had 2: it grew by 1 byte",
+             "2 bytes", "3 bytes", "2", "3", f"{REFUSED}2 bytes.")
         ],
     ),
     "Trimmed": (
         words("telemetry", 153, 3, A, more="may_end_early: zeros, "),
         words("telemetry", 153, 1, A),
         [
-            (
-                "DIF106",
-                "error",
-                "`Trimmed` has 1 byte, had 3: it shrank by 2 bytes",
-                "3 bytes",
-                "1 bytes",
-                "3",
-                "1",
-                "Decoders of the other release refuse the frame: they take 1 to 3 bytes.",
-            ),
-            (
-                "DIF126",
-                "note",
-                "`Trimmed` is always sent with the zeros that it ends with",
-                "1 to 3 bytes",
-                "1 byte",
-                "zeros",
-                "1",
-                TAKEN,
-            ),
+            ("DIF106", "error", "`Trimmed` has 1 byte, had 3: it shrank by 2 bytes",
+             "3 bytes", "1 bytes", "3", "1",
+             "Decoders of the other release refuse the frame: they take 1 to 3 bytes."),
+            ("DIF126", "note",
+             "`Trimmed` is always sent with the zeros that it ends with",
+             "1 to 3 bytes", "1 byte", "zeros", "1", TAKEN),
         ],
     ),
     "May End": (
         words("telemetry", 154, 2, A),
         words("telemetry", 154, 2, A, more="may_end_early: zeros, "),
         [
-            (
-                "DIF125",
-                "error",
-                "`May End` may be sent without the zeros that it ends with",
-                "2 bytes",
-                "1 to 2 bytes",
-                "2",
-                "zeros",
-                WHOLE,
-            )
+            ("DIF125", "error",
+             "`May End` may be sent without the zeros that it ends with", "2 bytes",
+             "1 to 2 bytes", "2", "zeros", WHOLE)
         ],
     ),
     "Complete": (
         words("telemetry", 155, 2, A, more="may_end_early: zeros, "),
         words("telemetry", 155, 2, A),
         [
-            (
-                "DIF126",
-                "note",
-                "`Complete` is always sent with the zeros that it ends with",
-                "1 to 2 bytes",
-                "2 bytes",
-                "zeros",
-                "2",
-                TAKEN,
-            )
+            ("DIF126", "note",
+             "`Complete` is always sent with the zeros that it ends with",
+             "1 to 2 bytes", "2 bytes", "zeros", "2", TAKEN)
         ],
     ),
     "Fewer": (
         words("telemetry", 156, 1, COUNT, "{at: 8, bits: 8, name: Rows, type: uint, count: {field: Count, plus: 1}, up_to: 9}"),
         words("telemetry", 156, 1, COUNT, "{at: 8, bits: 8, name: Rows, type: uint, count: Count, up_to: 9}"),
         [
-            (
-                "DIF119",
-                "error",
-                "what ends `Fewer` is up to 9 of `Rows`, counted by `Count`, was up to 9 of `Rows`, counted by `Count` + 1",
-                "up to 9 of `Rows`, counted by `Count` + 1",
-                "up to 9 of `Rows`, counted by `Count`",
-                "1",
-                "1",
-                "Frames have 1 to 10 bytes, had 2 to 10 bytes.",
-            )
+            ("DIF119", "error",
+             "what ends `Fewer` is up to 9 of `Rows`, counted by `Count`, was up to 9 of `Rows`, counted by `Count` + 1",
+             "up to 9 of `Rows`, counted by `Count` + 1",
+             "up to 9 of `Rows`, counted by `Count`", "1", "1",
+             "Frames have 1 to 10 bytes, had 2 to 10 bytes.")
         ],
     ),
     "Nested": (
         words("telemetry", 157, 2, COUNT, ROWS, "{at: 16, name: Blocks, struct: Block, count: Rows, up_to: 3}"),
         words("telemetry", 157, 2, COUNT, ROWS, "{at: 16, name: Blocks, struct: Block, count: Rows, up_to: 2}"),
         [
-            (
-                "DIF119",
-                "error",
-                f"what ends `Nested` is {BLOCKS.format(2)}, was {BLOCKS.format(3)}",
-                BLOCKS.format(3),
-                BLOCKS.format(2),
-                "2",
-                "2",
-                "Frames have 2 to 8 bytes, had 2 to 11 bytes.",
-            )
+            ("DIF119", "error",
+             f"what ends `Nested` is {BLOCKS.format(2)}, was {BLOCKS.format(3)}",
+             BLOCKS.format(3), BLOCKS.format(2), "2", "2",
+             "Frames have 2 to 8 bytes, had 2 to 11 bytes.")
         ],
     ),
     "Same Name": (words("telemetry", 158, 1, A), words("telemetry", 158, 1, A), []),
