@@ -6,13 +6,18 @@ from __future__ import annotations
 
 import json
 from contextlib import chdir
+from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
 
 import jsonschema
 import pytest
 
+from icdgen.diagnostics import Place
 from icdgen.diff import inputs, report, reports
+from icdgen.diff.reports.findings import of_change
+from icdgen.diff.reports.groups import groups
+from icdgen.diff.reports.html import coded
 from icdgen.diff.reports.json import SCHEMA
 from tests.conftest import ROOT
 from tests.diff.cases import CASES, FOLDER, compared
@@ -266,3 +271,117 @@ class TestRelease:
     @pytest.mark.parametrize("form", FORMATS)
     def test_every_format_supports_the_release(self, release, form):
         assert len(reports.get(form)(release)) > 2000
+
+
+@pytest.fixture(scope="module")
+def renamed() -> report.DiffReport:
+    """Return the report on another member, without places of its first change."""
+    result = compared(FOLDER / "DIF205")
+    first, *rest = result.changes
+    first = replace(
+        first,
+        old=None,
+        new=None,
+        confidence=0.87649,
+        errata=("D-1 is new", "D-2 is gone"),
+        message="a|b *c* `d|e`",
+    )
+    result.changes = result.comparison.changes = [first, *rest]
+    return result
+
+
+class TestChanges:
+    """Values of a change that other reports leave out or shorten."""
+
+    NOTES = (
+        "Used by `Status: State`.",
+        "Matched by similarity, likely (88%).",
+        "Because erratum D-1 is new, D-2 is gone.",
+    )
+
+    def test_a_change_without_a_place_is_a_finding_about_the_icd(self, renamed):
+        finding = of_change(renamed.changes[0])
+        assert finding.place == Place("icd") and finding.severity == "error"
+        assert finding.message == "meaning: a|b *c* `d|e`"
+        assert finding.help == " ".join(self.NOTES)
+
+    def test_json_has_the_confidence_with_three_digits_and_no_places(self, renamed):
+        change = json.loads(reports.get("json")(renamed))["changes"][0]
+        assert (change["sure"], change["old"], change["new"]) == (0.876, None, None)
+        assert change["errata"] == ["D-1 is new", "D-2 is gone"]
+        where = {"node": "demo", "enum": "Mode", "member": "Safe"}
+        assert change["where"] == where
+        # The names that sources of the old ICD have
+        names = {"c": ["DEMO_MODE_RUN"], "python": ["RUN"], "rust": ["Run"]}
+        assert change["generated"] == names
+
+    def test_text_and_markdown_have_each_note(self, renamed):
+        text = reports.get("text")(renamed)
+        lines = [
+            "  Mode (enumeration, demo)",
+            "    error[DIF205] a|b *c* `d|e`",
+            *(f"        {note}" for note in self.NOTES),
+            "        no file",
+        ]
+        assert "\n".join(lines) in text
+        markdown = reports.get("markdown")(renamed).splitlines()
+        start = markdown.index("**Mode** (enumeration, demo)")
+        assert markdown[start + 2] == r"- error `DIF205` a\|b \*c\* `d\|e` – "
+        assert markdown[start + 4] == "  - Matched by similarity, likely (88%)."
+
+    def test_sarif_has_no_related_place_without_both_places(self, renamed):
+        (run,) = json.loads(reports.get("sarif")(renamed))["runs"]
+        assert run["results"][0]["properties"]["sure"] == 0.876
+        assert "relatedLocations" not in run["results"][0]
+        assert "relatedLocations" in run["results"][1]
+
+    def test_changes_are_grouped_by_enumeration_node_and_message(self):
+        found = groups(
+            [
+                *compared(FOLDER / "DIF204").changes,
+                *compared(FOLDER / "DIF205").changes,
+                *compared(FOLDER / "DIF105").changes,
+                *compared(FOLDER / "DIF413").changes,
+            ]
+        )
+        assert [
+            (group.title, group.about, group.node, group.layers) for group in found
+        ] == [
+            ("Status", "telemetry 130", "demo", ["meaning", "source"]),
+            ("Mode", "enumeration", "demo", ["meaning", "source"]),
+            ("Limits", "telecommand 20", "demo", ["wire"]),
+            ("demo", "node", "demo", ["text"]),
+        ]
+
+    def test_the_explanation_of_an_addition_is_left_out_unless_everything_is_shown(
+        self,
+    ):
+        added = compared(FOLDER / "DIF133")
+        (note,) = added.changes[0].details
+        assert note not in reports.get("text")(added)
+        assert note in reports.get("text")(added, everything=True)
+        assert note in reports.get("markdown")(added)
+
+    def test_the_page_folds_only_changes_of_words(self):
+        words = "<summary>1 with changes of words only</summary>"
+        page = reports.get("html")(compared(FOLDER / "DIF403"))
+        assert "<h2>Changes</h2>" in page
+        before, after = page.split(words)
+        assert "DIF202" in before and "DIF202" not in after
+        assert "DIF403" in after and "DIF403" not in before
+        page = reports.get("html")(compared(FOLDER / "DIF405"))
+        assert words in page and "<h2>Changes</h2>" not in page
+        assert "No change." not in page
+
+    @pytest.mark.parametrize(
+        ("text", "parts"),
+        [
+            ("a `b` c", [("a ", False), ("b", True), (" c", False)]),
+            ("`b`", [("b", True)]),
+            ("one ` only", [("one ` only", False)]),
+            ("``", []),
+            ("", []),
+        ],
+    )
+    def test_words_between_back_ticks_are_code_on_the_page(self, text, parts):
+        assert coded(text) == parts

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 from contextlib import chdir
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -218,6 +219,17 @@ def test_json_has_all_changes_with_reasons_names_and_uses(report):
             "reasons": ["its id is 21 now"],
         }
     ]
+
+
+def test_the_message_of_several_uses_is_shown_once(report):
+    (use,) = report.uses
+    changes = report.comparison.changes
+    twice = replace(report, uses=[use, use._replace(changes=tuple(changes[::-1]))])
+    text = reports.get("text")(twice)
+    assert text.count("  src.c:1:15: roll_angle (DIF") == 2
+    assert text.count(f"      {changes[1].message}\n") == 1
+    document = json.loads(reports.get("json")(twice))
+    assert [each["changes"] for each in document["uses"]] == [[1], [0, 1]]
 
 
 def test_sarif_suppresses_accepted_changes(report):
