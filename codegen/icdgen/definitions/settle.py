@@ -78,6 +78,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
                 break
             refused: dict[int, tuple[_Line, Finding]] = {}
             taken = _Taken(lines.values())
+            renamed: set[int] = set()
             has_changed = False
             for finding in findings:
                 line = lines.get(finding.place.line)
@@ -100,7 +101,11 @@ def settle(network: Network, to: Definitions) -> list[str]:
                         finding.help,
                     )
                 tried = tries.get(id(line.item), 0)
+                # Several rules may reject one name; the next round checks the new one.
+                if finding.code in _NAME_RULES and id(line.item) in renamed:
+                    continue
                 if finding.code in _NAME_RULES and tried < _TRIES:
+                    renamed.add(id(line.item))
                     tries[id(line.item)] = tried + 1
                     line.item["identifier"] = taken.add(
                         line, _identifier(line, finding.code, tried)
