@@ -184,3 +184,18 @@ def test_a_clock_of_32_bits_may_wrap_around(icd, name):
     assert [len(step["out"]) for step in steps] == [1, 0, 0, 1, 0]
     assert steps[-1]["events"] == [{"event": "timeout", "id": 128, "attempts": 2}]
     assert testee.close() == 0
+
+
+@pytest.mark.parametrize("retries", [0, 1, 254, 255])
+def test_a_request_is_sent_once_more_than_its_retries(testee, retries):
+    script = [{"at": 0, "telemetry": 128}]
+    script += [{"at": 10 * (sent + 1)} for sent in range(retries + 1)]
+    times = {"reply_timeout": 10, "poll_interval": 1, "poll_timeout": 1}
+    settings = {**times, "retries": retries}
+    steps = ask(testee, op="client", bus="uart", settings=settings, script=script)[
+        "steps"
+    ]
+    assert [len(step["out"]) for step in steps] == [1] * (retries + 1) + [0]
+    assert [event for step in steps for event in step["events"]] == [
+        {"event": "timeout", "id": 128, "attempts": retries + 1}
+    ]
