@@ -14,6 +14,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.words import plain, table_number, tidy_unit
 
 _TABLE = re.compile(r"[0-9]+(?:[-.][0-9]+)*\Z")
+_GAP = "\0"  # in place of a phrase that is removed from a description
 _FORMULA_WORD = re.compile(r"\bformula\b", re.I)
 
 
@@ -129,7 +130,7 @@ def _const(text: str, profile: Profile, described: Described) -> None:
     for pattern in profile.phrases["const"]:
         match = pattern.search(text)
         if not match or re.match(
-            r"\s*(?:,?\s*(?:or|to|and|if|for|when|-|–)\b|[.][0-9])",
+            r"\s*(?:,?\s*(?:or|to|and|if|for|when)\b|[-–]\s*[0-9]|[.][0-9]|[.]{2,3}\s*[0-9])",
             text[match.end() :],
             re.I,
         ):
@@ -150,7 +151,18 @@ def _without_spans(text: str, spans: list[tuple[int, int]]) -> str:
     for start, end in sorted(spans):
         if start > at:
             remaining += text[at:start]
+        remaining += _GAP
         at = max(at, end)
     remaining += text[at:]
-    remaining = re.sub(r"\s+([.,:;])", r"\1", " ".join(remaining.split()))
-    return re.sub(r"[.:;,\s]*\Z", "", re.sub(r"(?:\s*[:.]){2,}", ".", remaining))
+    # Only marks around a gap are superfluous: those of `1..5` are part of the text.
+    remaining = re.sub(
+        rf"(?:\s*[:.])*\s*{_GAP}(?:\s*[:.{_GAP}])*", _joined_marks, remaining
+    )
+    remaining = re.sub(r"\s+([,:;]|[.](?![.]))", r"\1", " ".join(remaining.split()))
+    return re.sub(r"[.:;,\s]*\Z", "", remaining)
+
+
+def _joined_marks(match: re.Match[str]) -> str:
+    """Return one full stop for the marks before and behind a phrase that was removed."""
+    marks = re.findall("[:.]", match.group())
+    return "." if len(marks) > 1 else match.group().replace(_GAP, "")
