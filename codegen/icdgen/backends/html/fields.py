@@ -86,7 +86,7 @@ def split(
     """Return the rows of each section, with consecutive flags as grids."""
     index_of_key = {row.key: index for index, row in enumerate(field_rows)}
     reserved = [(row.at, index) for index, row in enumerate(field_rows) if not row.key]
-    rows_by_section = []
+    indices_by_section = []
     for section in sections:
         # Reserved bits have no key, so sections list fields only: find the bits by
         # position.
@@ -94,10 +94,18 @@ def split(
         end = bisect_left(reserved, (8 * section.end, 0))
         indices = [index for _, index in reserved[begin:end]]
         indices += (index_of_key[key] for key in section.keys if key in index_of_key)
-        rows_by_section.append(
-            _with_grids([field_rows[index] for index in sorted(indices)])
-        )
-    return rows_by_section
+        indices_by_section.append(indices)
+    # Reserved bits between the fields of two sections are shown at the end of the first
+    # of them, and those in front of all fields in the first section.
+    shown = {index for indices in indices_by_section for index in indices}
+    for at, index in reserved:
+        if index not in shown:
+            begun = [n for n, section in enumerate(sections) if 8 * section.first <= at]
+            indices_by_section[begun[-1] if begun else 0].append(index)
+    return [
+        _with_grids([field_rows[index] for index in sorted(indices)])
+        for indices in indices_by_section
+    ]
 
 
 def _with_grids(field_rows: list[FieldRow]) -> list[FieldRow | FlagRow]:
