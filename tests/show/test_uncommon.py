@@ -11,7 +11,7 @@ from icdgen.show.fields import field_table, remarks
 from icdgen.show.machine import to_json
 from icdgen.show.people import to_text
 from icdgen.values.errors import Ambiguous, NotFound
-from tests.icd.files import loaded, status
+from tests.icd.files import loaded, status, write
 
 BASE = """\
 icdgen: 1
@@ -245,3 +245,94 @@ def test_a_name_of_two_messages_is_ambiguous_even_if_an_enumeration_has_it(tmp_p
         to_text(icd, ["demo", "Mode"])
     assert to_text(icd, ["demo", "Mode"], kind="telemetry").startswith("demo: Mode\n")
     assert to_text(icd, ["demo", "Mode"], kind="configuration").startswith("Mode (enum")
+
+
+MACHINE = """\
+icdgen: 1
+node:
+  name: demo
+  title: Demo
+  byte_order: little
+  bit_order: lsb0
+  source: {document: Manual, version: "7"}
+vocabulary: [mDeg]
+structs:
+  - {name: Point, length: 1, fields: [{at: 0, bits: 8, name: X, type: uint}]}
+enums:
+  - {name: Mode, members: [{value: 0, name: Idle}, {value: 7, name: Run}]}
+messages:
+  - name: Status
+    id: 1
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: enum, enum: Mode, display: hex}
+      - {at: 8, name: Point, struct: Point}
+      - {at: 16, bits: 8, name: Heat, type: uint, formula: raw*0.5}
+      - {at: 16, bits: 4, name: Low, type: uint, view: true}
+    derived:
+      - {name: Double, formula: Heat*2, unit: s, aliases: [Twice], display: {decimals: 1}}
+# errata/demo.yaml
+errata: 1
+node: demo
+notes:
+  - {id: DEM-001, title: Places, what: W., evidence: E., confidence: certain, where: [
+      {struct: Point}, {struct: Point, field: X}, {enum: Mode}, {enum: Mode, member: 7},
+      {message: Status, field: Heat}]}
+"""
+
+
+def test_json_has_views_displays_derived_values_and_places_of_notes(tmp_path):
+    result = loaded(tmp_path, MACHINE)
+    assert result.ok, [finding.message for finding in result.findings]
+    (node,) = to_json(result.icd)["nodes"]
+    assert node["vocabulary"] == ["mDeg"]
+    assert node["document"] == {"document": "Manual", "version": "7"}
+    (message,) = node["messages"]
+    mode, *_, low = message["fields"]
+    assert mode["display"] == "hex" and low["view"] is True and "view" not in mode
+    (derived,) = message["derived"]
+    assert derived == {
+        "name": "Double",
+        "formula": "Heat*2",
+        "aliases": ["Twice"],
+        "unit": "s",
+        "display": {"decimals": 1},
+    }
+    assert node["notes"][0]["places"] == [
+        {"struct": "Point"},
+        {"struct": "Point", "field": "X"},
+        {"message": "Status", "field": "Heat"},
+        {"enum": "Mode"},
+        {"enum": "Mode", "member": 7},
+    ]
+
+
+@pytest.mark.parametrize(("count", "is_complete"), [(12, True), (13, False)])
+def test_twelve_points_of_a_lookup_table_are_listed(tmp_path, count, is_complete):
+    points = [[index, 2 * index] for index in range(count)]
+    field = f"at: 0, bits: 8, name: Heat, type: uint, points: {points}, outside: clamp"
+    result = loaded(tmp_path, status(field, length=1))
+    assert result.ok, [finding.message for finding in result.findings]
+    (text,) = remarks(result.icd.nodes[0].messages[0].fields[0])
+    listed = ", ".join(f"{raw}: {value}" for raw, value in points)
+    assert (text == f"points {listed}, clamped outside") == is_complete
+
+
+def test_a_struct_of_two_elements_has_the_distance_and_a_derived_value_its_formula(
+    tmp_path,
+):
+    text = MACHINE.replace("length: 3", "length: 4").replace(
+        "{at: 8, name: Point, struct: Point}",
+        "{at: 24, name: Point, struct: Point, count: 1}",
+    )
+    for count, words in ((1, "once"), (2, "2 times, every 1 byte")):
+        changed = text.replace("count: 1", f"count: {count}").replace(
+            "length: 4", f"length: {3 + count}"
+        )
+        (node,) = load([write(tmp_path, changed)], check=False).icd.nodes
+        table = field_table(node.messages[0], node).splitlines()
+        assert [line.split("  ")[-1] for line in table if "Point" in line] == [
+            f"{words}; DEM-001"
+        ]
+    assert any("derived: Heat*2" in line and "a view" not in line for line in table)
