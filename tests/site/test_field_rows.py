@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from icdgen.backends.html import all_facts, fields
 from icdgen.backends.html.drawing import draw_frame
-from icdgen.backends.html.examples import example_frames, page_vectors
+from icdgen.backends.html.examples import _cell, example_frames, page_vectors
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.sections import field_sections
 from icdgen.loading import load
@@ -176,3 +176,38 @@ def test_the_protocol_page_has_each_fact_once_with_links_and_reasons():
         "",
     )
     assert "facts-link-checksums-crc" not in battery
+
+
+def test_assumed_facts_have_their_reason_and_seeds_are_with_their_checksum():
+    relations = Relations(load([ROOT / "examples" / "links" / "wheel.yaml"]).icd)
+    node_facts = facts.of(relations.icd, relations.icd.nodes[0])
+    reasons = {
+        row.about: row.why
+        for part in all_facts.facts_of_code(node_facts)
+        for row in part.rows
+        if row.why
+    }
+    assert set(reasons.values()) == {each.why for each in node_facts.assumptions}
+    relations = Relations(load([ROOT / "examples" / "links" / "mavlink1.yaml"]).icd)
+    (node,) = relations.icd.nodes
+    node_facts = facts.of(relations.icd, node)
+    section = relations.icd.protocol_of(node)
+    assert any("seeds" in each for each in section["link"]["checksums"].values())
+    tables = all_facts.with_remaining_facts(relations, node_facts, [], section)
+    assert [table.anchor for table in tables if "checksum" in table.anchor] == []
+
+
+def test_keys_without_a_fact_have_the_meaning_of_the_schema():
+    about = all_facts._about
+    assert about({"description": "sent first (name of a message)"}, "x") == "Sent first"
+    assert about({"description": "name of a message"}, "stop_request") == "Stop request"
+    assert about({}, "stop_request") == "Stop request"
+    text = all_facts._value_text
+    assert text({"$ref": "#/$defs/byte"}, "start", 5) == "0x05"
+    assert text({}, "address_7bit", 87) == "0x57"
+    assert (text({}, "size", 1000), text({}, "check", True)) == ("1,000", "yes")
+
+
+def test_bits_of_a_float_have_all_digits(tmp_path):
+    _, message = relations_of(tmp_path, MODE + status(*FIELDS, length=13))
+    assert _cell(message.fields[4], 1).raw == "0x0000000000000001"
