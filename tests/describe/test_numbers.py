@@ -11,18 +11,29 @@ from hypothesis import strategies as st
 from icdgen import codec
 from icdgen.describe.bounds import allowed_ends, bounds_of_limits
 from icdgen.describe.numbers import (
+    MOST_DIGITS,
+    array_text,
     bit_range,
+    byte_count,
     byte_range,
+    count_text,
     exact_text,
     factor_text,
+    length_text,
+    octets_text,
+    points_text,
+    special_text,
     value_text,
 )
 from icdgen.describe.steps import steps_of_scale
 from icdgen.describe.storage import Storage, storage_bits
+from icdgen.icd.curve import CLAMP, EXTRAPOLATE, REFUSE, Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
-from icdgen.icd.model import Limits
+from icdgen.icd.model import Limits, Special
 from icdgen.icd.places import NodePlace
+from tests.describe.small import message_of
+from tests.limits import assert_limits
 
 fractions = st.fractions(min_value=-1000, max_value=1000, max_denominator=1000)
 scales = st.builds(Scale, fractions.filter(bool), fractions)
@@ -142,3 +153,83 @@ def test_decimal_places_and_values_are_printed_as_expected():
         "10 (0xA)",
         "90 (0x5A)",
     ]
+
+
+def test_a_decimal_is_exact_up_to_24_digits():
+    def is_exact(digits: int) -> bool:
+        number = 10 ** (digits - 1) + 1
+        whole, decimal = exact_text(Fraction(number)), exact_text(Fraction(number, 10))
+        return (Fraction(whole), Fraction(decimal)) == (number, Fraction(number, 10))
+
+    assert_limits(is_exact, most=MOST_DIGITS)
+    assert exact_text(Fraction(1, 10**24)) == f"0.{'0' * 23}1"
+    assert exact_text(Fraction(1, 10**25)) == "1e-25"
+    assert exact_text(-(10**24)) == "-1e+24"
+
+
+@pytest.mark.parametrize(
+    ("most", "outside", "text"),
+    [
+        (4, "", "0: -40, 512: 20.5, 600: 30, 1023: 125"),
+        (4, CLAMP, "0: -40, 512: 20.5, 600: 30, 1023: 125, clamped outside"),
+        (3, EXTRAPOLATE, "0: -40, 512: 20.5, ... (4 points), 1023: 125, extrapolated outside"),
+        (2, REFUSE, "0: -40, ... (4 points), 1023: 125, no number outside"),
+    ],
+)  # fmt: skip
+def test_points_in_the_middle_of_a_long_table_are_left_out(most, outside, text):
+    points = ((0.0, -40.0), (512.0, 20.5), (600.0, 30.0), (1023.0, 125.0))
+    assert points_text(Curve((), points, outside), most) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "number", "text"),
+    [
+        (0, "", "0"),
+        (65535, "", "65535 (0xFFFF)"),
+        (0x7FC00000, "nan", "NaN"),
+        (0x7F800000, "inf", "infinity"),
+        (0xFF800000, "-inf", "-infinity"),
+        (0xC2C7CCCD, "-99.9", "-99.9"),
+    ],
+)
+def test_a_special_value_is_its_raw_value_or_the_number_of_a_float(value, number, text):
+    assert special_text(Special(value=value, meaning="idle", number=number)) == text
+
+
+def test_a_single_element_byte_or_bit_is_singular():
+    assert [byte_count(count) for count in (0, 1, 2)] == [
+        "0 bytes",
+        "1 byte",
+        "2 bytes",
+    ]
+    assert [array_text(*size) for size in ((1, 1), (6, 16))] == [
+        "1 element of 1 bit",
+        "6 elements of 16 bits",
+    ]
+    assert [octets_text(*size) for size in ((1, 8), (10, 240))] == [
+        "1 element of 1 byte",
+        "10 elements of 30 bytes",
+    ]
+
+
+@pytest.mark.parametrize(("plus", "text"), [(0, "N"), (3, "N + 3"), (-4, "N - 4")])
+def test_a_counter_is_shown_with_what_is_added_to_it(plus, text):
+    assert count_text("N", plus) == text
+
+
+@pytest.mark.parametrize(
+    ("fields", "length", "text"),
+    [
+        (["at: 0, bits: 8, name: A, type: uint"], 1, "1 byte"),
+        (
+            [
+                "at: 0, bits: 8, name: A, type: uint",
+                "at: 8, bits: 16, name: B, type: uint, count: A, up_to: 3",
+            ],
+            1,
+            "1 to 7 bytes",
+        ),
+    ],
+)
+def test_a_length_is_a_range_if_frames_differ(tmp_path, fields, length, text):
+    assert length_text(message_of(tmp_path, *fields, length=length).model) == text
