@@ -7,7 +7,15 @@ import json
 import pytest
 
 from icdgen.backends.python import PythonBackend
+from icdgen.backends.python.names import (
+    accessors_in_python,
+    constant_name,
+    import_path,
+    module_name,
+)
 from icdgen.loading import load
+from tests.describe.small import message_of, node_of
+from tests.limits import assert_limits
 
 
 def node(**keys) -> dict:
@@ -117,3 +125,39 @@ def test_keywords_are_reserved(word):
 
 def test_soft_keywords_are_valid_names():
     assert not {"match", "case", "type", "print"} & PythonBackend.reserved
+
+
+def test_the_module_of_a_keyword_has_an_underscore(tmp_path):
+    text = "messages: [{name: Pass, id: 1, kind: telemetry, length: 0}]"
+    (keyword,) = node_of(tmp_path, text).messages
+    assert module_name(keyword) == "pass_"
+    assert import_path(keyword, "demo", "..") == "._types.pass_"
+    assert import_path(keyword, "other", "..") == "..demo._types.pass_"
+    assert constant_name("timeout_no_timeout") == "TIMEOUT_NO_TIMEOUT"
+
+
+def test_the_module_of_a_name_of_more_than_200_characters_has_a_checksum(tmp_path):
+    def module_of(name: str) -> str:
+        text = f"messages: [{{name: {name}, id: 1, kind: telemetry, length: 0}}]"
+        return module_name(*node_of(tmp_path, text).messages)
+
+    assert_limits(lambda n: module_of("a" * n) == "a" * n, most=200)
+    names = [module_of("a" * 200 + end) for end in "bc"]
+    assert names[0] != names[1]
+    assert all(name[:201] == "a" * 200 + "_" and len(name) == 209 for name in names)
+
+
+def test_a_read_only_value_has_only_the_accessor_of_doubles(tmp_path):
+    value = "bits: 8, type: uint, formula: raw*0.5, unit: V"
+    message = message_of(
+        tmp_path,
+        f"at: 0, name: Own, {value}",
+        f"at: 0, name: Seen, {value}, view: true",
+        length=1,
+    )
+    (own,), (seen,) = message.members, message.read_only_members
+    assert [accessor.name for accessor in accessors_in_python(own)] == [
+        "own_v",
+        "own_mv",
+    ]
+    assert [accessor.name for accessor in accessors_in_python(seen)] == ["seen_v"]
