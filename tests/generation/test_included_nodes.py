@@ -188,6 +188,13 @@ def test_functions_of_c_call_those_of_the_node_that_declares_the_message(files):
     ]
 
 
+def test_lengths_of_c_are_those_of_each_message(files):
+    lengths = mentions(files["c/demo.h"], r"(?<=\*length = )\w+")
+    telemetry = ["BASE_PONG", "DEMO_SET_BOTH", "DEMO_LIST", "DEMO_FLAG"]
+    expected = [*telemetry, "BASE_PING", "DEMO_SET_BOTH"]
+    assert lengths == [f"{name}_LENGTH" for name in expected]
+
+
 def test_the_narrower_message_of_a_shared_id_is_tried_first(files):
     case = section(files["c/demo.h"], "    case DEMO_FLAG_ID:", "    default:")
     assert case == [
@@ -358,3 +365,46 @@ def test_a_system_of_xtce_has_the_messages_of_included_nodes(files):
     assert bases[:5] == ["TelemetryFrame"] * 3 + ["Id131"] * 2
     assert '<Enumeration value="200" maxValue="210" label="Vendor"/>' in text
     assert mentions(files["xtce/base.xml"], r'(?<=value=")129') == ["129"]
+
+
+def test_a_node_that_includes_two_nodes_has_the_messages_of_both(tmp_path):
+    other = BASE.replace("base", "other").replace("Base", "Other")
+    other = re.sub(r"P([ioa])", r"Q\1", other).replace("Mode", "State")
+    other = other.replace("id: 0", "id: 9").replace("id: 129", "id: 200")
+    text = DEMO.replace("[base.yaml]", "[base.yaml, other.yaml]") + BASE + other
+    result = loaded(tmp_path, text)
+    assert result.ok, [finding.message for finding in result.findings]
+    generated = {
+        f"{backend.name}/{path}": text
+        for backend in (CBackend(), PythonBackend(), RustBackend())
+        for path, text in backend.files(result.icd, Renderer(backend.name))
+    }
+    types = generated["python/icdgen_messages/demo/_types/__init__.py"]
+    assert mentions(types, "_Node.*") == [
+        "_Node as _other",
+        "_Node as _base",
+        "_Node(_other, _base):",
+        "_Node = None",
+    ]
+    assert mentions(generated["c/demo.h"], r'(?<=#include ")\w+(?=\.h)') == [
+        "icdgen",
+        "base",
+        "other",
+    ]
+    assert mentions(generated["c/demo.h"], r"(?<=case )\w+_ID") == [
+        "BASE_PONG_ID",
+        "OTHER_QONG_ID",
+        "DEMO_SET_BOTH_GET_ID",
+        "DEMO_FLAG_ID",
+        *["BASE_PING_ID", "OTHER_QING_ID", "DEMO_SET_BOTH_SET_ID"] * 4,
+    ]
+    assert mentions(generated["rust/src/demo/mod.rs"], r"(?<=_\) => )\S+ID") == [
+        "crate::base::Ping::ID",
+        "crate::other::Qing::ID",
+        "SetBoth::SET_ID",
+        "crate::base::Pong::ID",
+        "crate::other::Qong::ID",
+        "SetBoth::GET_ID",
+        "List::ID",
+        "Flag::ID",
+    ]
