@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import json
 
+import yaml
+
 from icdgen.importer.document import SourceTable
 from icdgen.importer.rules import explore
-from tests.importer.rules.small import table
+from icdgen.importer.rules.cells import find_columns
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.rows import read_rows
+from tests.importer.rules.small import column, rule, table
 
 HEAD = """\
 # Give each column a role or a pattern (docs/reference/import-rules.md),
@@ -51,7 +56,7 @@ def test_each_kind_of_table_has_a_skeleton_of_a_rule_with_samples():
     columns:
       Byte:   # 0 | 1 | 2
       2:   # a | b | c
-      "~Name":   # x | y | z
+      "~^\\~Name$":   # x | y | z
 
   # 1 table: 1, page 9
   - tables: {head: "Num | Pin | No: 1"}
@@ -74,6 +79,17 @@ def test_at_most_twelve_numbers_of_tables_are_listed():
     assert line(1) == "  # 1 table: 1"
     assert line(12) == f"  # 12 tables: {numbers}"
     assert line(13) == f"  # 13 tables: {numbers} ..."
+
+
+def test_the_keys_of_columns_are_those_that_rules_find():
+    source = table("Byte|Byte|Name>2|*|a + b|Why?", "1|2|3|4|5|6|7")
+    text = explore.report(tables(source), "pump.txt")
+    columns = yaml.safe_load(text)["rules"][0]["columns"]
+    titles, _ = read_rows(rule(head="Byte | Byte"), source, Notes())
+    assert titles == ["Byte", "Byte.2", "Name", "Name.2", "*", "a + b", "Why?"]
+    for key, title in zip(columns, titles, strict=True):
+        assert find_columns(column(key), titles) == [title]
+    assert "      Name.2:   # 4\n" in text
 
 
 def test_the_kinds_of_tables_in_json():

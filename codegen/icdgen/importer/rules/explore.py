@@ -13,6 +13,8 @@ from typing import Any
 
 from icdgen.icd.fmt.scalars import quoted_if_needed
 from icdgen.importer.document import SourceTable
+from icdgen.importer.rules.language import normalised
+from icdgen.importer.rules.rows import numbered
 from icdgen.importer.source_tables import group_by_headings, name_of
 from icdgen.importer.words import plain
 from icdgen.wording import count
@@ -73,13 +75,25 @@ def _block(group: list[SourceTable]) -> list[str]:
         "    message: {heading: '^{message} {id}$', kind: telemetry}",
         "    columns:",
     ]
-    rows = first.grid()[head + 1 :]
-    for column, title in enumerate(titles):
+    grid = first.grid()
+    rows = grid[head + 1 :]
+    columns = [normalised(slot.cell.text) for slot in grid[head]] if grid else []
+    for column, title in enumerate(columns):
         cells = (plain(row[column].text) for row in rows if column < len(row))
         samples = " | ".join(list(dict.fromkeys(filter(None, cells)))[:SAMPLES])
-        key = quoted_if_needed(title, in_flow=False) if title else str(column + 1)
+        key = _column_key(numbered(title, columns[:column])) or str(column + 1)
+        key = quoted_if_needed(key, in_flow=False) if title else key
         lines.append(f"      {key}:   # {samples[:90]}")
     return lines
+
+
+def _column_key(title: str) -> str:
+    """Return the key of a heading within `columns`; one that would have another meaning
+    there is a pattern.
+    """
+    if title.startswith("~") or title.endswith("?") or " + " in title or title == "*":
+        return f"~^{re.escape(title)}$"
+    return title
 
 
 def _title(title: str) -> str:

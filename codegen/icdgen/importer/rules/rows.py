@@ -86,10 +86,10 @@ def _titles(heads: list[list[Slot]]) -> list[str]:
                 )
             )
         )
-    return [_numbered(title, titles[:index]) for index, title in enumerate(titles)]
+    return [numbered(title, titles[:index]) for index, title in enumerate(titles)]
 
 
-def _numbered(title: str, before: list[str]) -> str:
+def numbered(title: str, before: list[str]) -> str:
     """Return the heading, with a number if columns to the left have it, too."""
     count = before.count(title)
     return f"{title}.{count + 1}" if count and title else title
