@@ -148,3 +148,36 @@ def test_shipped_rules_survive_being_written(tmp_path):
     assert rule_text.rules_of(rewritten) == rule_text.rules_of(text)
     (tmp_path / "p.yaml").write_text(rewritten, encoding="utf-8")
     assert len(profile.load(tmp_path / "p.yaml").rules) == len(rule_text.rules_of(text))
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "rules:\n- {what: ignore, tables: {head: Pin}}\n- what: list\n  skip: a\n",
+        "rules:\n    - {what: ignore, tables: {head: Pin}}\n    - what: list\n      skip: a\n",
+        "rules: [{what: ignore, tables: {head: Pin}}, {what: list, skip: a}]\n",
+        "rules: [{what: ignore,\n  tables: {head: Pin}}, {what: list,\n skip: a}]\n",
+        "rules:\n  [{what: ignore, tables: {head: Pin}},\n   {what: list, skip: a}\n  ]\n",
+    ],
+)
+def test_rules_are_changed_whatever_their_indentation_and_brackets(start):
+    first, second = rule_text.rules_of(start)
+    head, tail = "# Of the motor.\nprofile: 1\n", "types: {}  # none\n"
+    start = head + start + tail
+    for change, rules in (
+        ((None, NEW), [first, second, NEW]),
+        ((None, NEW, 0), [first, NEW, second]),
+        ((0, NEW), [NEW, second]),
+        ((1, NEW), [first, NEW]),
+        ((0, None), [second]),
+        ((1, None), [first]),
+    ):
+        text = rule_text.with_rule(start, *change)
+        assert rule_text.rules_of(text) == rules
+        assert text.startswith(head) and text.endswith(tail)
+
+
+@pytest.mark.parametrize("value", ["", " ~", " []", "\n  []", "  # none"])
+def test_a_rule_is_added_to_an_empty_value(value):
+    text = rule_text.with_rule(f"profile: 1\nrules:{value}\n# end\n", None, NEW)
+    assert text == f"profile: 1\nrules:\n{rule_text.text_of_rule(NEW)}# end\n"

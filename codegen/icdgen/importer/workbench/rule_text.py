@@ -87,21 +87,23 @@ def with_rule(
     lines = text.splitlines(keepends=True)
     if lines and not lines[-1].endswith("\n"):
         lines[-1] += "\n"
-    if not isinstance(rules, Seq):
+    if "rules" not in tree:
         return "".join(lines) + f"rules:\n{block}"
-    # In one line, as `[]` or `[{...}]`.
-    if not rules or tree.key_at("rules").line == rules.item_at(0).line:
+    # Without a value, `[]`, or `[{...}]` in one line or several.
+    if not isinstance(rules, Seq) or not rules or _is_in_brackets(lines, rules):
         first = tree.key_at("rules").line - 1
-        texts = [text_of_rule(plain(entry)) for entry in rules]
+        texts = [text_of_rule(plain(entry)) for entry in rules or ()]
         added = len(texts) if behind is None else behind + 1
         texts[
             added if index is None else index : added if index is None else index + 1
         ] = [block]
-        lines[first : first + 1] = ["rules:\n" if any(texts) else "rules: []\n", *texts]
+        last = _last_line_of_value(text, "rules")
+        lines[first:last] = ["rules:\n" if any(texts) else "rules: []\n", *texts]
         return "".join(lines)
     # Lines are replaced within the text, because a YAML writer would drop comments and
     # the order of keys.
     starts = [rules.item_at(i).line - 1 for i in range(len(rules))]
+    block = _indented_like(lines[starts[0]], block)
     next_keys = [
         place.line - 1
         for key in tree
@@ -117,6 +119,30 @@ def with_rule(
         if len(rules) == 1 and rule is None:
             lines[tree.key_at("rules").line - 1] = "rules: []\n"
     return "".join(lines)
+
+
+def _is_in_brackets(lines: list[str], rules: Seq) -> bool:
+    """Return whether rules are a list in brackets."""
+    place = rules.place
+    return lines[place.line - 1][place.column - 1 :].startswith("[")
+
+
+def _last_line_of_value(text: str, key: str) -> int:
+    """Return the number of the last line of the value of a key, in valid YAML."""
+    import yaml
+
+    root: Any = yaml.compose(text, Loader=yaml.SafeLoader)
+    name, value = next(pair for pair in root.value if pair[0].value == key)
+    # The marks of an empty value may stand behind further lines.
+    is_empty = value.start_mark.index == value.end_mark.index
+    last: int = (name if is_empty else value).end_mark.line + 1
+    return last
+
+
+def _indented_like(line: str, block: str) -> str:
+    """Return a rule with the indentation of the rule that begins in a line."""
+    match = re.match(r"( *)- ", line)
+    return re.sub(f"^{_INDENT}", match[1], block, flags=re.M) if match else block
 
 
 def _last_line(lines: list[str], start: int, end: int) -> int:
