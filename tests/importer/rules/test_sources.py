@@ -419,6 +419,18 @@ def test_a_word_document_is_read_with_its_changes_fields_and_content_controls(tm
     assert rows == [["a", "2"], ["b"]]
 
 
+def test_a_heading_whose_paragraph_mark_is_struck_through_stays_a_heading(tmp_path):
+    document = docx.Document()
+    properties = document.add_heading("4 Motor", 1)._p.get_or_add_pPr()
+    mark = docx.oxml.OxmlElement("w:rPr")
+    mark.append(docx.oxml.OxmlElement("w:strike"))
+    properties.append(mark)
+    document.add_table(1, 1).cell(0, 0).text = "a"
+    document.save(str(tmp_path / "a.docx"))
+    _, (table,) = sources.read(tmp_path / "a.docx", profile.load())
+    assert table.headings == ["4 Motor"]
+
+
 def test_the_lines_of_a_list_in_a_cell_are_lines(tmp_path):
     body = "<table><tr><td><dl><dt>0<dd>Off<dt>1<dd>On</dl><td>Mode</table>"
     _, (table,) = _read_html(tmp_path / "a.html", body)

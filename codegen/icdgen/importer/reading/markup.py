@@ -318,11 +318,9 @@ def _accept_changes(body: Any) -> None:
         mark.getparent().getparent() for mark in elements("del") if _is_of(mark, "trPr")
     ]
     for mark in elements("strike", "dstrike"):
-        if _is_of(mark, "rPr") and mark.get(f"{{{word}}}val") not in (
-            "0",
-            "false",
-            "off",
-        ):
+        # Of a paragraph, these are properties of its mark, which is no text.
+        is_of_run = _is_of(mark, "rPr") and _is_of(mark.getparent(), "r")
+        if is_of_run and mark.get(f"{{{word}}}val") not in ("0", "false", "off"):
             deleted.append(mark.getparent().getparent())
     for element in [*deleted, *elements(*_WORD_SKIPPED)]:
         if element.getparent() is not None:
