@@ -13,6 +13,8 @@ import pytest
 
 from icdgen.diff.compare import compare
 from icdgen.diff.inputs import shown
+from icdgen.loading import load
+from icdgen.show import machine
 from tests.conformance.icds import icd_of
 from tests.conftest import DEMO, ROOT
 from tests.diff.conftest import LATER
@@ -220,6 +222,20 @@ class TestShown:
         file.write_text(text.replace('"repeat": true', '"hazard": "Moves."'))
         changes = compare(icd_of([wheel]), shown.from_file(file).icd).changes
         assert {change.code for change in changes} == {"DIF217", "DIF401"}
+
+    @pytest.mark.parametrize(
+        "folder",
+        ["tests/conformance/odd_icds", "tests/conformance/links", "examples/links"],
+    )
+    def test_each_key_of_the_format_is_the_same_when_shown(self, folder):
+        for file in sorted((ROOT / folder).glob("*.yaml")):
+            icd = load([file], check=False).icd
+            text = json.dumps(machine.to_json(icd))
+            again = shown.from_bytes(text.encode(), "shown.json").icd
+            assert compare(icd, again).changes == [], file.name
+            assert [node.protocol for node in icd.nodes] == [
+                node.protocol for node in again.nodes
+            ]
 
     def test_places_refer_to_the_output_of_show(self, icdgen, releases, tmp_path):
         (tmp_path / "old.json").write_text(

@@ -118,6 +118,7 @@ def _message(message: Message) -> _Object:
         acknowledge=acknowledge,
         response=message.response,
         repeat=message.repeat or None,
+        requested=None if message.requested else False,
         aliases=list(message.aliases),
         contains=[
             {"message": part.message, "offset": part.at} for part in message.contains

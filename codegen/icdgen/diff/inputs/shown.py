@@ -275,6 +275,7 @@ class _ShownNodeReader:
             expects_reset=item.get("acknowledge") == "reset",
             response=item.get("response"),
             repeat=item.get("repeat", False),
+            requested=item.get("requested", True),
             contains=tuple(
                 model.ContainedMessage(part["message"], part["offset"])
                 for part in item.get("contains", ())
