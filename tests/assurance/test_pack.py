@@ -10,11 +10,13 @@ import json
 import re
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
 
 from icdgen.backends.assurance import measured
+from icdgen.backends.assurance import pack as pack_module
 from icdgen.cli import icdgen
 from icdgen.errors import UserError
 from icdgen.loading import load
@@ -165,3 +167,61 @@ def test_measurements_are_rejected_for_other_outputs(demo, tmp_path):
             obj={},
             catch_exceptions=False,
         )
+
+
+def test_the_first_page_counts_elements_and_changes_of_each_node_and_of_all():
+    def element(kind: str, *detected: dict) -> SimpleNamespace:
+        changes = tuple(SimpleNamespace(detected=lines) for lines in detected)
+        return SimpleNamespace(kind=kind, changes=changes)
+
+    noticed, unnoticed = {"a": [1]}, {}
+    elements = {
+        "a": [
+            element("node", noticed),
+            *[element("message", noticed)] * 2,
+            *[element("field", noticed, unnoticed, unnoticed)] * 500,
+            element("struct"),
+        ],
+        "b": [
+            element("enumeration"),
+            *[element("member", noticed)] * 3,
+            element("message"),
+        ],
+    }
+    nodes = [SimpleNamespace(name=name, title=name.upper()) for name in elements]
+    rows = pack_module._counts(SimpleNamespace(nodes=nodes), elements)
+    assert rows == [
+        ["A", "2", "500", "0", "0", "1,503", "1,000"],
+        ["B", "1", "0", "1", "3", "3", "0"],
+        ["All", "3", "500", "1", "3", "1,506", "1,000"],
+    ]
+    assert len(pack_module._COLUMNS) == len(rows[0])
+
+
+def test_the_page_of_a_measurement_has_its_facts_tools_and_digests_in_this_order():
+    page = pack_module._page_of_measurement(
+        measured.Measurement(
+            "sizes",
+            "Sizes",
+            ("Bytes.",),
+            {"c": "1a", "python": "2b"},
+            ("gcc 12", "size 2"),
+            (("All", "12"),),
+            ("message", "bytes"),
+            [["Roll", "12"]],
+        )
+    )
+    assert (page.file, page.title, page.data) == (
+        "sizes.html",
+        "Sizes",
+        ("sizes.csv",),
+    )
+    assert page.facts == (
+        ("All", "12"),
+        ("Measured with", "gcc 12"),
+        ("Measured with", "size 2"),
+        ("Digest of the generated C", "1a"),
+        ("Digest of the generated Python", "2b"),
+    )
+    assert [group.rows for group in page.groups] == [[["Roll", "12"]]]
+    assert (page.says, page.columns) == (("Bytes.",), ("message", "bytes"))
