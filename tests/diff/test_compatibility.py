@@ -263,3 +263,94 @@ def test_stating_the_default_byte_order_breaks_nothing(tmp_path):
     assert [change.code for change in compared(tmp_path, FRAMED, new).changes] == [
         "DIF413"
     ]
+
+
+A, B, C = (
+    f"{{at: {at}, bits: 8, name: {name}, type: uint}}"
+    for at, name in ((0, "Alpha"), (8, "Beta"), (16, "Gamma"))
+)
+KIND = A.replace("Alpha", "Kind")
+
+
+def const(field: str, value: int) -> str:
+    return field.replace("}", f", const: {value}}}")
+
+
+def when(value: int) -> str:
+    return f"{KIND}, " + B.replace("}", f", when: {{Kind: {value}}}}}")
+
+
+def rest(begin: int, most: int) -> str:
+    return f"{A}, {{at: {8 * begin}, bits: 8, name: Rows, type: uint, count: rest, up_to: {most}}}"
+
+
+def points(last: int) -> str:
+    return A.replace(
+        "}", f", unit: V, points: [[0, 0], [255, {last}]], outside: refuse}}"
+    )
+
+
+VIEW = "{at: 0, bits: 4, name: Low, type: uint, view: true}"
+# Kind, length and fields of the old and of the new message; verdict and reason
+FRAMES = {
+    "Free Zero": ("telecommand", 3, A, f"{A}, {const(C, 0)}", "partly", "sent as 0: `Gamma`"),
+    "Free": ("telecommand", 3, A, f"{A}, {const(C, 7)}", "no", "sent as 0, must be 7: `Gamma`"),
+    "Any": ("telecommand", 1, A, const(A, 5), "partly", "must be 5, sent as anything: `Alpha`"),
+    "Other": ("telecommand", 1, const(A, 0), const(A, 5), "no", "must be 5, sent as 0: `Alpha`"),
+    "Gone": ("telecommand", 3, f"{A}, {B}, {C}", A, "partly", "ignored: `Beta` and `Gamma`"),
+    "View": ("telecommand", 1, f"{A}, {VIEW}", A, "yes", ""),
+    "When": ("telemetry", 2, when(1), when(2), "partly", "there in other messages: `Beta`"),
+    "Table": ("telemetry", 1, points(5), points(9), "no", "another formula: `Alpha`"),
+    "Same Table": ("telemetry", 1, points(5), points(5).replace("}", ", summary: S}"), "yes", ""),
+    "Lost": ("telemetry", 4, A, f"{B}, {C}", "no", "not carried: `Alpha`"),
+    "Longer": ("telemetry", 1, rest(1, 2), rest(1, 4), "partly",
+               "1 to 5 bytes come, 1 to 3 bytes are expected"),
+    "Shorter": ("telemetry", 1, rest(1, 4), rest(1, 2), "yes", ""),
+    "Apart": ("telemetry", (1, 5), rest(1, 2), rest(5, 2), "no",
+              "5 to 7 bytes come, 1 to 3 bytes are expected"),
+}  # fmt: skip
+
+
+def test_another_log_mask_concerns_logs_only(tmp_path):
+    base = BASE + "protocol: {log_mask: {bytes: 1, frame_bytes: 2}}\n"
+    got = answers(tmp_path, ("{bytes: 1", "{bytes: 2"), base)
+    assert {key: direction.general for key, direction in got.items()} == {
+        "telemetry": (),
+        "telecommands": (),
+        "logs": ("`protocol.log_mask.bytes` is 2, was 1",),
+    }
+    assert [direction.verdict for direction in got.values()] == ["yes", "yes", "partly"]
+
+
+@pytest.fixture(scope="module")
+def frames(tmp_path_factory) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return verdict and reasons of each frame that is not fully compatible."""
+    old, new = (
+        "messages:\n"
+        + "".join(
+            f"  - {{name: {name}, id: {id}, kind: {kind}, fields: [{fields[side]}], "
+            f"length: {length if isinstance(length, int) else length[side]}}}\n"
+            for id, (name, (kind, length, *fields)) in enumerate(FRAMES.items(), 1)
+        )
+        for side in (0, 1)
+    )
+    telemetry, telecommands, _ = directions(
+        compared(tmp_path_factory.mktemp("frames"), old, new)
+    )
+    assert (telemetry.total, telecommands.total) == (7, 6)
+    return {
+        frame.message: (frame.verdict, frame.reasons)
+        for direction in (telemetry, telecommands)
+        for frame in direction.worst_first
+    }
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_a_frame_has_its_verdict_and_reason(frames, name):
+    *_, verdict, reason = FRAMES[name]
+    assert frames.get(name, ("yes", ("",))) == (verdict, (reason,))
+
+
+def test_frames_that_are_not_compatible_come_first(frames):
+    verdicts = [verdict for verdict, _ in frames.values()]
+    assert verdicts == ["no"] * 3 + ["partly"] * 2 + ["no"] * 2 + ["partly"] * 3
