@@ -11,13 +11,16 @@ import sys
 
 import pytest
 
+from icdgen.diagnostics import Findings
 from icdgen.diff.compare import compare
 from icdgen.diff.inputs import shown
+from icdgen.errors import UserError
 from icdgen.loading import load
 from icdgen.show import machine
 from tests.conformance.icds import icd_of
 from tests.conftest import DEMO, ROOT
 from tests.diff.conftest import LATER
+from tests.icd.files import loaded, status
 
 
 @pytest.fixture
@@ -236,6 +239,35 @@ class TestShown:
             assert [node.protocol for node in icd.nodes] == [
                 node.protocol for node in again.nodes
             ]
+
+    def test_notes_aliases_and_displays_are_the_same_when_shown(
+        self, tmp_path, monkeypatch
+    ):
+        text = status(
+            "at: 0, bits: 8, name: Level, type: uint, aliases: [Fill], display: hex",
+            "at: 8, bits: 8, name: Rate, type: uint, unit: m, formula: raw*0.5",
+        )
+        note = "{id: D-1, title: T, where: {message: Status}, what: W., evidence: E.}"
+        text += f"# errata/demo.yaml\nerrata: 1\nnode: demo\nnotes:\n  - {note}\n"
+        icd = loaded(tmp_path, text).icd
+        data = json.dumps(machine.to_json(icd)).encode()
+        monkeypatch.setattr(shown, "_MOST", len(data))
+        again = shown.from_bytes(data, "shown.json").icd
+        assert compare(icd, again).changes == []
+        (message,) = again.nodes[0].messages
+        assert [(e.id, e.is_note) for e in message.errata] == [("D-1", True)]
+        assert message.layout.fixed[0].aliases == ("Fill",)
+        monkeypatch.setattr(shown, "_MOST", len(data) - 1)
+        with pytest.raises(UserError, match=r"has more than the [0-9,]+ bytes allowed"):
+            shown.from_bytes(data, "shown.json")
+        monkeypatch.undo()
+        zero = data.replace(b'"scale": "0.5"', b'"scale": "0"')
+        zero = zero.replace(b'"scale": "1/2"', b'"scale": "0"')
+        assert zero != data and shown._MOST == 64_000_000
+        with pytest.raises(Findings) as error:
+            shown.from_bytes(zero, "shown.json")
+        (finding,) = error.value.findings
+        assert (finding.code, finding.message) == ("ICD010", "`scale` cannot be 0")
 
     def test_places_refer_to_the_output_of_show(self, icdgen, releases, tmp_path):
         (tmp_path / "old.json").write_text(
