@@ -143,6 +143,7 @@ OWN = (
     + """\
   - {rule: pins, what: ignore, tables: {head: Ball | Net}}
   - {rule: state, what: ignore, tables: {head: Name | Offset (bits) | Type}}
+  - {rule: balls, what: ignore, tables: {head: Name | Offset (bits) | Ball}}
 """
 )
 
@@ -150,7 +151,7 @@ OWN = (
 def test_unknown_headings_of_a_rule_are_a_kind_of_their_own(load):
     words = load("", OWN)
     kinds = set(words.headings) - set(WORDS.headings)
-    assert kinds == {"rule pins"}
+    assert kinds == {"rule pins", "rule balls"}
     assert words.headings["rule pins"] == {"Ball": [("ball",)], "Net": [("net",)]}
     assert words.needs["rule pins"] == [("Ball",), ("Net",)]
     assert words.known_headings["rule pins"] == {("ball",), ("net",)}
