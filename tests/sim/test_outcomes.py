@@ -299,6 +299,14 @@ def test_each_fault_of_a_response_leads_to_its_outcome():
     ]
 
 
+@pytest.mark.parametrize(("fault", "refusal"), [("nak=1", Refused), ("busy=1", Busy)])
+def test_faults_of_acknowledges_hit_refusals_too(fault, refusal):
+    """A fault of replies does not; only the reply to a request is one."""
+    assert isinstance(outcome(SAVE, b"", fault, "drop=1@reply")[0], refusal)
+    assert isinstance(outcome(SAVE, b"", fault, "drop=1@acknowledge")[0], Timeout)
+    assert isinstance(outcome(SAVE, b"", "drop=1@acknowledge")[0], Timeout)
+
+
 def test_a_device_that_executes_a_telecommand_defers_the_next():
     port = MemoryPort("wheel", every=0, processing=300)
     link = port.line.computer.program.link

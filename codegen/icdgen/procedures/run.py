@@ -105,7 +105,11 @@ class ProcedureRun:
             self._sends_of.setdefault(self.step(index).message.name, []).append(index)
         self._previous = -1  # step of the last telecommand
         # Registers that decide which steps follow, and the steps that were computed
-        self._deciding = [s.test.register for s in steps_of(procedure, SkipUnless)]
+        self._deciding: list[int] = []
+        for skip in steps_of(procedure, SkipUnless):
+            self._deciding.append(skip.test.register)
+            if skip.test.value.in_register:
+                self._deciding.append(skip.test.value.number)
         self._reached_by: dict[tuple[int | None, ...], list[int]] = {}
         # Step -> the telecommand that leads to it, and the end of its processing
         self._requests: dict[int, tuple[int, int]] = {}
