@@ -11,17 +11,23 @@ import pytest
 
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.statement import (
+    FAILED,
     assigned_byte,
+    call,
     either,
     frame_test,
     grouped,
+    head,
     joined,
+    length_test,
     loop,
 )
 from icdgen.describe import describe
+from icdgen.describe.lengths import LengthTest
 from icdgen.describe.nodes import MessageOfId
 from tests.conformance import odd
 from tests.conformance.icds import icd_of
+from tests.limits import assert_limits
 
 _CHOICE = re.compile(r"\((\(length [<>]=? \d+u\)) \? (buffer\[\d+\]) : 0u\)")
 
@@ -116,3 +122,39 @@ def test_loops_count_by_one_or_by_several():
 def test_each_test_of_several_is_in_parentheses():
     assert (either(["a"]), either(["a", "b"])) == ("a", "(a) || (b)")
     assert either(["a", "b"], " && ") == "(a) && (b)"
+
+
+def test_calls_and_heads_have_a_line_for_each_argument_if_they_are_too_long():
+    assert call("f", ["a", "b"]) == "f(a, b);"
+    assert call("f", []) == "f();"
+    long = "x" * 60
+    assert call("f", [long, long]) == f"f(\n        {long},\n        {long});"
+    assert call("f", [long, long], 2) == (
+        f"f(\n            {long},\n            {long});"
+    )
+    assert head("bool ", "f", "int a", "int b") == "static inline bool f(int a, int b)"
+    assert head("bool ", "f", long, long) == (
+        f"static inline bool f(\n    {long},\n    {long})"
+    )
+    # Statements of a function have an indentation of one step.
+    assert_limits(lambda n: "\n" not in call("f", ["x" * (n - 8)]), most=120)
+    assert_limits(lambda n: "\n" not in head("", "f", "x" * (n - 17)), most=120)
+
+
+@pytest.mark.parametrize(
+    ("test", "passed", "failed"),
+    [
+        (LengthTest("equal", 4), "length == LONGEST", "length != LONGEST"),
+        (LengthTest("at least", 2), "length >= 2u", "length < 2u"),
+        (LengthTest("at most", 9), "length <= LONGEST", "length > LONGEST"),
+        (LengthTest("multiple", 3), "(length % 3u) == 0u", "(length % 3u) != 0u"),
+        (
+            LengthTest("multiple", 3, 1),
+            "((length - 1u) % 3u) == 0u",
+            "((length - 1u) % 3u) != 0u",
+        ),
+    ],
+)
+def test_a_length_passes_or_fails_a_test(test, passed, failed):
+    assert length_test(test, "LONGEST") == passed
+    assert length_test(test, "LONGEST", FAILED) == failed
