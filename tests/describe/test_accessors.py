@@ -64,3 +64,49 @@ def test_an_overlay_field_has_no_setters(tmp_path):
         accessor.kind: accessor.is_settable for accessor in accessors_of(low, *ALL)
     }
     assert kinds == {"double": False, "single": False, "integer": False}
+
+
+@pytest.mark.parametrize(
+    ("field", "comments"),
+    [
+        (
+            "bits: 16, type: int, unit: V, formula: raw / 1000, min: 0",
+            [
+                "Rate in V: -32.768 to 32.767. Must be at least 0 V, which setters do not check.",
+                "Rate in V, the nearest float of 32 bits.",
+                "Rate in mV, exact: -32768 to 32767.",
+            ],
+        ),
+        (
+            "bits: 8, type: uint, formula: raw / 3",
+            [
+                "Rate, as a physical value: 0 to 85.",
+                "Rate, as a physical value, the nearest float of 32 bits.",
+            ],
+        ),
+        (
+            "bits: 16, type: text",
+            ["Rate as text: up to 2 ASCII characters, ending at the first NUL."],
+        ),
+    ],
+)
+def test_the_comment_of_an_accessor_states_its_unit_and_its_range(
+    tmp_path, field, comments
+):
+    result = loaded(tmp_path, status(f"at: 0, name: Rate, {field}", length=8))
+    (rate,) = describe(result.icd).nodes[0].messages[0].members
+    assert [accessor.comment for accessor in accessors_of(rate, *ALL)] == comments
+
+
+def test_a_language_without_a_kind_still_has_the_kinds_after_it(tmp_path):
+    field = "at: 0, name: Rate, bits: 8, type: uint, unit: V, formula: raw / 1000"
+    (rate,) = (
+        describe(loaded(tmp_path, status(field, length=1)).icd)
+        .nodes[0]
+        .messages[0]
+        .members
+    )
+    assert [accessor.kind for accessor in accessors_of(rate, "integer")] == ["integer"]
+    assert list(accessors_of(rate, "text", "long integer")) == []
+    (integer,) = accessors_of(rate, "integer")
+    assert integer.integer_access == rate.arithmetic.integer_access
