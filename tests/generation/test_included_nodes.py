@@ -333,6 +333,73 @@ def test_paths_of_rust_lead_to_the_node_that_declares_the_message(files):
     ]
 
 
+@pytest.mark.parametrize(
+    ("module", "uses", "members"),
+    [
+        (
+            "base/pair",
+            ["super::enums", "crate::support::{structure, Coded}"],
+            ["first: u8", "second: Coded<enums::Mode>"],
+        ),
+        (
+            "base/ping",
+            ["super::enums", "crate::support::{message, Coded, Error}"],
+            ["mode: Coded<enums::Mode>"],
+        ),
+        (
+            "demo/set_both",
+            ["super::enums", "crate::support::{message, put, take, Coded, Error}"],
+            ["pair: crate::base::Pair", "wide: Coded<enums::Wide>"],
+        ),
+        ("demo/flag", ["crate::support::{message, Error}"], ["kind: u8"]),
+    ],
+)
+def test_a_module_of_rust_uses_what_its_members_need(files, module, uses, members):
+    text = files[f"rust/src/{module}.rs"]
+    assert mentions(text, r"(?<=^use ).*(?=;)") == uses
+    assert mentions(text, r"(?<=^    pub )\w+: .*(?=,$)") == members
+
+
+def test_traits_of_rust_are_those_of_the_directions_of_a_message(files):
+    traits = {
+        module: mentions(
+            files[f"rust/src/{module}.rs"], r"(?<=^impl crate::)\w+(?= for)"
+        )
+        for module in ("base/ping", "base/pong", "demo/set_both", "demo/list")
+    }
+    assert traits == {
+        "base/ping": ["Telecommand"],
+        "base/pong": ["Telemetry"],
+        "demo/set_both": ["Telecommand", "Telemetry"],
+        "demo/list": ["Telemetry"],
+    }
+
+
+def test_values_between_the_ends_of_a_range_have_its_name_in_c(files):
+    text = files["c/base/enums.h"]
+    assert mentions(text, r"(?<=    )BASE_MODE_\w+ = \d+,?") == [
+        "BASE_MODE_OFF = 1,",
+        "BASE_MODE_VENDOR_FIRST = 200,",
+        "BASE_MODE_VENDOR_LAST = 210",
+    ]
+    assert text.endswith(
+        "    default:\n"
+        "        break;\n"
+        "    }\n"
+        "    if (value > 200u && value < 210u) {\n"
+        '        return "Vendor";\n'
+        "    }\n"
+        "    return NULL;\n"
+        "}\n"
+        "\n"
+        "#endif /* BASE_ENUMS_H */\n"
+    )
+    assert mentions(files["c/demo/enums.h"], "#define DEMO_WIDE.*") == [
+        "#define DEMO_WIDE_ZERO 0u",
+        "#define DEMO_WIDE_MANY 40000u",
+    ]
+
+
 def test_an_enumeration_of_rust_has_the_default_zero_only_if_zero_has_a_name(files):
     own, included = files["rust/src/demo/enums.rs"], files["rust/src/base/enums.rs"]
     assert "#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]" in own
