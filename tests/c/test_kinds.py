@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import pytest
+
 from icdgen.backends.c.kinds import kinds_of
 from icdgen.protocol.packet_formats import NOTHING, REQUESTED
+
+PLACE = object()
 
 
 def row(**changes):
@@ -70,11 +74,10 @@ def test_the_kinds_are_those_of_all_links_in_order_of_their_names():
         [row(repeats=True, cuts_zeros=True), row(is_requested=True)],
     )
     other = stream("length", ["message"], ["id"])
-    place = object()
-    refusal = response("refused", ((1, "busy"),), status=place, reason=place)
+    refusal = response("refused", ((1, "busy"),), status=PLACE, reason=PLACE)
     links = [
-        link(framed, [exchange(refusal, sources=(place,))], ["sum"]),
-        link(None, [exchange(response("done", detail=place))], ["crc", "sum"], ["i2c"]),
+        link(framed, [exchange(refusal, sources=(PLACE,))], ["sum"]),
+        link(None, [exchange(response("done", detail=PLACE))], ["crc", "sum"], ["i2c"]),
         link(other, [exchange(in_header=1)], buses=["can", "i2c"]),
     ]
     kinds = kinds_of(links)
@@ -112,3 +115,19 @@ def test_the_kinds_are_those_of_all_links_in_order_of_their_names():
         for part in ("DETAIL", "ECHO", "HEADER_ECHO", "REASON", "STATUS")
     ]
     assert kinds[0].about == "Of icd_delimiter_t."
+
+
+@pytest.mark.parametrize(
+    ("of_one", "parts"),
+    [
+        (exchange(response("done")), []),
+        (exchange(response("done"), sources=(0,)), ["ECHO"]),
+        (exchange(response("done"), in_header=1), ["HEADER_ECHO"]),
+        (exchange(response("done", status=PLACE)), ["STATUS"]),
+        (exchange(response("done", reason=PLACE)), ["REASON"]),
+        (exchange(response("done"), response("done", detail=PLACE)), ["DETAIL"]),
+    ],
+)
+def test_each_part_of_a_response_has_its_own_bit(of_one, parts):
+    bits = {kind.name: kind.bits for kind in kinds_of([link(exchanges=[of_one])])}
+    assert bits["RESPONSES"] == [f"ICDGEN_RESPONSE_{part}" for part in parts]
