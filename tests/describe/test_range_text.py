@@ -26,6 +26,12 @@ HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order
         ("bits: 32, type: float, above: 0", "above 0"),
         ("bits: 32, type: float, max: 5", "at most 5"),
         ("bits: 32, type: float", ""),
+        ("bits: 32, type: float, min: -1, below: 1, unit: s", "-1 to below 1 s"),
+        ("bits: 32, type: float, min: 0", "at least 0"),
+        ("bits: 32, type: float, below: 0", "below 0"),
+        ("bits: 8, type: uint, below: 255", "0 to below 255"),
+        ("bits: 8, type: int, formula: raw * -2, max: 0", "-254 to 0"),
+        ("bits: 8, type: uint, points: [[0, 20], [255, -10]]", "-10 to 20"),
     ],
 )
 def test_the_range_is_that_of_type_and_limits(tmp_path, keys, text):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.backends.lines import bracketed, commented, in_rows, plain, wrapped
+from icdgen.backends.lines import bracketed, commented, in_rows, plain, tamed, wrapped
 from tests.limits import assert_limits
 
 
@@ -62,3 +62,25 @@ def test_invisible_and_direction_changing_characters_are_shown_as_code_points():
 
 def test_items_in_rows_each_have_a_comma():
     assert in_rows(["1", "2", "3"], 2) == ["1, 2,", "3,"]
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("+ a", "\\+ a"),
+        ("* a", "\\* a"),
+        ("=== a", "\\=== a"),
+        ("## a", "\\## a"),
+        ("-", "\\-"),
+        ("7) a", "7\\) a"),
+        (">a", "\\>a"),
+        ("-a", "-a"),
+        ("-5 a", "-5 a"),
+        ("7.5 a", "7.5 a"),
+        ("7 a.", "7 a."),
+        ("a. b", "a. b"),
+        ("", ""),
+    ],
+)
+def test_only_the_first_word_of_a_line_can_be_the_start_of_a_block(line, text):
+    assert tamed(line) == text
