@@ -145,6 +145,36 @@ def test_the_index_of_an_array_is_a_range_or_an_enumeration():
     assert counts == [10, 3]
 
 
+@pytest.mark.parametrize(
+    "bounds",
+    ['min="3" rangeType="atLeast"', 'max="3" rangeType="atMost"', 'min="3" max="2"'],
+)
+def test_an_index_without_a_number_of_elements_is_refused(bounds):
+    index = integer("index", 8, inner=f"<Range><MinMaxRange {bounds}/></Range>")
+    types = index + array("many", "byte", 'indexTypeRef="index"')
+    assert lost(container(entry("byte", "A") + entry("many", "B")), types) == (
+        "the definition does not state how many elements `B` has"
+    )
+
+
+def test_an_index_of_one_value_has_one_element():
+    index = integer("index", 8, inner='<Range><MinMaxRange min="3" max="3"/></Range>')
+    types = index + array("single", "byte", 'indexTypeRef="index"')
+    layout = layout_of(container(entry("single", "A") + entry("byte", "B")), types)
+    assert layout.at == 16
+
+
+def test_an_array_has_at_most_524280_elements_in_all_dimensions():
+    def is_read(*sizes):
+        types = array("many", "byte", *(f'size="{size}"' for size in sizes))
+        layout = layout_of(container(entry("byte", "A") + entry("many", "B")), types)
+        why = "" if layout.lost is None else str(layout.lost.why)
+        return "is an array of" not in why and "a dimension of" not in why
+
+    assert_limits(is_read, least=1, most=8 * 65535)
+    assert_limits(lambda size: is_read(8, size), most=65535)
+
+
 def test_arrays_of_many_bytes_are_bytes_and_others_have_at_most_1024_elements():
     def field(of, size):
         types = array("many", of, f'size="{size}"')
@@ -326,6 +356,9 @@ def test_without_a_length_a_field_extends_to_the_end():
 def test_the_length_of_a_fixed_container_is_a_constant():
     fields = layout_of(container(length() + entry("word", "A"))).fields(0)
     assert fields[0]["const"] == 3
+    # 9 bytes and a half
+    parts = "".join(entry("word", name) for name in "ABCD") + entry("nibble", "N")
+    assert layout_of(container(length() + parts)).fields(0)[0]["const"] == 10
     fields = layout_of(container(length() + entry("open", "T"))).fields(0)
     assert "const" not in fields[0]
 

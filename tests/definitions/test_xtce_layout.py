@@ -236,6 +236,42 @@ def test_other_fixed_values_are_refused(text, why):
     assert failure(text) == why
 
 
+def test_a_fixed_value_has_1_to_524280_bits():
+    def is_read(bits):
+        try:
+            return layout_of(fixed(bits, "0")).at == bits
+        except NotSupported:
+            return False
+
+    assert_limits(is_read, least=1, most=8 * 65535)
+
+
+def test_aggregates_are_nested_up_to_50_times():
+    def is_read(depth):
+        nested = "".join(
+            f'<AggregateParameterType name="n{level}"><MemberList><Member name="m" '
+            f'typeRef="n{level + 1}"/></MemberList></AggregateParameterType>'
+            for level in range(depth)
+        )
+        last = f'<IntegerParameterType name="n{depth}"/>'
+        parameter = '<Parameter name="Q" parameterTypeRef="n0"/>'
+        text = system(container(entry("Q")))
+        text = text.replace("<ParameterTypeSet>", f"<ParameterTypeSet>{nested}{last}")
+        text = text.replace("<ParameterSet>", f"<ParameterSet>{parameter}")
+        root = safe_xml.parse("a.xml", text.encode(), account=Account())
+        to = Definitions("a.xml")
+        names = XtceNames({"a.xml": root}, to)
+        layout = XtceLayout(names=names, types=XtceTypes(to, names))
+        try:
+            layout.read(names.all("container")[0])
+        except NotSupported as why:
+            assert str(why).endswith("has members nested without end")
+            return False
+        return layout.at == 32
+
+    assert_limits(is_read, most=50)
+
+
 def test_an_aggregate_is_its_members_in_order():
     assert rows(entry("P") + entry("N"), "bits") == [
         ("P x", 0, 8), ("P y", 8, 4), ("N", 12, 4),
@@ -479,7 +515,13 @@ def test_parts_of_variable_length_follow_the_fixed_ones():
     )
 
 
-@pytest.mark.parametrize("last", [entry("N"), entry("B", location(8))])
+# Two nibbles are a whole byte, but their array is none of whole bytes.
+NIBBLES = entry(
+    "N", "<RepeatEntry><Count><FixedValue>2</FixedValue></Count></RepeatEntry>"
+)
+
+
+@pytest.mark.parametrize("last", [entry("N"), entry("B", location(8)), NIBBLES])
 def test_an_entry_behind_variable_length_has_whole_bytes_directly_behind(last):
     name = last.split('"')[1]
     why = failure(entry("A") + entry("R") + last)
