@@ -298,3 +298,17 @@ def test_an_error_of_the_node_itself_is_raised():
     text = "what it defines makes no ICD: `byte_order` cannot be the text 'odd'"
     assert finding.message == text
     assert finding.help == "correct `byte_order`: one of little, big"
+
+
+def test_reasons_do_not_name_lines_of_the_temporary_file():
+    network, _, findings = settled(
+        message("A", 1, uint("x"), uint("y", 4), enum_field("z", "M", 16), length=3),
+        enums=[enum("M", (0, "On"), (0, "Off")), enum("M", (0, "On"))],
+    )
+    assert [text for _, _, text, _ in findings] == [
+        "enumeration `M`: the name `Off` of 0 is left out: `On` already has the value 0 "
+        "(ICD053)",
+        "enumeration `M` is left out: there is already an enumeration named `M` (ICD052)",
+        "message `A`, `y` is left out: `y` overlaps `x` in bits 4 to 7 (ICD021)",
+    ]
+    assert names(network.messages[0]["fields"]) == ["x", "z"]

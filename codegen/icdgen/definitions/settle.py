@@ -9,6 +9,7 @@ unit is left out. A rejected enumeration becomes plain numbers.
 from __future__ import annotations
 
 import json
+import re
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -42,6 +43,8 @@ _MEANING = (
     "below",
     "enum",
 )
+# Findings name lines of the temporary file, which the user does not see.
+_LINES = re.compile(r" \(line [0-9]+\)|,( first)? in line [0-9]+")
 _FIELD, _MEMBER, _UNIT = "field", "value", "unit"
 
 
@@ -175,7 +178,7 @@ def _identifier(line: _Line, code: str, attempt: int) -> str:
 
 def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -> None:
     """Remove as little content as possible for a finding."""
-    reason = f"{finding.message} ({finding.code})"
+    reason = f"{_LINES.sub('', finding.message)} ({finding.code})"
     if line.what == _UNIT:
         for field in network.fields:
             if field.get("unit") == line.item["symbol"]:
