@@ -381,3 +381,59 @@ def _objects(of):
         children = of
     for child in children:
         yield from _objects(child)
+
+
+def points_of(*points):
+    """Return the fields of a model with these points."""
+    header = [{"name": "ID", "type": "uint16", "size": 1, "value": 9},
+              {"name": "L", "type": "uint16", "size": 1}]  # fmt: skip
+    listed = [{"name": f"P{at}", **point} for at, point in enumerate(points)]
+    model = {
+        "id": 9,
+        "group": {"name": "m", "points": header + listed},
+    }
+    definitions = sunspec.SunSpec().read("a.json", json.dumps(model).encode())
+    ((made,),) = (network.messages for network in definitions.networks)
+    fields = [each for each in made["fields"] if each["name"].startswith("P")]
+    return fields, definitions
+
+
+@pytest.mark.parametrize(
+    ("type_", "registers", "form", "none"),
+    [
+        ("int16", 1, "int", -0x8000), ("int32", 2, "int", -(1 << 31)),
+        ("int64", 4, "int", -(1 << 63)), ("uint16", 1, "uint", 0xFFFF),
+        ("uint32", 2, "uint", (1 << 32) - 1), ("uint64", 4, "uint", (1 << 64) - 1),
+        ("acc16", 1, "uint", 0), ("acc32", 2, "uint", 0), ("acc64", 4, "uint", 0),
+        ("enum16", 1, "uint", 0xFFFF), ("enum32", 2, "uint", (1 << 32) - 1),
+        ("bitfield16", 1, "uint", 0xFFFF), ("bitfield32", 2, "uint", (1 << 32) - 1),
+        ("bitfield64", 4, "uint", (1 << 64) - 1), ("float32", 2, "float", "nan"),
+        ("float64", 4, "float", "nan"), ("raw16", 1, "uint", None),
+        ("count", 1, "uint", 0xFFFF), ("ipaddr", 2, "bytes", None),
+        ("ipv6addr", 8, "bytes", None), ("eui48", 4, "bytes", None),
+        ("string", 3, "text", None),
+    ],
+)  # fmt: skip
+def test_a_point_has_the_registers_of_its_type(type_, registers, form, none):
+    ((field,), definitions) = points_of({"type": type_, "size": registers})
+    assert definitions.import_findings == []
+    assert (field["type"], field["bits"]) == (form, 16 * registers)
+    assert [each["value"] for each in field.get("special", ())] == (
+        [] if none is None else [none]
+    )
+
+
+def test_symbols_are_values_of_32_bits_or_bits_of_64():
+    def values(type_, size, *numbers):
+        symbols = [{"name": f"S{number}", "value": number} for number in numbers]
+        _, definitions = points_of({"type": type_, "size": size, "symbols": symbols})
+        (network,) = definitions.networks
+        (field,) = (f for f in network.messages[0]["fields"] if f["name"] == "P0")
+        named = {m["value"]: m["name"] for e in network.enums for m in e["members"]}
+        named |= {each["value"]: each["meaning"] for each in field.get("special", ())}
+        return sorted(value for value, name in named.items() if name.startswith("S"))
+
+    assert values("enum32", 2, 0, 1, (1 << 32) - 1, 1 << 32, -1) == [
+        0, 1, (1 << 32) - 1,
+    ]  # fmt: skip
+    assert values("bitfield64", 4, 0, 63, 64) == [1, 1 << 63]
