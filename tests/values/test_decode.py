@@ -113,6 +113,15 @@ def test_what_the_icd_does_not_know_is_shown_as_it_came(icd):
     )
 
 
+@pytest.mark.parametrize("name", ["ratio", "precise"])
+def test_a_negative_zero_keeps_its_sign(icd, name):
+    frame = everything(icd, **{name: -0.0})
+    (row,) = (row for row in frame.rows if row.field.name.lower() == name)
+    result = row.to_json()
+    assert row.text == "-0.0"
+    assert repr(result["value"]) == repr(result["physical"]) == "-0.0"
+
+
 def test_all_values_of_a_range_have_its_name(icd):
     named = {
         value: everything(icd, mode=value).rows[2] for value in (31, 32, 40, 47, 48)

@@ -110,7 +110,8 @@ class FieldValue:
         elif kind == "float":
             # Bits in hexadecimal, because JSON has no NaN.
             raw = f"{self.raw:0{self.field.bits // 4}x}"
-            number = self.number or 0.0
+            # Not `or`: a negative zero is false, but keeps its sign.
+            number = 0.0 if self.number is None else self.number
             # JSON has no NaN and no infinity.
             value = number if math.isfinite(number) else repr(number)
         elif kind == "bool":
@@ -165,7 +166,7 @@ class DecodedFrame:
         """Return the frame as values for JSON.
 
         The keys are ``node``, ``message``, ``kind``, ``id`` (or ``set_id`` and
-        ``get_id``), ``length``, ``bytes`` and ``fields``, and ``remarks_on_value`` if there are
+        ``get_id``), ``length``, ``bytes`` and ``fields``, and ``remarks`` if there are
         any.
         """
         message = self.message
