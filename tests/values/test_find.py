@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from icdgen.icd.model import Message
+from icdgen.loading import load
 from icdgen.values.errors import Ambiguous, NotFound
-from icdgen.values.find import find_field, find_message, find_node
+from icdgen.values.find import (
+    find_array,
+    find_field,
+    find_frame,
+    find_message,
+    find_named,
+    find_node,
+    find_sharing,
+    is_part,
+    only_node,
+)
+from tests.icd.files import write
 
 
 @pytest.mark.parametrize(
@@ -138,3 +153,190 @@ def test_words_of_several_fields_are_refused(icd):
     for odd in ("", "?", "="):
         with pytest.raises(NotFound):
             find_field(message, icd.longest_frame(message), odd)
+
+
+@pytest.mark.parametrize(
+    ("words", "node", "others"),
+    [
+        (["top", "a", "b"], "top", ["a", "b"]),
+        ([" BASE ", "a"], "base", ["a"]),
+        (["a", "top"], "top", ["a", "top"]),
+        ([], "top", []),
+    ],
+)
+def test_the_only_node_that_no_other_includes_may_be_omitted(icd, words, node, others):
+    result, others_left = find_named(icd, words)
+    assert (result.name, others_left) == (node, others)
+    assert only_node(icd) is find_node(icd, "top")
+    assert [is_part(icd, each) for each in icd.nodes] == [True, False]
+
+
+def test_with_several_nodes_the_name_is_needed(icd):
+    base, top = icd.nodes
+    two = replace(icd, nodes=(base, top, replace(top, name="second")))
+    assert only_node(two) is None
+    assert find_named(two, ["second"])[0].name == "second"
+    with pytest.raises(NotFound, match="there is no node `tpo`") as caught:
+        find_named(two, ["tpo", "1"])
+    assert caught.value.help == "did you mean `top`?"
+    with pytest.raises(NotFound, match="it is not said which node is meant") as caught:
+        find_named(two, [])
+    assert caught.value.help == "nodes: top, second", "without the included one"
+
+
+def test_words_are_a_node_a_message_and_assignments(icd):
+    for words in (["top", "17", "x=1", "y=2"], ["17", "x=1", "y=2"]):
+        node, message, assignments = find_frame(icd, words)
+        assert (node.name, message) == ("top", "17")
+        assert assignments == ["x=1", "y=2"]
+    assert find_frame(icd, ["17"])[2] == []
+    with pytest.raises(NotFound, match="no message of top is named") as caught:
+        find_frame(icd, ["top"])
+    assert caught.value.help == "`icdgen show top` lists what there is"
+
+
+NAMES = """\
+structs:
+  - name: Satellite
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: GNSS, type: uint, aliases: [system]}
+      - {at: 8, bits: 8, count: 2, name: Angles, identifier: az_el, type: uint}
+messages:
+  - name: Status
+    id: 130
+    kind: telemetry
+    length: 27
+    fields:
+      - {at: 0, bits: 8, name: Mode, identifier: op_mode, type: uint, aliases: [State]}
+      - {at: 8, bits: 8, count: 3, name: Gains, type: uint}
+      - {at: 32, count: 2, struct: Satellite, name: Satellites}
+      - {at: 80, struct: Satellite, name: Own, aliases: [Self]}
+      - {at: 104, bits: 8, name: Modem, type: uint}
+      - {at: 112, bits: 8, name: State, identifier: st, type: uint}
+  - name: Other
+    id: 300
+    kind: telemetry
+    length: 1
+    aliases: [Spare status]
+  - {name: 01 2c, id: 7, kind: telemetry, length: 1}
+"""
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory):
+    loaded = load([write(tmp_path_factory.mktemp("names"), NAMES)], check=False)
+    assert loaded.findings == []
+    return loaded.icd
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [
+        ("mode", "Mode"),
+        ("mod", None),
+        ("op mode", "Mode"),
+        ("State", "State"),
+        ("st", "State"),
+        ("gains[1]", "Gains[1]"),
+        ("gains 1", "Gains[1]"),
+        ("gains[-1]", None),
+        ("gains", None),
+        ("satellites[1].gnss", "Satellites[1].GNSS"),
+        ("satellites[1].system", "Satellites[1].GNSS"),
+        ("satellites[1].az_el[0]", "Satellites[1].Angles[0]"),
+        ("own gnss", "Own.GNSS"),
+        ("own.system", "Own.GNSS"),
+        ("system", "Own.GNSS"),
+        ("own.az_el[1]", "Own.Angles[1]"),
+        ("modem", "Modem"),
+        ("mode m", "Modem"),
+    ],
+)
+def test_a_field_is_found_by_name_identifier_alias_and_index(names, key, name):
+    message = find_message(names, "demo", "status")
+    fields = names.longest_frame(message)
+    try:
+        result = find_field(message, fields, key).name
+    except (NotFound, Ambiguous):
+        result = None
+    assert result == name
+
+
+@pytest.mark.parametrize(
+    ("key", "elements"),
+    [
+        ("gains", ["Gains[0]", "Gains[1]", "Gains[2]"]),
+        ("satellites[1].angles", [f"Satellites[1].Angles[{i}]" for i in range(2)]),
+        ("satellites[0].az_el", [f"Satellites[0].Angles[{i}]" for i in range(2)]),
+        ("own.az_el", ["Own.Angles[0]", "Own.Angles[1]"]),
+        ("mode", []),
+        ("gains[0]", []),
+        ("angles", []),
+    ],
+)
+def test_an_array_has_the_elements_of_its_name(names, key, elements):
+    fields = names.longest_frame(find_message(names, "demo", "status"))
+    assert [field.name for field in find_array(fields, key)] == elements
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [
+        ("300", "Other"),
+        ("0x12C", "Other"),
+        ("0x012c", "Other"),
+        ("01/2C", "01 2c"),
+        ("01 2C", "01 2c"),
+        ("00 00 01 2c", "Other"),
+        ("00 00 00 01 2c", None),
+        ("07", "01 2c"),
+        ("00 07", "01 2c"),
+        ("0b111", None),
+        ("spare STATUS", "Other"),
+        ("٣٠٠", None),
+    ],
+)
+def test_an_id_is_a_number_or_its_bytes(names, key, name):
+    try:
+        result = find_message(names, "demo", key).name
+    except NotFound:
+        result = None
+    assert result == name
+
+
+def test_up_to_20_fields_are_listed_and_a_similar_alias_has_its_name(names):
+    message = find_message(names, "demo", "status")
+    fields = names.longest_frame(message)
+
+    def help_of(key: str, count: int) -> str:
+        with pytest.raises(NotFound) as caught:
+            find_field(message, fields[:1] * count, key)
+        return caught.value.help
+
+    assert help_of("?", 20) == "fields: " + ", ".join(["Mode"] * 20)
+    assert help_of("?", 21) == "it has 21 fields; `icdgen show` lists them"
+    assert help_of("Stata", 1) == "did you mean `Mode`?"
+
+
+def test_messages_that_share_an_id_are_those_of_one_direction(icd):
+    def sharing(icd, key, kind=None):
+        return [message.name for message in find_sharing(icd, "demo", key, kind)]
+
+    def named(name: str, id: int, kind: str) -> Message:
+        return replace(find_message(icd, "top", "17"), name=name, id=id, kind=kind)
+
+    messages = (
+        named("A", 1, "telecommand"),
+        named("B", 1, "telemetry"),
+        named("C", 1, "telemetry"),
+        named("D", 2, "telecommand"),
+        named("E", 2, "telecommand"),
+        named("F", 2, "telemetry"),
+    )
+    node = replace(icd.nodes[0], name="demo", messages=messages)
+    demo = replace(icd, nodes=(node,))
+    assert sharing(demo, "1") == sharing(demo, "0x01", "telemetry") == ["B", "C"]
+    assert sharing(demo, "2") == sharing(demo, "2", "telecommand") == ["D", "E"]
+    assert sharing(demo, "1", "telecommand") == sharing(demo, "2", "telemetry") == []
+    assert sharing(demo, "3") == sharing(demo, "A") == []
