@@ -20,6 +20,7 @@ enums:
       - {value: 1, name: "2"}
       - {value: 2, name: Auto reset, aliases: [again]}
       - {value: 4, to: 6, name: Spare}
+      - {value: 8, name: Level 9}
 messages:
   - name: Status
     id: 130
@@ -38,7 +39,7 @@ messages:
       - {at: 112, bits: 8, name: Plain, type: uint}
 """
 
-MEMBERS = "; members: 0 Off, 1 2, 2 Auto reset, 4 to 6 Spare"
+MEMBERS = "; members: 0 Off, 1 2, 2 Auto reset, 4 to 6 Spare, 8 Level 9"
 TRUTH = "is neither true nor false (nor yes, no, on, off, 1, 0)"
 
 
@@ -61,8 +62,15 @@ def fields(tmp_path_factory):
         ("Mode", "1", 1, 1),
         ("Mode", "5", 5, 5),
         ("Mode", "77", 77, 77),
+        ("Mode", "9", 9, 9),
         ("Flag", "ON", 1, 1),
+        ("Flag", "yes", 1, 1),
+        ("Flag", "True", 1, 1),
+        ("Flag", "1", 1, 1),
         ("Flag", "no", 0, 0),
+        ("Flag", "off", 0, 0),
+        ("Flag", "FALSE", 0, 0),
+        ("Flag", "0", 0, 0),
         ("Level", "alarm", 255, None),
         ("Level", "7", 0, 7),
         ("Level", "0b11 m", 3, None),
