@@ -36,6 +36,8 @@ def test_a_function_of_an_object_is_computed_once_for_each_object():
     assert (halved(owner), halved(owner), halved(other)) == (2, 2, 3)
     assert (owner.calls, other.calls) == (1, 1)
     assert halved.__name__ == "halved"
+    # It ends with the object: another object may get the same address.
+    assert owner.__dict__["_halved"] == 2
 
 
 def test_none_and_zero_are_cached_too():

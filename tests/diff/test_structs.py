@@ -30,6 +30,7 @@ def rows(folder, old: str, new: str, *codes: str) -> list[tuple]:
     return rows_of(compared_texts(folder, old, new, is_checked=False), *codes)
 
 
+TWO_USES = "`Spot 1.West` of `Status`, `Spot 2.West` of `Status`"
 ONE, FOUR = (
     "at: 0, name: Spot, struct: Point",
     "at: 0, name: Spots, struct: Point, count: 4",
@@ -154,3 +155,31 @@ def test_names_of_the_same_member_are_paired():
     assert list(_renamed({8: [a], 0: [b]}, {})) == [(b, None), (a, None)]
     # A name that moved to another member is unchanged.
     assert list(_renamed({0: [a], 8: [b]}, {0: [b], 8: [a]})) == []
+
+
+@pytest.mark.parametrize(
+    ("uses", "words"),
+    [
+        (1, ()),
+        (2, ("The same of `Spot 1.West` of `Status`.",)),
+        (
+            4,
+            (
+                "The same of `Spot 1.West` of `Status`, `Spot 2.West` of `Status` and "
+                "`Spot 3.West` of `Status`.",
+            ),
+        ),
+        (5, (f"The same of {TWO_USES} and 2 more.",)),
+        (6, (f"The same of {TWO_USES} and 3 more.",)),
+    ],
+)
+def test_a_change_of_a_struct_lists_up_to_three_other_uses(uses, words, tmp_path):
+    spots = [f"at: {16 * n}, name: Spot {n}, struct: Point" for n in range(uses)]
+    old = icd(*spots)
+    new = old.replace("name: Left", "name: West")
+    (change,) = [
+        change
+        for change in compared_texts(tmp_path, old, new, is_checked=False).changes
+        if change.where.field and "West" in str(change)
+    ]
+    assert change.details == words

@@ -212,3 +212,21 @@ def test_a_text_is_shown_readably_and_its_raw_value_is_its_bytes(icd):
         "name": "Software", "type": "text", "raw": data[:10].hex(), "value": "1.2\x1b\ufffd",
     }  # fmt: skip
     assert "\x1b" not in to_text(shown)
+
+
+def test_a_derived_value_without_a_display_format_is_rounded(tmp_path):
+    """0.1 + 0.2 is 0.30000000000000004 as a double."""
+    file = tmp_path / "demo.yaml"
+    file.write_text(
+        "icdgen: 1\n"
+        "node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+        "messages:\n"
+        "  - name: Status\n"
+        "    id: 1\n"
+        "    kind: telemetry\n"
+        "    length: 1\n"
+        "    fields: [{at: 0, bits: 8, name: Raw, type: uint}]\n"
+        '    derived: [{name: Sum, formula: "Raw*0.1 + 0.2"}]\n'
+    )
+    frame = decode(load([file]).icd, "demo", "Status", b"\1")
+    assert frame.rows[1].text == "0.3"
