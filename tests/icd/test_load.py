@@ -208,3 +208,29 @@ def test_an_ambiguous_scalar_of_a_flag_is_reported_once_with_a_truth_value(folde
     write(top=icd("top") + PING.replace("length", "repeat: yes, length"))
     (finding,) = load([Path("top.yaml")]).findings
     assert (finding.code, finding.fix.text) == ("ICD003", "true")
+
+
+@pytest.mark.parametrize(
+    ("keys", "overlay"),
+    [("repeat: yes, ", "held: {id: 2}"), ("", "held: {id: 2, repeat: yes}")],
+)
+def test_an_ambiguous_scalar_is_reported_once_beside_changes_of_an_overlay(
+    folder, keys, overlay
+):
+    text = OVERLAY.replace("held: {id: 2}", overlay)
+    if "repeat" in overlay:
+        text = text.replace("printed: {id: 1}", "printed: {id: 1, repeat: null}")
+    write(top=icd("top") + PING.replace("length", f"{keys}length"), errata__top=text)
+    (finding,) = load([Path("top.yaml")]).findings
+    assert (finding.code, finding.fix.text) == ("ICD003", "true")
+    assert finding.place.file == ("top.yaml" if keys else "errata/top.yaml")
+
+
+def test_the_fix_of_a_value_of_an_overlay_has_the_spelling_of_the_overlay(folder):
+    overlay = OVERLAY.replace("{id: 1}", "{length: 0}").replace("{id: 2}", '{length: "2"}')  # fmt: skip
+    column = overlay.splitlines()[2].index('"2"')
+    # The ICD has another number at the same line and column.
+    write(top=icd("top") + f'{PING.rstrip():{column - 1}}#"7"\n', errata__top=overlay)
+    (finding,) = load([Path("top.yaml")]).findings
+    assert (finding.code, finding.fix.text) == ("ICD010", "2")
+    assert finding.place == ("errata/top.yaml", 3, column + 1, 3)

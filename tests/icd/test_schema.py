@@ -13,7 +13,7 @@ PING = "name: Ping, id: 1, kind: telecommand, length: 0"
 
 def check(text: str, document: str = "icd"):
     tree = source.parse(text.encode(), "demo.yaml")
-    return tree, *schema.check(tree, document, Lines(text))
+    return tree, *schema.check(tree, document, {"demo.yaml": text})
 
 
 def rows(text: str, document: str = "icd") -> list[tuple[str, str]]:

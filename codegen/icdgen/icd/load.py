@@ -220,20 +220,24 @@ class _Loader:
         """
         from icdgen.icd import schema
 
-        lines = Lines(self.texts.get(tree.place.file, ""))
-        findings, broken = schema.check(tree, document, lines)
+        findings, broken = schema.check(tree, document, self.texts)
         violations = {finding.place: finding for finding in findings}
         if ambiguous:  # which is rare, and the module is large
             from icdgen.icd import remedies
+
+            lines = Lines(self.texts.get(tree.place.file, ""))
         for finding in ambiguous:
-            violation = violations.get(finding.place)
-            fix = None
-            if violation is not None:
-                fix = violation.fix
-            elif text := remedies.of_type("string", lines.marked(finding.place)):
-                fix = Fix(finding.place, text)
+            text = remedies.of_type("string", lines.marked(finding.place))
+            fix = Fix(finding.place, text) if text else None
             self.findings.append(finding._replace(fix=fix))
-        places = {finding.place for finding in ambiguous}
+        # Also earlier findings: the type of a value of an overlay is known only when it
+        # has replaced the value of the ICD.
+        places: set[Place] = set()
+        for index, finding in enumerate(self.findings):
+            if finding.code == source.AMBIGUOUS and finding.place in violations:
+                fix = violations[finding.place].fix
+                self.findings[index] = finding._replace(fix=fix)
+                places.add(finding.place)
         self.findings += (
             finding for finding in findings if finding.place not in places
         )

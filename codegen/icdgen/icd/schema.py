@@ -10,6 +10,7 @@ same schema. Other functions look up definitions and descriptions of keys.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -40,23 +41,26 @@ _TYPES = {
 
 
 def check(
-    tree: Map, document: str, lines: Lines | None = None
+    tree: Map, document: str, texts: Mapping[str, str] | None = None
 ) -> tuple[list[Finding], set[int]]:
     """Return the violations of ``#/$defs/<document>`` ("icd" or "errata"), and the id()
     of each mapping with a violation.
 
-    With the ``lines`` of the file, findings also have the fixes that depend on the
-    spelling of a value.
+    With the ``texts`` of files by their names, findings also have the fixes that depend
+    on the spelling of a value. A tree can have values of an overlay.
     """
     findings: list[Finding] = []
     broken: set[int] = set()
+    lines: dict[str, Lines] = {}
     for error in _validator(document).iter_errors(tree):
         path = list(error.instance_path)
         holder, owner, place = locate(tree, path)
         # If a value must not be a mapping, the mapping around it is invalid, not the
         # value itself.
         broken.add(id(owner if error.kind.name in _ABOUT_KEYS else holder))
-        findings += _explain(error, path, owner, place, lines or Lines(""))
+        if place.file not in lines:
+            lines[place.file] = Lines((texts or {}).get(place.file, ""))
+        findings += _explain(error, path, owner, place, lines[place.file])
     return findings, broken
 
 
