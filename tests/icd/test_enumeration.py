@@ -71,6 +71,13 @@ def test_a_field_of_these_bits_holds_all_values_and_no_narrower_one_does(ranges)
     assert kind.unnamed == next(n for n in range(100) if n not in taken)
 
 
+def test_the_widest_member_is_that_with_the_last_value_of_all():
+    assert enum((0, 9), (5, None)).widest.name == "M0"
+    assert enum((5, None), (0, 9)).widest.name == "M1"
+    assert enum((-9, None), (7, None)).widest.name == "M0"
+    assert enum((-8, None), (7, None)).widest.name == "M1"
+
+
 def test_an_enumeration_without_members_has_one_bit_and_no_widest_member():
     assert (enum().bits, enum().widest, enum().unnamed) == (1, None, 0)
     assert not enum().signed

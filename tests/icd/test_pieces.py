@@ -55,5 +55,6 @@ def test_the_runs_have_the_bits_of_the_value(byte_order, bit_order):
 def test_masks_of_a_run():
     run = Piece(2, 3, 4, 0)
     assert (run.mask, run.low_mask, run.is_byte, run.reaches_top) == (0x78, 0xF, False, False)  # fmt: skip
+    assert not Piece(0, 0, 7, 0).is_byte
     assert Piece(0, 4, 4, 0).reaches_top and not Piece(0, 4, 4, 0).is_byte
     assert Piece(0, 0, 8, 0).is_byte and Piece(0, 0, 8, 0).reaches_top

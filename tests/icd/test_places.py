@@ -225,6 +225,9 @@ def test_the_lines_of_a_variable_length_array_are_those_of_an_element(node):
     assert found["Words"].starts(first_only=True) == [104]
     assert (found["Count"].smallest_raw, found["Words Count"].is_count) == (1, True)
     assert [line.name for line in found.values() if line.is_count] == ["Words Count"]
+    assert [line.is_of_struct for line in found.values()][:4] == [False] * 2 + [
+        True
+    ] * 2
 
 
 def test_lines_of_two_revisions_differ_in_any_attribute(node, tmp_path):

@@ -39,6 +39,9 @@ def rows(text: str, document: str = "icd") -> list[tuple[str, str]]:
         (PING.replace(", length: 0", ""), [("{", "`length` is missing from this entry of `messages`")]),
         (PING + ", fields: [{at: 0}]",
          [("{", f"`{key}` is missing from this entry of `fields`") for key in ("name", "type", "bits")]),
+        (PING + ", aliases: []", [("[", "`aliases` is empty")]),
+        (PING + ", fields: [{at: 0, bits: 8, name: A, type: int, points: [[0, 0]]}]",
+         [("[", "`points` has fewer than 2 entries")]),
         (PING + ", fields: [7]", [("7", "this entry of `fields` must be a mapping, not the number 7")]),
     ],
 )  # fmt: skip
@@ -52,6 +55,7 @@ def test_a_mapping_with_a_violation_is_left_out_and_its_neighbours_are_not():
         f"{HEAD}messages:\n  - {{{PING}}}\n  - {{{PING}, sumary: A}}\n"
         f"  - {{{PING}, fields: [{{at: 0, bits: x, name: A, type: uint}}]}}\n"
         f"  - {{{PING}, source: 7}}\n  - {{{PING}, source: {{tabel: 7}}}}\n"
+        f"  - {{{PING}, summary: {{a: 1}}}}\n"
     )
     tree, findings, broken = check(text)
     messages = tree["messages"]
@@ -60,8 +64,9 @@ def test_a_mapping_with_a_violation_is_left_out_and_its_neighbours_are_not():
         id(messages[2]["fields"][0]),
         id(messages[3]),
         id(messages[4]["source"]),
+        id(messages[5]),
     }
-    assert [finding.place.line for finding in findings] == [5, 6, 7, 8]
+    assert [finding.place.line for finding in findings] == [5, 6, 7, 8, 9]
 
 
 def test_each_unknown_key_has_a_finding_at_the_key():

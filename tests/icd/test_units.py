@@ -68,6 +68,7 @@ def test_other_spellings_stand_for_standard_units():
         ("kticks", ("ticks",), ""),
         ("kg·furlong", ("kg.furlong",), "kg.furlong"),
         ("kgfurlong", ("kg.furlong",), "kg.furlong"),
+        ("kg.m2/s", ("kg.m^2/s",), "kg.m^2/s"),
         ("kV", (), ""),
         ("ml/s", (), ""),
         ("m^3", (), ""),
