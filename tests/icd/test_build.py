@@ -36,7 +36,7 @@ enums:
     summary: Some.
     aliases: [kinds]
     source: {table: 2}
-    members: [{value: -1, name: Low, identifier: L, summary: S., aliases: [lo]}, {value: 0, to: 2, name: High}]
+    members: [{value: -1, name: Low, identifier: L, summary: S., aliases: [lo]}, {value: 0, to: 0, name: High}]
 structs:
   - {name: Outer, length: 3, source: {table: 4}, fields: [{at: 0, name: Inner, struct: Inner, count: 3}]}
   - {name: Inner, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint}]}
@@ -107,7 +107,7 @@ def test_an_enumeration_has_the_values_of_its_keys(demo):
     assert (kind.table, kind.node) == (2, "demo")
     assert kind.members == (
         Member(-1, "Low", "L", "S.", aliases=("lo",)),
-        Member(0, "High", to=2),
+        Member(0, "High", to=0),
     )
 
 
@@ -239,8 +239,8 @@ def test_lines_are_arrays_structs_overlays_or_scalars(tmp_path):
 @pytest.mark.parametrize(
     ("keys", "size", "counter"),
     [
-        ("bits: 8, type: uint, count: rest, up_to: 300", Rest, ("Words Count", 16)),
-        ("type: text, size: rest, up_to: 255", Rest, ("Words Size", 8)),
+        ("bits: 8, type: uint, count: rest, up_to: 300", Rest, ("Words Count", None, 16)),
+        ("type: text, size: rest, up_to: 255, identifier: W", Rest, ("Words Size", "W Size", 8)),
         ("bits: 8, type: uint, count: Number, up_to: 3", Counted("Number", 3, 0), None),
         ("type: bytes, size: {field: Number, plus: -2}, up_to: 3", Counted("Number", 3, -2), None),
     ],
@@ -256,7 +256,8 @@ def test_the_size_of_a_variable_length_field(keys, size, counter, tmp_path):
     if counter is None:
         assert actual == size
     else:
-        assert (actual.counter.name, actual.counter.bits) == counter
+        own = actual.counter
+        assert (own.name, own.identifier, own.bits) == counter
     assert [each.name for each in layout.fixed] == ["Number"]
     if isinstance(node, Scalar):
         assert (node.bits, node.at) == (8, 8)
