@@ -14,9 +14,10 @@ from icdgen.icd.layout import Array, Layout, Orders, Overlay, Scalar, StructRef
 from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
 from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.loading import load
 from tests.conformance.icds import read_unchecked
 from tests.conftest import ROOT
-from tests.icd.files import loaded
+from tests.icd.files import loaded, write
 
 SETS = [
     "icd",
@@ -316,3 +317,119 @@ def test_a_changed_struct_changes_the_messages_that_use_it_within_other_structs(
     )
     assert (before, after) == (["uint"] * 5, ["int"] * 4 + ["uint"])
     assert with_struct_layout(layout, cell.layout, signed) is layout
+
+
+PARTS = """\
+structs:
+  - {name: Cell, length: 1, fields: [
+      {at: 0, bits: 8, name: State, type: uint},
+      {at: 8, bits: 16, name: Values, type: uint, count: {field: Inner, plus: 1}, up_to: 3},
+      {at: 8, after: Values, bits: 8, name: End, type: uint}]}
+messages:
+  - name: Status
+    id: 1
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: Number, type: uint}
+      - {at: 8, bits: 8, name: Inner, type: uint}
+      - {at: 16, bits: 8, name: Size, type: uint}
+      - {at: 24, name: Cells, struct: Cell, count: {field: Number, plus: -1}, up_to: 4}
+      - {at: 24, after: Cells, bits: 16, name: Check, type: uint}
+      - {at: 24, after: Check, name: Text, type: text, size: {field: Size, plus: 2}, up_to: 5}
+  - name: Rest
+    id: 2
+    kind: telemetry
+    length: 1
+    may_end_early: zeros
+    fields:
+      - {at: 0, bits: 8, name: Number, type: uint}
+      - {at: 8, bits: 32, name: Words, type: uint, count: rest, up_to: 4}
+  - {name: Fixed, id: 3, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint}]}
+  - {name: Empty, id: 4, kind: telemetry, length: 0, may_end_early: zeros}
+"""  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def variable(tmp_path_factory) -> dict[str, Layout]:
+    result = load([write(tmp_path_factory.mktemp("icd"), PARTS)], check=False)
+    return {message.name: message.layout for message in result.icd.nodes[0].messages}
+
+
+def test_variable_parts_are_placed_as_in_the_longest_frame(variable):
+    cells, text = variable["Status"].parts
+    assert [
+        (part.name, part.counter, part.is_rest, part.begin, part.step, part.most)
+        for part in (cells, text)
+    ] == [("Cells", "Number", False, 3, 8, 4), ("Text", "Size", False, 37, 1, 5)]
+    assert [
+        (part.plus, part.behind, part.end, part.is_array) for part in (cells, text)
+    ] == [
+        (-1, 2, 35, True),
+        (2, 0, 42, False),
+    ]
+    assert [(part.fewest, part.low, part.high) for part in (cells, text)] == [(0, 1, 5), (2, 0, 3)]  # fmt: skip
+    (inner,) = cells.inner
+    assert (inner.name, inner.begin, inner.step, inner.most, inner.plus) == ("Values", 1, 2, 3, 1)  # fmt: skip
+    assert (cells.shortest_step, cells.steps, text.steps) == (4, (4, 2), (1,))
+    assert (text.end_if_fewest, text.possible_ends) == (39, range(39, 43))
+    (rest,) = variable["Rest"].parts
+    assert (rest.counter, rest.is_rest, rest.possible_ends) == ("Words Count", True, range(1, 18, 4))  # fmt: skip
+    assert list(variable["Status"].parts_by_size) == ["Cells", "Text", "Cells.Values"]
+
+
+def test_counters_have_the_values_of_all_that_they_count(variable):
+    layout = variable["Status"]
+    names = ("Number", "Inner", "Size", "Check")
+    assert [layout.smallest_raw_of_counter(name) for name in names] == [1, 0, 0, 0]
+    assert [layout.largest_raw_of_counter(name) for name in names[:3]] == [5, 2, 3]
+    assert layout.initial_numbers == {"Cells": 4, "Text": 2}
+    assert variable["Rest"].initial_numbers == {"Words": 0}
+    assert variable["Fixed"].smallest_raw_of_counter("A") == 0
+
+
+def test_lengths_of_frames(variable):
+    assert [
+        (layout.fixed_length, layout.shortest, layout.longest, layout.lengths.step)
+        for layout in variable.values()
+    ] == [(5, 7, 42, 1), (1, 1, 17, 4), (1, 1, 1, 1), (0, 0, 0, 1)]
+    gaps = [name for name, layout in variable.items() if layout.has_inner_gaps]
+    assert gaps == ["Status"]
+    assert list(variable["Fixed"].lengths) == [1]
+
+
+@pytest.mark.parametrize("cells", [0, 1, 4])
+@pytest.mark.parametrize("values", [1, 3])
+@pytest.mark.parametrize("size", [2, 5])
+def test_a_frame_is_the_longest_frame_without_its_gaps(variable, cells, values, size):
+    layout = variable["Status"]
+    sizes = {"Cells": cells, "Cells.Values": values, "Text": size}
+    longest = bytes(range(1, 43))
+    absent = {
+        byte
+        for cell in range(4)
+        for byte in range(3 + 8 * cell, 11 + 8 * cell)
+        if cell >= cells or 1 + 2 * values <= byte - 3 - 8 * cell < 7
+    } | set(range(37 + size, 42))
+    frame = bytes(byte for at, byte in enumerate(longest) if at not in absent)
+    expected = bytes(0 if at in absent else byte for at, byte in enumerate(longest))
+    assert layout.size_of_frame(sizes) == len(frame)
+    assert layout.in_longest(frame, sizes) == expected
+    assert {
+        byte for gap in layout.gaps(sizes) for byte in range(gap.begin, gap.end)
+    } == absent
+
+
+def test_a_frame_that_ends_early_is_filled_with_zeros(variable):
+    sizes = {"Words": 2}
+    frame = variable["Rest"].in_longest(b"\1\2", sizes)
+    assert frame == b"\1\2" + bytes(15)
+
+
+def test_the_part_in_front_of_a_node(variable):
+    layout = variable["Status"]
+    cells, check, text = layout.sequence
+    parts = dict(zip(("Cells", "Text"), layout.parts, strict=True))
+    assert layout.part_of(cells) is parts["Cells"] and layout.part_of(check) is None
+    found = [layout.part_in_front_of(node) for node in (layout.fixed[0], cells, check, text)]  # fmt: skip
+    assert found == [None, None, parts["Cells"], parts["Cells"]]
