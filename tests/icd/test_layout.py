@@ -10,7 +10,7 @@ import pytest
 
 from icdgen.icd import pieces as bits
 from icdgen.icd.frames import flatten
-from icdgen.icd.layout import Array, Layout, Orders, Overlay, Scalar, StructRef
+from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef
 from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
 from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Icd, Message, Node
@@ -433,3 +433,15 @@ def test_the_part_in_front_of_a_node(variable):
     assert layout.part_of(cells) is parts["Cells"] and layout.part_of(check) is None
     found = [layout.part_in_front_of(node) for node in (layout.fixed[0], cells, check, text)]  # fmt: skip
     assert found == [None, None, parts["Cells"], parts["Cells"]]
+
+
+def test_bytes_can_be_absent_between_others_if_something_follows_them():
+    item = Scalar(name="Words", type="uint", bits=8)
+    first, second = (
+        Array(name=f"Words {plus}", at=8, item=item, size=Counted("N", most, plus))
+        for most, plus in ((3, 0), (5, 1))
+    )
+    layouts = [Layout("A", 1, (), nodes) for nodes in ((first,), (first, item), (first, second), ())]  # fmt: skip
+    assert [layout.has_inner_gaps for layout in layouts] == [False, True, True, False]
+    assert layouts[2].largest_raw_of_counter("N") == 3
+    assert Layout("A", 3, (), may_end_early=True).in_longest(b"\1", {}) == b"\1\0\0"

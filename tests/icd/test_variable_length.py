@@ -139,12 +139,14 @@ ORDER = (
         ([NUMBER.replace("bits: 8", "bits: 3"), ITEMS.replace("count: Number", "count: {field: Number, plus: 1}")],
          [("Items", "up_to", "`Number` (3 bits plus 1) counts up to 8, and `Items` has up to 9 elements",
            "write `up_to: 8`, or correct `plus` or the `bits` of `Number`")]),
-        ([NUMBER.replace("bits: 8", "bits: 3"), ITEMS.replace("count: Number", "count: {field: Number, plus: -8}")],
-         [("Items", "up_to", "`Number` (3 bits plus -8) counts up to 0, and `Items` has up to 9 elements",
+        ([NUMBER.replace("bits: 8", "bits: 3"), ITEMS.replace("count: Number", "count: {field: Number, plus: -7}")],
+         [("Items", "up_to", "`Number` (3 bits plus -7) counts up to 0, and `Items` has up to 9 elements",
            "correct `up_to`, or correct `plus` or the `bits` of `Number`")]),
         ([NUMBER.replace("bits: 8", "bits: 3"), "at: 8, name: Text, type: text, size: Number, up_to: 8"],
          [("Text", "up_to", "`Number` (3 bits) counts up to 7, and `Text` has up to 8 bytes",
            "write `up_to: 7`, or correct the `bits` of `Number`")]),
+        ([NUMBER.replace("bits: 8", "bits: 3"), ITEMS.replace("up_to: 9", "up_to: 7")], []),
+        ([NUMBER, ITEMS.replace("count: Number", "count: {field: Number, plus: 9}")], []),
         ([NUMBER, ITEMS.replace("count: Number", "count: {field: Number, plus: 10}")],
          [("Items", "up_to", "`Items` has at least 10 elements, and up to 9", "correct `up_to`, or `plus`")]),
         ([NUMBER, "at: 8, after: Items, bits: 8, name: Check, type: uint", ITEMS],
@@ -238,3 +240,19 @@ def test_the_length_of_a_frame_is_reported_at_its_last_variable_length_field():
     assert faults(message(NUMBER, first, check, rest)) == []
     longer = rest.replace("2894", "2895")
     assert [row[:2] for row in faults(message(NUMBER, first, check, longer))] == [("Text", "up_to")]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("count", "bits", "fix"),
+    [
+        ("Numbr", 8, "Number"),
+        ("{field: Numbr, plus: 1}", 8, None),
+        ("Number", 3, "7"),
+        ("{field: Number, plus: -7}", 3, None),
+    ],
+)
+def test_a_fix_replaces_a_single_value(count, bits, fix):
+    items = ITEMS.replace("count: Number", f"count: {count}")
+    owner = message(NUMBER.replace("bits: 8", f"bits: {bits}"), items)
+    (fault,) = variable_length.faults_of_count(owner, owner["fields"][1])
+    assert (fault.fix and fault.fix.text) == fix
