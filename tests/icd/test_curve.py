@@ -16,9 +16,17 @@ from hypothesis import strategies as st
 
 from icdgen import codec
 from icdgen.icd import curve, formula
-from icdgen.icd.curve import Curve
+from icdgen.icd.curve import (
+    Curve,
+    curve_of_plain,
+    has_inverse,
+    is_finite,
+    polynomial,
+    table,
+)
 from icdgen.icd.layout import Scalar
 from icdgen.loading import load
+from tests.limits import assert_limits
 
 COEFFICIENTS = st.lists(
     st.floats(-1e9, 1e9, allow_subnormal=False), min_size=2, max_size=6
@@ -272,3 +280,43 @@ def test_a_nan_result_always_has_the_same_bits():
             "7ff8000000000000",
             "7ff0000000000000",
         )
+
+
+def test_limits_of_raw_values_that_are_tried():
+    shape = polynomial([0.0, 1.0, 1e-9])
+    assert_limits(lambda high: has_inverse(shape, False, 0, high), most=2**16 - 1)
+    assert not has_inverse(shape, False, 5, 5)
+    assert has_inverse(shape, False, 5, 6)
+
+
+def test_ties_between_two_raw_values_go_to_the_even_one():
+    shape = polynomial([0.0, 2.0])
+    assert [shape.nearest(value, 0, 9) for value in (1, 3, 5, 4.9, 5.1)] == [0, 2, 2, 2, 3]  # fmt: skip
+    falling = polynomial([0.0, -2.0])
+    assert [falling.nearest(value, 0, 9) for value in (-1, -3, -19, 1)] == [0, 2, None, None]  # fmt: skip
+
+
+@pytest.mark.parametrize("outside", ["", "clamp", "extrapolate", "refuse"])
+def test_a_table_is_written_as_plain_values_and_read_back(outside):
+    shape = table(((0.5, 1.0), (2.5, 3.0)), outside)
+    plain = shape.plain
+    expected = {"points": [[0.5, 1.0], [2.5, 3.0]]}
+    assert plain == expected | ({"outside": outside} if outside else {})
+    assert curve_of_plain(plain) == shape
+    inner = (1, 2) if outside in ("clamp", "refuse") else (0, 9)
+    assert shape.invertible_raws(0, 9) == inner
+    assert curve_of_plain(polynomial([1.0, 2.0]).plain) == polynomial([1.0, 2.0])
+    assert curve_of_plain({}) is None
+
+
+def test_points_cover_raw_values_up_to_their_ends():
+    shape = table(((0.0, 1.0), (9.0, 3.0)), "")
+    assert_limits(lambda low: shape.covers(low, 9), least=0)
+    assert_limits(lambda high: shape.covers(0, high), most=9)
+    assert polynomial([0.0, 1.0]).covers(-1000, 1000)
+
+
+def test_results_are_finite_if_they_are_below_2_to_the_1000():
+    assert_limits(lambda n: is_finite(polynomial([0.0, 2.0**n]), 0, 1), most=999)
+    assert_limits(lambda n: is_finite(polynomial([2.0**n, 1.0]), 0, 0), most=999)
+    assert not is_finite(polynomial([0.0, 2.0**990]), -(2**10), 0)

@@ -152,3 +152,37 @@ def test_a_long_formula_is_read():
 
 def _same(first: float, other: float) -> bool:
     return first == other or (math.isnan(first) and math.isnan(other))
+
+
+@pytest.mark.parametrize(
+    ("text", "is_accepted"),
+    [
+        ("x^15", True),
+        ("x^16", False),
+        ("x*1^999", True),
+        ("x*1^1000", False),
+        ("V[0]", False),
+        ("V*2", True),
+        ("V_2", False),
+        ("x^-V", False),
+    ],
+)
+def test_exponents_are_limited_and_names_end_with_their_word(text, is_accepted):
+    try:
+        derived.parse(text, ["x", "V"])
+    except FormulaError:
+        assert not is_accepted
+    else:
+        assert is_accepted
+
+
+def test_the_sense_of_a_formula_ignores_the_order_of_terms_and_factors():
+    names = ["A", "B", "C"]
+
+    def sense(text: str, **renamed: str) -> str:
+        return derived.parse(text, names).sense(renamed)
+
+    assert sense("A + B*C") == sense("C*B + A") == "((`B`*`C`)+`A`)"
+    assert sense("A - B") != sense("B - A") and sense("A/B") != sense("B/A")
+    assert sense("A*2", A="New") == "(2.0*`New`)"
+    assert sense("A*2", B="New") == "(2.0*`A`)"

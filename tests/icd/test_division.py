@@ -5,12 +5,13 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from icdgen import codec
 from icdgen.diagnostics import Place
-from icdgen.icd import division
+from icdgen.icd import division, source
 from icdgen.icd.layout import Layout, Scalar
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message, Node
@@ -97,3 +98,48 @@ messages:
     assert codec.encode(
         loaded.icd.node("demo"), message, {"First": 3, "Second": 1, "Fast": 1}
     ) == bytes.fromhex("8013")
+
+
+WITHIN = "correct `at` or `bits`: `at` counts from the start of the split field"
+
+
+@pytest.mark.parametrize(
+    ("keys", "parts", "expected"),
+    [
+        ("", "{at: 0, bits: 3, name: A}, {at: 3, bits: 5, name: B}", []),
+        ("view: false", "{at: 0, bits: 8, name: A}", []),
+        ("", "{at: 0, bits: 4, name: A}, {at: 3, bits: 5, name: B}",
+         [("at", "`B` overlaps `A`", WITHIN)]),
+        ("", "{at: 0, bits: 4, name: A}, {at: 4, bits: 5, name: B}",
+         [("bits", "`B` ends at bit 9 of `Whole`, which has 8 bits", WITHIN)]),
+        ("", "{at: 1, bits: 3, name: A}, {at: 5, bits: 3, name: B}, {at: -1, bits: 1, name: C}, {at: 0, bits: 0, name: D}",
+         [("bitfields", "bit 0 of `Whole` belongs to no part",
+           "describe it as a part, or mark it as reserved")]),
+        ("const: 0, display: hex, min: 0", "{at: 0, bits: 8, name: A}",
+         [(key, f"`Whole` is a split field, so it cannot have `{key}`; its parts can",
+           "move it to the parts; an erratum removes what is printed")
+          for key in ("const", "min", "display")]),
+        ("view: true", "{at: 0, bits: 8, name: A}",
+         [("view", "`Whole` is a split field, so it cannot be an overlay field",
+           "write each part as an overlay field of the message")]),
+        ("count: 2", "{at: 0, bits: 8, name: A}",
+         [("bitfields", "`Whole` cannot have `bitfields`: it is an array",
+           "write a field for each element, or make the parts fields of the message")]),
+    ],
+)  # fmt: skip
+def test_each_fault_of_a_split_field_is_at_its_key(keys, parts, expected):
+    text = f"{{name: Whole, at: 0, bits: 8, type: uint, bitfields: [{parts}], {keys}}}"
+    field = source.parse(text.encode(), "demo.yaml")
+    rows = []
+    for fault in division.faults(field, "little", "lsb0"):
+        (key,) = (key for key in fault.owner if fault.owner.at(key) == fault.place)
+        rows.append((key, fault.message, fault.help))
+    assert rows == expected
+
+
+def test_parts_that_cross_a_byte_against_the_order_are_reported():
+    text = "{name: Whole, at: 0, bits: 16, type: uint, bitfields: [{at: 0, bits: 8, name: A}, {at: 4, bits: 8, name: B}]}"
+    field = source.parse(text.encode(), "demo.yaml")
+    messages = [fault.message for fault in division.faults(field, "big", "lsb0")]
+    assert "the bits of `B` are not contiguous in the frame" in messages
+    assert "`B` overlaps `A`" in messages

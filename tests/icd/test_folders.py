@@ -166,3 +166,20 @@ def test_a_file_that_is_too_large_is_reported_only_in_the_folder_itself(
         [tmp_path / "battery.yaml"],
         [tmp_path / "deep" / "pump.yaml"],
     )
+
+
+def test_files_are_told_apart_by_their_keys(tmp_path):
+    for name, text in {
+        "a": "icdgen: 1\n",
+        "b": '"icdgen": 1\n',
+        "c": "{icdgen: 1}\n",
+        "d": "'icdgen' : 1\n",
+        "e": "errata: 1\n",
+        "f": "messages: []\n",
+        "g": "# empty\n",
+        "h": "  icdgen: 1\nother: 2\n",
+    }.items():
+        (tmp_path / f"{name}.yaml").write_text(text)
+    result = folders.search(tmp_path)
+    names = ["".join(path.stem for path in paths) for paths in (result.icds, result.overlays, result.other_files)]  # fmt: skip
+    assert names == ["abcdfg", "e", "h"]

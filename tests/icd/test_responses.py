@@ -9,6 +9,9 @@ import pytest
 
 from icdgen import codec
 from icdgen.icd import responses
+from icdgen.icd.enumeration import Enum, Member
+from icdgen.icd.layout import Layout, Scalar, StructRef
+from icdgen.icd.model import Message
 from icdgen.icd.responses import NumberRun, number_run
 from tests.conformance.icds import read_unchecked
 
@@ -124,3 +127,20 @@ def test_a_response_repeats_the_id_or_several_numbers():
     echo = {"Command": "id[0]", "Count": "header.sequence"}
     assert responses.echoes_of({"echo": echo}) == echo
     assert responses.echoes_of({}) == {}
+
+
+def test_values_are_numbers_or_names_of_members():
+    enum = Enum("Kind", (Member(0, "None", "No"), Member(3, "Some")))
+    values = [0, 7, True, "None", "Some", "No", None]
+    assert [responses.number_of(each, enum) for each in values] == [0, 7, 1, 0, 3, None, None]  # fmt: skip
+    assert responses.number_of("Some", None) is None
+
+
+def test_a_scalar_is_found_by_its_name_in_the_frame():
+    cell = Layout("Cell", 1, (Scalar(name="State", type="uint", bits=8),))
+    use = StructRef(name="Main", layout=cell, at=8)
+    mode = Scalar(name="Mode", type="uint", bits=8)
+    message = Message("Ack", "telemetry", Layout("Ack", 2, (mode, use)))
+    names = ("Mode", "Main.State", "State", "Main", None)
+    places = [responses.field_of(message, name) for name in names]
+    assert [place and place.at for place in places] == [0, 8, None, None, None]

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from icdgen.icd import roles
 from icdgen.icd.layout import LayoutNode
 from icdgen.icd.roles import reasons_against
+from icdgen.icd.source import parse
 from tests.conformance.icds import read_unchecked
 from tests.conftest import ROOT
 from tests.icd.test_layout import SETS
+from tests.limits import assert_limits
 
 GENERAL = {
     name: role
@@ -90,3 +94,32 @@ def test_the_table_names_only_existing_features():
 )
 def test_each_reason_is_the_end_of_a_sentence(line, role, reasons):
     assert reasons_against(line, role) == reasons
+
+
+def test_limits_of_the_width_of_a_field_with_a_role():
+    def is_accepted(role: roles.Role, type: str = "uint") -> Callable[[int], bool]:
+        return lambda bits: not reasons_against({"type": type, "bits": bits}, role)
+
+    assert_limits(is_accepted(roles.SPLIT), most=64)
+    assert_limits(is_accepted(roles.EXPONENT, "int"), most=16)
+    assert_limits(is_accepted(roles.PROTOCOL["period"]), least=8)
+
+
+@pytest.mark.parametrize(
+    ("key", "feature"),
+    [
+        ("when: {A: 1}", "is optional"),
+        ("struct: A", "is a struct"),
+        ("count: 2", "is an array"),
+        ("size: 2", "has a variable length"),
+        ("bitfields: []", "is a split field"),
+        ("formula: raw", "is scaled"),
+        ("points: []", "is scaled"),
+        ("const: 0", "is constant"),
+        ("view: true", "is an overlay field"),
+        ("view: false", None),
+    ],
+)
+def test_a_key_gives_a_field_a_feature(key, feature):
+    line = parse(f"{{type: uint, bits: 8, {key}}}".encode(), "demo.yaml")
+    assert reasons_against(line, roles.COUNTER) == ([] if feature is None else [feature])  # fmt: skip

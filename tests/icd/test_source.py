@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from icdgen.diagnostics import Findings, Place
 from icdgen.icd import source
 from icdgen.icd.located import Map, Seq
+from tests.limits import assert_limits
 
 TEXT = """\
 # a comment
@@ -153,3 +154,53 @@ def test_any_punctuation_gives_a_tree_or_findings(text):
         source.parse(text.encode(), "demo.yaml")
     except Findings as error:
         assert {f.code for f in error.findings} <= {"ICD001", "ICD002", "ICD003"}
+
+
+def value_of(text: str) -> object:
+    return source.parse(f"a: {text}\n".encode(), "demo.yaml")["a"]
+
+
+def is_read(text: str) -> bool:
+    try:
+        value_of(text)
+    except Findings:
+        return False
+    return True
+
+
+def test_limits_of_a_file():
+    assert_limits(
+        lambda n: is_read("[" * n + "]" * n), most=39
+    )  # in the file's mapping
+    assert_limits(lambda n: is_read("{a: " * n + "}" * n), most=39)
+    assert_limits(lambda n: is_read('"' + "x" * n + '"'), most=20_000)
+    assert_limits(lambda n: isinstance(value_of("1" * n), int), least=1, most=39)
+    assert_limits(lambda n: isinstance(value_of("0x" + "1" * n), int), most=37)
+
+
+def test_a_file_is_read_up_to_the_limit(tmp_path, monkeypatch):
+    monkeypatch.setattr(source, "MAX_BYTES", 10)
+
+    def is_accepted(size: int) -> bool:
+        (tmp_path / "demo.yaml").write_bytes(b"x" * size)
+        try:
+            return len(source.contents(tmp_path / "demo.yaml", "demo")) == size
+        except Findings as error:
+            (finding,) = error.findings
+            assert finding.message == "the file has more than the 10 bytes allowed"
+            return False
+
+    assert_limits(is_accepted, most=10)
+
+
+def test_a_duplicate_key_is_reported_at_each_place_with_the_line_of_the_last_before_it():
+    with pytest.raises(Findings) as error:
+        source.parse(b"a: 1\nb: {c: 1}\na: 2\n\na: 3\n", "demo.yaml")
+    assert [(each.code, each.place, each.message) for each in error.value.findings] == [
+        ("ICD002", Place("demo.yaml", line, 1, 1), f"the key `a` is twice in this mapping, first in line {first}")
+        for line, first in ((3, 1), (5, 3))
+    ]  # fmt: skip
+
+
+def test_a_point_is_a_text():
+    assert value_of(".") == "."

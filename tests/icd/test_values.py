@@ -287,3 +287,8 @@ def test_limits_of_curves_are_not_compared_with_raw_values(tmp_path):
     """The physical values of a polynomial or a table are not those of its ends."""
     for keys in ("formula: raw^2 + 300", "points: [[0, 300], [255, 400]]"):
         assert codes(tmp_path, value(8, f"{keys}, min: 290, max: 600")) == []
+
+
+def test_a_truth_value_is_no_number_among_special_values(tmp_path):
+    text = special("1", "true", kind="uint", bits=8)
+    assert codes(tmp_path, text) == ["ICD010"]
